@@ -1,0 +1,190 @@
+//! Balance of energy and impulse.
+
+use super::Dynamics;
+use crate::ids::NodeId;
+use crate::obstacle::dot;
+
+/// Energies and works at t_n (J), and the drift of the two balances so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Kinetic energy ½ v_n·M v_n.
+    pub kinetic: f64,
+    /// Strain energy ½ u_n·K u_n.
+    pub strain: f64,
+    /// Kinetic plus strain energy at t_0.
+    pub initial: f64,
+    /// Work of tractions and body forces.
+    pub work_of_loads: f64,
+    /// Work of support reactions.
+    pub work_of_supports: f64,
+    /// Work of contact reactions, friction included.
+    pub work_of_contact: f64,
+    /// Energy dissipated by friction.
+    pub friction: f64,
+    /// Largest |energy − initial energy − works| so far, over the largest energy or work.
+    pub energy_drift: f64,
+    /// Largest |momentum − initial momentum − impulses| so far (any component), over the largest
+    /// momentum or impulse.
+    pub impulse_drift: f64,
+    largest_energy_gap: f64,
+    largest_energy: f64,
+    largest_impulse_gap: f64,
+    largest_impulse: f64,
+}
+
+/// Work of a set of nodal forces: Σ ½(F_n + F_{n+1})·(u_{n+1} − u_n), for which the central
+/// differences balance to O(Δt²).
+#[derive(Clone, Debug)]
+struct WorkMeter<const D: usize> {
+    nodes: Vec<NodeId>,
+    force: Vec<[f64; D]>,
+    displacement: Vec<[f64; D]>,
+}
+
+impl<const D: usize> WorkMeter<D> {
+    fn new(nodes: Vec<NodeId>) -> Self {
+        Self { force: vec![[0.0; D]; nodes.len()], displacement: vec![[0.0; D]; nodes.len()], nodes }
+    }
+
+    /// Work since the last call, node by node; `force` gives F_n of the i-th node.
+    fn advance(&mut self, u: &[[f64; D]], force: impl Fn(usize) -> [f64; D], mut each: impl FnMut(usize, [f64; D], [f64; D])) {
+        for (i, node) in self.nodes.iter().enumerate() {
+            let (now, at) = (force(i), u[node.index()]);
+            let (mut mean, mut path) = ([0.0; D], [0.0; D]);
+            for c in 0..D {
+                mean[c] = 0.5 * (self.force[i][c] + now[c]);
+                path[c] = at[c] - self.displacement[i][c];
+            }
+            each(i, mean, path);
+            self.force[i] = now;
+            self.displacement[i] = at;
+        }
+    }
+}
+
+/// Keeps the balance beside the integrator.
+#[derive(Clone, Debug)]
+pub(super) struct BalanceKeeper<const D: usize> {
+    balance: Balance,
+    loads: WorkMeter<D>,
+    supports: WorkMeter<D>,
+    contact: WorkMeter<D>,
+    external: Vec<[f64; D]>,
+    /// Reaction of each prescribed component (N), filled by the integrator.
+    pub(super) support_reaction: Vec<f64>,
+    initial_momentum: [f64; D],
+    impulse: [f64; D],
+    /// Sum of the sizes of all works put in by loads and supports (J).
+    energy_put_in: f64,
+}
+
+/// What the integrator knows at t_n.
+pub(super) struct Instant<'a, const D: usize> {
+    pub(super) n: usize,
+    pub(super) displacement: &'a [[f64; D]],
+    pub(super) reaction: &'a [[f64; D]],
+    pub(super) strain: f64,
+    pub(super) kinetic: f64,
+    pub(super) momentum: [f64; D],
+}
+
+impl<const D: usize> BalanceKeeper<D> {
+    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
+        let problem = dynamics.problem;
+        let loaded = if problem.is_loaded() { problem.mesh().node_count() } else { 0 };
+        Self {
+            balance: Balance::default(),
+            loads: WorkMeter::new((0..loaded).map(NodeId::new).collect()),
+            supports: WorkMeter::new(problem.prescribed().iter().map(|p| p.node).collect()),
+            contact: WorkMeter::new(problem.surface().nodes().iter().map(|c| c.node).collect()),
+            external: vec![[0.0; D]; loaded],
+            support_reaction: vec![0.0; problem.prescribed().len()],
+            initial_momentum: [0.0; D],
+            impulse: [0.0; D],
+            energy_put_in: 0.0,
+        }
+    }
+
+    pub(super) fn balance(&self) -> &Balance {
+        &self.balance
+    }
+
+    /// Takes in one instant; whether the energy is still plausible: below ten times what was
+    /// there or put in, which only an instability exceeds.
+    pub(super) fn record<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, now: &Instant<'_, D>) -> bool {
+        let total_force = self.advance_works(dynamics, now);
+        let times = dynamics.times;
+        let b = &mut self.balance;
+        (b.kinetic, b.strain) = (now.kinetic, now.strain);
+        let energy = b.kinetic + b.strain;
+        if now.n == 0 {
+            b.initial = energy;
+            self.initial_momentum = now.momentum;
+        }
+        let back = if now.n == 0 { 0.0 } else { 0.5 * times.step(now.n - 1) };
+        let forward = times.velocity_step(now.n) - back;
+        for c in 0..D {
+            self.impulse[c] += back * total_force[c];
+            let gap = now.momentum[c] - self.initial_momentum[c] - self.impulse[c];
+            b.largest_impulse_gap = b.largest_impulse_gap.max(gap.abs());
+            b.largest_impulse = b.largest_impulse.max(now.momentum[c].abs()).max(self.impulse[c].abs());
+            self.impulse[c] += forward * total_force[c];
+        }
+        let works = [b.work_of_loads, b.work_of_supports, b.work_of_contact];
+        b.largest_energy_gap = b.largest_energy_gap.max((energy - b.initial - works.iter().sum::<f64>()).abs());
+        b.largest_energy = works.iter().fold(b.largest_energy.max(energy), |m, w| m.max(w.abs()));
+        b.energy_drift = ratio(b.largest_energy_gap, b.largest_energy);
+        b.impulse_drift = ratio(b.largest_impulse_gap, b.largest_impulse);
+        energy.is_finite() && energy <= 10.0 * (b.initial + self.energy_put_in)
+    }
+
+    /// Adds the works of the step that ends at this instant; returns the sum of all external
+    /// forces.
+    fn advance_works<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, now: &Instant<'_, D>) -> [f64; D] {
+        let first = now.n == 0;
+        let problem = dynamics.problem;
+        let mut total = [0.0; D];
+        let mut add = |force: &[f64; D]| (0..D).for_each(|c| total[c] += force[c]);
+        let b = &mut self.balance;
+        let put_in = &mut self.energy_put_in;
+
+        if !self.external.is_empty() {
+            dynamics.external_forces(now.n, &mut self.external);
+            self.external.iter().for_each(&mut add);
+            let (mut work, external) = (0.0, &self.external);
+            self.loads.advance(now.displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
+            if !first {
+                b.work_of_loads += work;
+                *put_in += work.abs();
+            }
+        }
+
+        let along = |i: usize| {
+            let mut force = [0.0; D];
+            force[problem.prescribed()[i].component] = self.support_reaction[i];
+            force
+        };
+        (0..self.support_reaction.len()).for_each(|i| add(&along(i)));
+        let mut work = 0.0;
+        self.supports.advance(now.displacement, along, |_, mean, path| work += dot(&mean, &path));
+        if !first {
+            b.work_of_supports += work;
+            *put_in += work.abs();
+        }
+
+        now.reaction.iter().for_each(&mut add);
+        let nodes = problem.surface().nodes();
+        self.contact.advance(now.displacement, |i| now.reaction[i], |i, mean, path| {
+            if !first {
+                let plane = &problem.obstacles()[nodes[i].obstacle];
+                b.work_of_contact += dot(&mean, &path);
+                b.friction -= dot(&plane.split(&mean).1, &path);
+            }
+        });
+        total
+    }
+}
+
+fn ratio(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}

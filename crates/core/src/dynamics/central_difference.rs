@@ -1,0 +1,213 @@
+//! The loop over the steps, eq. [28]–[32].
+
+use super::balance::{BalanceKeeper, Instant};
+use super::contact::Contact;
+use super::{Balance, Dynamics};
+use crate::history::{SinkError, Step, StepSink};
+use crate::observer::{Observer, Progress};
+use crate::problem::Problem;
+use crate::time::TimeGrid;
+use std::ops::ControlFlow;
+use thiserror::Error;
+
+/// Why a simulation stopped before its end.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// Energy out of nothing.
+    #[error(
+        "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the energy is \
+         ten times what was there or put in; take smaller time steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s)"
+    )]
+    Unstable {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        time: f64,
+        /// The node with the most kinetic energy.
+        node: usize,
+        /// Its speed (m/s).
+        speed: f64,
+        /// Longest step of the grid (s).
+        longest_step: f64,
+        /// Critical step (s).
+        critical_step: f64,
+    },
+    /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
+    #[error(
+        "node {node} starts {gap:.6e} m from its plane at {speed} m/s and touches in the first step of {step:.4e} s, \
+         too near to come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most {largest_step:.4e} s"
+    )]
+    StartsTooNear {
+        /// The node.
+        node: usize,
+        /// Its gap (m).
+        gap: f64,
+        /// Its speed towards the plane (m/s).
+        speed: f64,
+        /// The first step (s).
+        step: f64,
+        /// The smallest gap that will do (m).
+        smallest_gap: f64,
+        /// The largest first step that will do (s).
+        largest_step: f64,
+    },
+    /// Whoever takes the steps failed.
+    #[error("step {step} could not be handed on: {cause}")]
+    Sink {
+        /// The step.
+        step: usize,
+        /// Why.
+        cause: SinkError,
+    },
+}
+
+/// How a simulation ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simulation {
+    /// Energies, works and drifts at the last step.
+    pub balance: Balance,
+    /// Number of steps done, all of them unless it was interrupted.
+    pub steps: usize,
+    /// Whether the observer stopped it.
+    pub interrupted: bool,
+}
+
+/// Runs a problem over a time grid and hands every step n = 0 … N to `sink`.
+///
+/// The observer is asked before each step; if it breaks, the run ends cleanly after the last
+/// whole step.
+///
+/// # Errors
+/// [`SimulationError`]: an unstable run, a start too near to a plane, a sink that fails.
+pub fn simulate<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    sink: &mut dyn StepSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, SimulationError> {
+    let dynamics = Dynamics::new(problem, times);
+    let mut displacement = problem.initial_displacement().to_vec();
+    let mut velocity = problem.initial_velocity().to_vec();
+    let mut force = vec![[0.0; D]; problem.mesh().node_count()];
+    let mut contact = Contact::new(problem.surface().nodes().len());
+    let mut balance = BalanceKeeper::new(&dynamics);
+    let mut done = 0;
+    let mut interrupted = false;
+
+    for n in 0..=times.step_count() {
+        let progress = Progress { stage: "simulating", done: n, total: times.step_count() };
+        if n > 0 && observer.observe(progress) == ControlFlow::Break(()) {
+            interrupted = true;
+            break;
+        }
+        let strain = dynamics.forces(n, &displacement, &mut force);
+        dynamics.apply_supports(n, &mut force, |i, reaction| balance.support_reaction[i] = reaction);
+        contact.react(&dynamics, n, &displacement, &velocity, &mut force);
+        if n == 0 {
+            contact.settle_start(&dynamics);
+            refuse_a_start_too_near(&dynamics, &contact)?;
+        }
+
+        let (kinetic, momentum) = energies(&dynamics, n, &velocity, &force);
+        let instant =
+            Instant { n, displacement: &displacement, reaction: &contact.reaction, strain, kinetic, momentum };
+        if !balance.record(&dynamics, &instant) {
+            return Err(unstable(&dynamics, n, &velocity));
+        }
+        let step = Step {
+            index: n,
+            time: times.instants()[n],
+            displacement: &displacement,
+            reaction: &contact.reaction,
+            touching: &contact.touching,
+        };
+        sink.push(&step).map_err(|cause| SimulationError::Sink { step: n, cause })?;
+        done = n;
+        advance(&dynamics, n, &force, &mut velocity, &mut displacement);
+    }
+    Ok(Simulation { balance: *balance.balance(), steps: done, interrupted })
+}
+
+/// v_{n+½} = v_{n−½} + h_n a_n and u_{n+1} = u_n + Δt_n v_{n+½}.
+fn advance<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    n: usize,
+    force: &[[f64; D]],
+    velocity: &mut [[f64; D]],
+    displacement: &mut [[f64; D]],
+) {
+    let (h, dt) = (dynamics.times.velocity_step(n), dynamics.times.step(n));
+    let states = velocity.iter_mut().zip(displacement).zip(force).zip(&dynamics.inverse_mass);
+    for (((v, u), f), inverse_mass) in states {
+        for c in 0..D {
+            v[c] += h * (inverse_mass * f[c]);
+            u[c] += dt * v[c];
+        }
+    }
+}
+
+/// Kinetic energy and momentum with v_n = v_{n−½} + ½Δt_{n−1} a_n.
+fn energies<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    n: usize,
+    velocity: &[[f64; D]],
+    force: &[[f64; D]],
+) -> (f64, [f64; D]) {
+    let back = if n == 0 { 0.0 } else { 0.5 * dynamics.times.step(n - 1) };
+    let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
+    for ((v, f), mass) in velocity.iter().zip(force).zip(dynamics.problem.mass()) {
+        for c in 0..D {
+            // m v_n without the inverse mass: one array less to read.
+            let p = mass * v[c] + back * f[c];
+            momentum[c] += p;
+            kinetic[c] += p * p / mass;
+        }
+    }
+    (0.5 * kinetic.iter().sum::<f64>(), momentum)
+}
+
+/// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at
+/// least |v_n|Δt₀/4, or no admissible kinematic field exists (problem P_CA).
+fn refuse_a_start_too_near<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    contact: &Contact<D>,
+) -> Result<(), SimulationError> {
+    let problem = dynamics.problem;
+    let step = dynamics.times.step(0);
+    for (at, node) in problem.surface().nodes().iter().enumerate() {
+        if contact.touching[at] || !contact.touching_next[at] {
+            continue;
+        }
+        let i = node.node.index();
+        let gap = problem.surface().gap(at, &problem.initial_displacement()[i], problem.obstacles());
+        let speed = -problem.obstacles()[node.obstacle].split(&problem.initial_velocity()[i]).0;
+        let smallest_gap = 0.25 * speed * step;
+        if gap < smallest_gap {
+            let largest_step = 4.0 * gap / speed;
+            return Err(SimulationError::StartsTooNear { node: i, gap, speed, step, smallest_gap, largest_step });
+        }
+    }
+    Ok(())
+}
+
+/// The error of an unstable run, with the node that has the most kinetic energy.
+fn unstable<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    step: usize,
+    velocity: &[[f64; D]],
+) -> SimulationError {
+    let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let energy = |(v, m): (&[f64; D], &f64)| m * speed(v) * speed(v);
+    let energies: Vec<f64> = velocity.iter().zip(dynamics.problem.mass()).map(energy).collect();
+    // Beyond the range of numbers counts as most.
+    let rank = |e: f64| if e.is_nan() { f64::INFINITY } else { e };
+    let node = (0..energies.len()).fold(0, |best, i| if rank(energies[i]) > rank(energies[best]) { i } else { best });
+    SimulationError::Unstable {
+        step,
+        time: dynamics.times.instants()[step],
+        node,
+        speed: speed(&velocity[node]),
+        longest_step: dynamics.times.longest_step(),
+        critical_step: super::critical_time_step(dynamics.problem),
+    }
+}

@@ -1,0 +1,109 @@
+//! The explicit solution: central differences, lumped mass, contact by multipliers (§5).
+
+mod balance;
+mod central_difference;
+mod contact;
+mod critical_step;
+mod internal_force;
+
+pub use balance::Balance;
+pub use central_difference::{Simulation, SimulationError, simulate};
+pub use critical_step::{critical_time_step, element_time_step};
+pub use internal_force::Stiffness;
+
+use crate::problem::Problem;
+use crate::time::TimeGrid;
+
+/// The discrete equilibrium M a_n = F_n − K u_n + R_n (eq. [30]) of a problem on a time grid.
+///
+/// The integrator and whoever derives velocities from stored displacements call the same
+/// functions in the same order, and so get the same bits.
+#[derive(Clone, Debug)]
+pub struct Dynamics<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    stiffness: Stiffness<D, N>,
+    inverse_mass: Vec<f64>,
+}
+
+impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
+    /// Prepares the forces of a problem.
+    #[must_use]
+    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
+        let inverse_mass = problem.mass().iter().map(|m| 1.0 / m).collect();
+        Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass }
+    }
+
+    /// 1/m of each node (1/kg).
+    #[inline]
+    #[must_use]
+    pub fn inverse_mass(&self) -> &[f64] {
+        &self.inverse_mass
+    }
+
+    /// Forces of the tractions and body forces at t_n (N).
+    pub fn external_forces(&self, n: usize, force: &mut [[f64; D]]) {
+        force.fill([0.0; D]);
+        let t = self.times.instants()[n];
+        for load in self.problem.facet_loads() {
+            let area = self.problem.facet_area(load.facet);
+            let moments = Problem::<D, N>::facet_moments(area, &self.problem.facet_traction_at(load, t));
+            let nodes = self.problem.mesh().facets()[load.facet.index()].nodes;
+            for (node, moment) in nodes.iter().zip(moments) {
+                (0..D).for_each(|c| force[node.index()][c] += moment[c]);
+            }
+        }
+        for load in self.problem.body_loads() {
+            let value = load.value.at(t);
+            for (node, volume) in &load.nodal_volume {
+                (0..D).for_each(|c| force[node.index()][c] += volume * value[c]);
+            }
+        }
+    }
+
+    /// External minus internal forces at t_n (N), without contact and supports. Returns the
+    /// strain energy (J).
+    pub fn forces(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+        self.external_forces(n, force);
+        self.stiffness.subtract_internal_forces(displacement, force)
+    }
+
+    /// Sets the force on prescribed components to what their motion needs (N), and hands each
+    /// support reaction to `reaction`.
+    pub fn apply_supports(&self, n: usize, force: &mut [[f64; D]], mut reaction: impl FnMut(usize, f64)) {
+        for (i, p) in self.problem.prescribed().iter().enumerate() {
+            let needed = self.problem.mass()[p.node.index()] * self.prescribed_acceleration(n, i);
+            let slot = &mut force[p.node.index()][p.component];
+            reaction(i, needed - *slot);
+            *slot = needed;
+        }
+    }
+
+    /// a_n of a prescribed component: what takes its half-step velocities from one to the next,
+    /// each the mean of v_d at the ends of its step.
+    fn prescribed_acceleration(&self, n: usize, index: usize) -> f64 {
+        let p = &self.problem.prescribed()[index];
+        if p.motion.is_none() {
+            return 0.0;
+        }
+        let velocity = |k: usize| self.problem.prescribed_velocity(p, self.times.instants()[k]);
+        let last = self.times.step_count();
+        if n == 0 || n == last {
+            let k = n.min(last - 1);
+            return (velocity(k + 1) - velocity(k)) / self.times.step(k);
+        }
+        0.5 * (velocity(n + 1) - velocity(n - 1)) / self.times.velocity_step(n)
+    }
+
+    /// a_n (m/s²) from u_n and the contact reactions R_n on the nodes of the contact surface.
+    pub fn acceleration(&self, n: usize, displacement: &[[f64; D]], reactions: &[[f64; D]], a: &mut [[f64; D]]) {
+        self.forces(n, displacement, a);
+        self.apply_supports(n, a, |_, _| ());
+        for (contact, reaction) in self.problem.surface().nodes().iter().zip(reactions) {
+            (0..D).for_each(|c| a[contact.node.index()][c] += reaction[c]);
+        }
+        for (a, inverse_mass) in a.iter_mut().zip(&self.inverse_mass) {
+            (0..D).for_each(|c| a[c] *= inverse_mass);
+        }
+    }
+}

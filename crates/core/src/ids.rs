@@ -1,0 +1,45 @@
+//! Typed indices: a node number cannot be taken for an element number.
+
+/// Defines a 32-bit index type.
+macro_rules! index {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(u32);
+
+        impl $name {
+            /// The index that stands for position `i`; meshes are checked to have fewer than 2³² entities.
+            #[inline]
+            #[must_use]
+            pub const fn new(i: usize) -> Self {
+                Self(i as u32)
+            }
+
+            /// The position this index stands for.
+            #[inline]
+            #[must_use]
+            pub const fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    };
+}
+
+index!(
+    /// A node of the mesh, numbered from 0.
+    NodeId
+);
+index!(
+    /// An element of the mesh, numbered from 0.
+    ElementId
+);
+index!(
+    /// A facet of the mesh: an edge in 2D, a point in 1D.
+    FacetId
+);

@@ -1,0 +1,20 @@
+//! The impact of an elastic body on rigid planes with Coulomb friction, and its explicit
+//! finite-element solution.
+//!
+//! A [`problem::Problem`] is stated with a builder, which checks it; [`dynamics::simulate`] runs
+//! it over a [`time::TimeGrid`] and hands each [`history::Step`] to a sink. No files, no
+//! printing: that is for the crates further down the chain.
+//!
+//! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur
+//! en relation de comportement pour les problèmes d'impact*. All units are SI.
+
+pub mod dynamics;
+pub mod history;
+pub mod ids;
+pub mod load;
+pub mod material;
+pub mod mesh;
+pub mod observer;
+pub mod obstacle;
+pub mod problem;
+pub mod time;

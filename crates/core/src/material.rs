@@ -1,0 +1,167 @@
+//! Isotropic linear elasticity in 1D and 2D, eq. [9].
+
+use thiserror::Error;
+
+/// Why a material was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("`{name}` is {value} {unit}; it must be {allowed}")]
+pub struct MaterialError {
+    /// The parameter.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What is allowed.
+    pub allowed: &'static str,
+}
+
+/// A Hooke law σ = λ tr ε 1 + 2G ε in the dimension of the mesh, with density and the extent of
+/// the body across the mesh.
+///
+/// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    lambda: f64,
+    shear: f64,
+    density: f64,
+    extent: f64,
+}
+
+/// Checks one parameter; NaN fails every test.
+fn require(ok: bool, name: &'static str, value: f64, unit: &'static str, allowed: &'static str) -> Result<(), MaterialError> {
+    if ok && value.is_finite() { Ok(()) } else { Err(MaterialError { name, value, unit, allowed }) }
+}
+
+impl Elastic {
+    /// A bar with Young's modulus (Pa), density (kg/m³) and section (m²).
+    ///
+    /// # Errors
+    /// A value that is not positive and finite.
+    pub fn bar(young: f64, density: f64, section: f64) -> Result<Self, MaterialError> {
+        require(section > 0.0, "section", section, "m²", "positive")?;
+        Self::checked(young, 0.0, density)?;
+        Ok(Self { lambda: 0.0, shear: young / 2.0, density, extent: section })
+    }
+
+    /// Plane stress: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
+    ///
+    /// # Errors
+    /// A value out of range: ν must lie between −1 and 0.5.
+    pub fn plane_stress(young: f64, poisson: f64, density: f64, thickness: f64) -> Result<Self, MaterialError> {
+        Self::plane(young, poisson, density, thickness, young * poisson / (1.0 - poisson * poisson))
+    }
+
+    /// Plane strain: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
+    ///
+    /// # Errors
+    /// A value out of range: ν must lie between −1 and 0.5.
+    pub fn plane_strain(young: f64, poisson: f64, density: f64, thickness: f64) -> Result<Self, MaterialError> {
+        let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        Self::plane(young, poisson, density, thickness, lambda)
+    }
+
+    fn plane(young: f64, poisson: f64, density: f64, thickness: f64, lambda: f64) -> Result<Self, MaterialError> {
+        Self::checked(young, poisson, density)?;
+        require(thickness > 0.0, "thickness", thickness, "m", "positive")?;
+        Ok(Self { lambda, shear: young / (2.0 * (1.0 + poisson)), density, extent: thickness })
+    }
+
+    fn checked(young: f64, poisson: f64, density: f64) -> Result<(), MaterialError> {
+        require(young > 0.0, "young", young, "Pa", "positive")?;
+        require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "(no unit)", "above -1 and below 0.5")?;
+        require(density > 0.0, "density", density, "kg/m³", "positive")
+    }
+
+    /// Density ρ (kg/m³).
+    #[must_use]
+    pub fn density(&self) -> f64 {
+        self.density
+    }
+
+    /// Section (m²) of a bar, thickness (m) of a plane body: what turns a length or area of the
+    /// mesh into a volume, and a facet into an area.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+
+    /// Largest wave speed in the mesh's dimension, √((λ + 2G)/ρ) (m/s).
+    #[must_use]
+    pub fn wave_speed(&self) -> f64 {
+        ((self.lambda + 2.0 * self.shear) / self.density).sqrt()
+    }
+
+    /// Stress σ = Kε (Pa) from a displacement gradient ∂u_a/∂x_b.
+    #[inline]
+    #[must_use]
+    pub fn stress<const D: usize>(&self, gradient: &[[f64; D]; D]) -> [[f64; D]; D] {
+        let trace = self.lambda * (0..D).map(|a| gradient[a][a]).sum::<f64>();
+        let mut stress = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                stress[a][b] = self.shear * (gradient[a][b] + gradient[b][a]);
+            }
+            stress[a][a] += trace;
+        }
+        stress
+    }
+
+    /// The factors (α, β) of the energy form τ : K⁻¹ : τ = α τ:τ − β (tr τ)² (1/Pa), in D dimensions.
+    #[inline]
+    #[must_use]
+    pub fn compliance(&self, dimension: usize) -> (f64, f64) {
+        let alpha = 0.5 / self.shear;
+        (alpha, alpha * self.lambda / (dimension as f64 * self.lambda + 2.0 * self.shear))
+    }
+
+    /// The energy form τ : K⁻¹ : τ of a stress (J/m³).
+    #[inline]
+    #[must_use]
+    pub fn complementary_form<const D: usize>(&self, stress: &[[f64; D]; D]) -> f64 {
+        let (alpha, beta) = self.compliance(D);
+        let trace = (0..D).map(|a| stress[a][a]).sum::<f64>();
+        alpha * stress.iter().flatten().map(|s| s * s).sum::<f64>() - beta * trace * trace
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half the complementary form is the strain energy ½ σ:ε, for every law.
+    #[test]
+    fn compliance_inverts_the_law() {
+        let laws = [
+            Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap(),
+            Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap(),
+            Elastic::plane_stress(1.0, -0.4, 1.0, 1.0).unwrap(),
+        ];
+        let gradient = [[1e-3, 4e-4], [-7e-4, 2e-3]];
+        for law in laws {
+            let stress = law.stress(&gradient);
+            let work: f64 = (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| stress[a][b] * gradient[a][b]).sum();
+            let form = law.complementary_form(&stress);
+            assert!((form - work).abs() <= 1e-13 * work, "{form} against {work}");
+        }
+    }
+
+    /// Plane stress stretched along x alone: σ_xx = E/(1−ν²) ε. Plane strain: E(1−ν)/((1+ν)(1−2ν)) ε.
+    #[test]
+    fn uniaxial_moduli() {
+        let gradient = [[1e-3, 0.0], [0.0, 0.0]];
+        let stress = Elastic::plane_stress(2.0, 0.25, 1.0, 1.0).unwrap().stress(&gradient)[0][0];
+        assert!((stress - 2.0 / (1.0 - 0.0625) * 1e-3).abs() < 1e-17);
+        let strain = Elastic::plane_strain(2.0, 0.25, 1.0, 1.0).unwrap().stress(&gradient)[0][0];
+        assert!((strain - 2.0 * 0.75 / (1.25 * 0.5) * 1e-3).abs() < 1e-17);
+        assert_eq!(Elastic::bar(3.0, 1.0, 1.0).unwrap().stress(&[[2.0]])[0][0], 6.0);
+    }
+
+    #[test]
+    fn impossible_values_are_named() {
+        assert_eq!(Elastic::plane_strain(1.0, 0.5, 1.0, 1.0).unwrap_err().name, "poisson");
+        assert_eq!(Elastic::bar(f64::NAN, 1.0, 1.0).unwrap_err().name, "young");
+        assert_eq!(Elastic::plane_stress(1.0, 0.3, 0.0, 1.0).unwrap_err().name, "density");
+        assert_eq!(Elastic::bar(1.0, 1.0, -1.0).unwrap_err().name, "section");
+    }
+}

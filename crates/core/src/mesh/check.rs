@@ -1,0 +1,256 @@
+//! Every check that a mesh must pass.
+
+use super::geometry::{diameter, signed_volume};
+use super::{ElementGroups, Facet, FacetGroups};
+use crate::ids::{ElementId, FacetId, NodeId};
+use std::collections::{BTreeMap, HashMap};
+use thiserror::Error;
+
+/// Nodes closer than this fraction of the body's size are duplicates: far above rounding, far
+/// below any element.
+const DUPLICATE: f64 = 1e-10;
+/// An element whose volume is below this fraction of diameterᴰ is degenerate (an angle of about
+/// 1e-7 degrees): its gradients would have no correct digit left.
+const DEGENERATE: f64 = 1e-9;
+
+/// Why a mesh was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MeshError {
+    /// No nodes or no elements.
+    #[error("the mesh is empty: {nodes} nodes and {elements} elements; it needs at least one element")]
+    Empty {
+        /// Number of nodes given.
+        nodes: usize,
+        /// Number of elements given.
+        elements: usize,
+    },
+    /// More entities than 32-bit indices can count.
+    #[error("the mesh has {count} {what}; at most {most} can be counted")]
+    TooLarge {
+        /// Nodes or elements.
+        what: &'static str,
+        /// How many were given.
+        count: usize,
+        /// How many are allowed.
+        most: usize,
+    },
+    /// A generator was given an impossible value.
+    #[error("`{name}` is {value}; it must be {allowed}")]
+    Generator {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("node {node} has the coordinate {value} m; coordinates must be finite")]
+    NotFinite {
+        /// The node.
+        node: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// An element names a node that does not exist.
+    #[error("element {element} names node {node}, but the mesh has nodes 0 to {last}")]
+    NoSuchNode {
+        /// The element.
+        element: usize,
+        /// The missing node.
+        node: usize,
+        /// Largest node number.
+        last: usize,
+    },
+    /// Nodes that no element uses.
+    #[error("node {first} belongs to no element ({count} such nodes); remove unused nodes")]
+    UnusedNodes {
+        /// The first of them.
+        first: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// Two nodes at the same place.
+    #[error("nodes {first} and {second} are {distance:.3e} m apart: merge duplicate nodes")]
+    DuplicateNodes {
+        /// One node.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// Their distance (m).
+        distance: f64,
+    },
+    /// An element without volume.
+    #[error("element {element} is degenerate: nodes {nodes:?}, volume {volume:.3e} for a diameter of {diameter:.3e} m")]
+    Degenerate {
+        /// The element.
+        element: usize,
+        /// Its nodes.
+        nodes: Vec<usize>,
+        /// Length or area.
+        volume: f64,
+        /// Largest distance between its nodes (m).
+        diameter: f64,
+    },
+    /// A facet shared by more than two elements.
+    #[error("the facet of nodes {nodes:?} is shared by elements {elements:?}; at most two may share one")]
+    NonManifoldFacet {
+        /// Its nodes.
+        nodes: Vec<usize>,
+        /// The elements.
+        elements: Vec<usize>,
+    },
+    /// A node at which parts of the body touch by a point only.
+    #[error(
+        "at node {node} the body hangs together by a point only ({reached} of its {elements} elements are joined by facets); \
+         split the node or fill the gap"
+    )]
+    NonManifoldNode {
+        /// The node.
+        node: usize,
+        /// Elements around it.
+        elements: usize,
+        /// Elements that can be reached through facets.
+        reached: usize,
+    },
+    /// A group names a facet that is not there.
+    #[error("group \"{group}\" names the facet of nodes {nodes:?}, which is not on the boundary of the mesh")]
+    NoSuchFacet {
+        /// The group.
+        group: String,
+        /// Nodes of the facet.
+        nodes: Vec<usize>,
+    },
+    /// A group names an element that is not there.
+    #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}")]
+    NoSuchElement {
+        /// The group.
+        group: String,
+        /// The missing element.
+        element: usize,
+        /// Largest element number.
+        last: usize,
+    },
+}
+
+pub(super) fn points<const D: usize>(points: &[[f64; D]]) -> Result<(), MeshError> {
+    for (node, point) in points.iter().enumerate() {
+        if let Some(&value) = point.iter().find(|x| !x.is_finite()) {
+            return Err(MeshError::NotFinite { node, value });
+        }
+    }
+    Ok(())
+}
+
+/// Typed cells, all of whose nodes exist, and all nodes of which are used.
+pub(super) fn cells<const N: usize>(node_count: usize, cells: &[[usize; N]]) -> Result<Vec<[NodeId; N]>, MeshError> {
+    let most = u32::MAX as usize / 4;
+    if node_count == 0 || cells.is_empty() {
+        return Err(MeshError::Empty { nodes: node_count, elements: cells.len() });
+    }
+    for (what, count) in [("nodes", node_count), ("elements", cells.len())] {
+        if count > most {
+            return Err(MeshError::TooLarge { what, count, most });
+        }
+    }
+    let mut used = vec![false; node_count];
+    for (element, cell) in cells.iter().enumerate() {
+        for &node in cell {
+            *used.get_mut(node).ok_or(MeshError::NoSuchNode { element, node, last: node_count - 1 })? = true;
+        }
+    }
+    if let Some(first) = used.iter().position(|used| !used) {
+        return Err(MeshError::UnusedNodes { first, count: used.iter().filter(|used| !**used).count() });
+    }
+    Ok(cells.iter().map(|cell| cell.map(NodeId::new)).collect())
+}
+
+/// Looks for near neighbours in the cells of a fine grid.
+pub(super) fn duplicate_points<const D: usize>(points: &[[f64; D]], size: f64) -> Result<(), MeshError> {
+    let spacing = (DUPLICATE * size).max(f64::MIN_POSITIVE);
+    let origin = points[0];
+    let mut grid: HashMap<[i64; D], usize> = HashMap::with_capacity(points.len());
+    for (second, point) in points.iter().enumerate() {
+        let mut key = [0; D];
+        for c in 0..D {
+            key[c] = ((point[c] - origin[c]) / spacing).floor() as i64;
+        }
+        for shift in 0..3_usize.pow(D as u32) {
+            let mut near = key;
+            for c in 0..D {
+                near[c] = near[c].saturating_add(shift as i64 / 3_i64.pow(c as u32) % 3 - 1);
+            }
+            if let Some(&first) = grid.get(&near) {
+                let distance = point.iter().zip(&points[first]).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+                if distance <= spacing {
+                    return Err(MeshError::DuplicateNodes { first, second, distance });
+                }
+            }
+        }
+        grid.insert(key, second);
+    }
+    Ok(())
+}
+
+/// Turns negatively oriented elements round and counts them; refuses degenerate ones.
+pub(super) fn orient<const D: usize, const N: usize>(
+    points: &[[f64; D]],
+    cells: &mut [[NodeId; N]],
+) -> Result<usize, MeshError> {
+    let mut mended = 0;
+    for (element, cell) in cells.iter_mut().enumerate() {
+        let corners = cell.map(|node| points[node.index()]);
+        let (volume, diameter) = (signed_volume(&corners), diameter(&corners));
+        if volume.abs() <= DEGENERATE * diameter.powi(D as i32) {
+            let nodes = cell.iter().map(|n| n.index()).collect();
+            return Err(MeshError::Degenerate { element, nodes, volume, diameter });
+        }
+        if volume < 0.0 {
+            cell.swap(N - 2, N - 1);
+            mended += 1;
+        }
+    }
+    Ok(mended)
+}
+
+pub(super) fn facet_groups<const D: usize>(
+    facets: &[Facet<D>],
+    node_count: usize,
+    groups: &FacetGroups<D>,
+) -> Result<BTreeMap<String, Vec<FacetId>>, MeshError> {
+    let find = |group: &String, nodes: &[usize; D]| {
+        let missing = || MeshError::NoSuchFacet { group: group.clone(), nodes: nodes.to_vec() };
+        if nodes.iter().any(|&n| n >= node_count) {
+            return Err(missing());
+        }
+        let mut sorted = nodes.map(NodeId::new);
+        sorted.sort_unstable();
+        let at = facets.binary_search_by(|facet| facet.nodes.cmp(&sorted)).map_err(|_| missing())?;
+        if facets[at].neighbour.is_some() { Err(missing()) } else { Ok(FacetId::new(at)) }
+    };
+    let mut named = BTreeMap::new();
+    for (group, members) in groups {
+        let mut ids = members.iter().map(|nodes| find(group, nodes)).collect::<Result<Vec<_>, _>>()?;
+        ids.sort_unstable();
+        ids.dedup();
+        named.insert(group.clone(), ids);
+    }
+    Ok(named)
+}
+
+pub(super) fn element_groups(
+    element_count: usize,
+    groups: &ElementGroups,
+) -> Result<BTreeMap<String, Vec<ElementId>>, MeshError> {
+    let mut named = BTreeMap::new();
+    for (group, members) in groups {
+        if let Some(&element) = members.iter().find(|&&e| e >= element_count) {
+            return Err(MeshError::NoSuchElement { group: group.clone(), element, last: element_count - 1 });
+        }
+        let mut ids: Vec<_> = members.iter().map(|&e| ElementId::new(e)).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        named.insert(group.clone(), ids);
+    }
+    Ok(named)
+}

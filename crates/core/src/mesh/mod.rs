@@ -1,0 +1,167 @@
+//! Meshes of P1 simplices, checked once when they are made.
+//!
+//! `D` is the dimension and `N = D + 1` the number of nodes of an element: [`BarMesh`] and
+//! [`TriangleMesh`] name the two cases.
+
+mod check;
+mod generator;
+mod geometry;
+mod star;
+mod topology;
+
+pub use check::MeshError;
+pub use geometry::CellGeometry;
+pub use star::{Star, Stars};
+pub use topology::Facet;
+
+use crate::ids::{ElementId, FacetId, NodeId};
+use std::collections::BTreeMap;
+
+/// A mesh of 2-node bars.
+pub type BarMesh = Mesh<1, 2>;
+/// A mesh of 3-node triangles.
+pub type TriangleMesh = Mesh<2, 3>;
+
+/// Named groups of facets, each facet given by its nodes in any order.
+pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
+/// Named groups of elements, by number.
+pub type ElementGroups = BTreeMap<String, Vec<usize>>;
+
+/// A conforming mesh of simplices without degenerate elements, unused or duplicate nodes, or
+/// non-manifold facets and nodes. Elements are positively oriented.
+#[derive(Clone, Debug)]
+pub struct Mesh<const D: usize, const N: usize> {
+    points: Vec<[f64; D]>,
+    cells: Vec<[NodeId; N]>,
+    facets: Vec<Facet<D>>,
+    cell_facets: Vec<[FacetId; N]>,
+    stars: Stars,
+    facet_groups: BTreeMap<String, Vec<FacetId>>,
+    element_groups: BTreeMap<String, Vec<ElementId>>,
+    size: f64,
+    mended: usize,
+}
+
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// Builds and checks a mesh.
+    ///
+    /// `points` are coordinates in metres, `cells` node numbers from 0. Negatively oriented
+    /// elements are turned round (see [`Mesh::mended_elements`]).
+    ///
+    /// # Errors
+    /// Whatever makes the mesh unfit, with the numbers of the nodes or elements at fault.
+    pub fn new(
+        points: Vec<[f64; D]>,
+        cells: &[[usize; N]],
+        facet_groups: &FacetGroups<D>,
+        element_groups: &ElementGroups,
+    ) -> Result<Self, MeshError> {
+        check::points(&points)?;
+        let mut cells = check::cells(points.len(), cells)?;
+        let size = geometry::bounding_box_diagonal(&points);
+        check::duplicate_points(&points, size)?;
+        let mended = check::orient(&points, &mut cells)?;
+        let (facets, cell_facets) = topology::facets(&cells)?;
+        let stars = Stars::new(points.len(), &cells, &facets, &cell_facets)?;
+        let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
+        let element_groups = check::element_groups(cells.len(), element_groups)?;
+        Ok(Self { points, cells, facets, cell_facets, stars, facet_groups, element_groups, size, mended })
+    }
+
+    /// Coordinates of the nodes (m).
+    #[must_use]
+    pub fn points(&self) -> &[[f64; D]] {
+        &self.points
+    }
+
+    /// Nodes of each element, positively oriented.
+    #[must_use]
+    pub fn cells(&self) -> &[[NodeId; N]] {
+        &self.cells
+    }
+
+    /// All facets: edges in 2D, points in 1D.
+    #[must_use]
+    pub fn facets(&self) -> &[Facet<D>] {
+        &self.facets
+    }
+
+    /// Facets of each element; entry `k` lies opposite to local node `k`.
+    #[must_use]
+    pub fn cell_facets(&self) -> &[[FacetId; N]] {
+        &self.cell_facets
+    }
+
+    /// The elements around each node, in order.
+    #[must_use]
+    pub fn stars(&self) -> &Stars {
+        &self.stars
+    }
+
+    /// Named groups of facets.
+    #[must_use]
+    pub fn facet_groups(&self) -> &BTreeMap<String, Vec<FacetId>> {
+        &self.facet_groups
+    }
+
+    /// Named groups of elements.
+    #[must_use]
+    pub fn element_groups(&self) -> &BTreeMap<String, Vec<ElementId>> {
+        &self.element_groups
+    }
+
+    /// Diagonal of the bounding box (m): the length that geometric tolerances refer to.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// How many elements were given with the wrong orientation and turned round.
+    #[must_use]
+    pub fn mended_elements(&self) -> usize {
+        self.mended
+    }
+
+    /// Number of nodes.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Number of elements.
+    #[must_use]
+    pub fn element_count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Coordinates of the nodes of an element (m).
+    #[must_use]
+    pub fn cell_points(&self, element: ElementId) -> [[f64; D]; N] {
+        self.cells[element.index()].map(|node| self.points[node.index()])
+    }
+
+    /// Volume and shape-function gradients of an element (length in 1D, area in 2D).
+    #[must_use]
+    pub fn cell_geometry(&self, element: ElementId) -> CellGeometry<D, N> {
+        CellGeometry::new(&self.cell_points(element))
+    }
+
+    /// The local number of `node` in `element`.
+    #[must_use]
+    pub fn local_node(&self, element: ElementId, node: NodeId) -> Option<usize> {
+        self.cells[element.index()].iter().position(|&other| other == node)
+    }
+
+    /// Outward unit normal of a boundary facet, and its measure (length in 2D, 1 in 1D).
+    #[must_use]
+    pub fn facet_normal(&self, facet: FacetId) -> ([f64; D], f64) {
+        let owner = self.facets[facet.index()].owner;
+        let opposite = self.cell_facets[owner.index()].iter().position(|&f| f == facet).unwrap_or(0);
+        self.cell_geometry(owner).facet_normal(opposite)
+    }
+
+    /// Facets that belong to one element only.
+    pub fn boundary(&self) -> impl Iterator<Item = FacetId> + '_ {
+        self.facets.iter().enumerate().filter(|(_, facet)| facet.neighbour.is_none()).map(|(i, _)| FacetId::new(i))
+    }
+}

@@ -1,0 +1,73 @@
+//! Facets shared by elements.
+
+use super::MeshError;
+use crate::ids::{ElementId, FacetId, NodeId};
+
+/// An edge in 2D, a point in 1D.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Facet<const D: usize> {
+    /// Its nodes, in ascending order.
+    pub nodes: [NodeId; D],
+    /// The element whose outward normal orients the facet.
+    pub owner: ElementId,
+    /// The element on the other side, none on the boundary.
+    pub neighbour: Option<ElementId>,
+}
+
+impl<const D: usize> Facet<D> {
+    /// +1 seen from the owner, −1 from the neighbour: the sign η of the equilibrated tractions.
+    #[inline]
+    #[must_use]
+    pub fn sign(&self, element: ElementId) -> f64 {
+        if self.owner == element { 1.0 } else { -1.0 }
+    }
+
+    /// Position of `node` among the facet's nodes.
+    #[inline]
+    #[must_use]
+    pub fn position(&self, node: NodeId) -> usize {
+        usize::from(D == 2 && self.nodes[0] != node)
+    }
+}
+
+/// Nodes of the facet opposite to local node `k`, ascending.
+fn opposite<const D: usize, const N: usize>(cell: &[NodeId; N], k: usize) -> [NodeId; D] {
+    let mut nodes = [cell[0]; D];
+    let others = cell.iter().enumerate().filter(|&(i, _)| i != k);
+    for (slot, (_, &node)) in nodes.iter_mut().zip(others) {
+        *slot = node;
+    }
+    nodes.sort_unstable();
+    nodes
+}
+
+/// All facets in the order of their nodes, and those of each element.
+#[allow(clippy::type_complexity)]
+pub(super) fn facets<const D: usize, const N: usize>(
+    cells: &[[NodeId; N]],
+) -> Result<(Vec<Facet<D>>, Vec<[FacetId; N]>), MeshError> {
+    let mut sides: Vec<([NodeId; D], ElementId, u8)> = Vec::with_capacity(cells.len() * N);
+    for (e, cell) in cells.iter().enumerate() {
+        for k in 0..N {
+            sides.push((opposite(cell, k), ElementId::new(e), k as u8));
+        }
+    }
+    sides.sort_unstable();
+
+    let mut facets: Vec<Facet<D>> = Vec::new();
+    let mut cell_facets = vec![[FacetId::new(0); N]; cells.len()];
+    for shared in sides.chunk_by(|a, b| a.0 == b.0) {
+        if shared.len() > 2 {
+            return Err(MeshError::NonManifoldFacet {
+                nodes: shared[0].0.iter().map(|n| n.index()).collect(),
+                elements: shared.iter().map(|s| s.1.index()).collect(),
+            });
+        }
+        let id = FacetId::new(facets.len());
+        facets.push(Facet { nodes: shared[0].0, owner: shared[0].1, neighbour: shared.get(1).map(|s| s.1) });
+        for side in shared {
+            cell_facets[side.1.index()][usize::from(side.2)] = id;
+        }
+    }
+    Ok((facets, cell_facets))
+}

@@ -1,0 +1,145 @@
+//! Supports and loads, from named groups to facets, nodes and elements.
+
+use super::error::axis;
+use super::{BodyLoad, Cause, FacetLoad, InputError, PrescribedComponent, Problem};
+use crate::ids::{ElementId, FacetId, NodeId};
+use crate::load::{BodyForce, Support, Table, Traction};
+use crate::mesh::Mesh;
+use std::collections::BTreeMap;
+
+/// The members of a group of facets.
+pub(super) fn facet_group<'m, const D: usize, const N: usize>(
+    mesh: &'m Mesh<D, N>,
+    name: &str,
+) -> Result<&'m [FacetId], Cause> {
+    group(mesh.facet_groups(), name)
+}
+
+/// The members of a group of elements.
+pub(super) fn element_group<'m, const D: usize, const N: usize>(
+    mesh: &'m Mesh<D, N>,
+    name: &str,
+) -> Result<&'m [ElementId], Cause> {
+    group(mesh.element_groups(), name)
+}
+
+fn group<'m, Id>(groups: &'m BTreeMap<String, Vec<Id>>, name: &str) -> Result<&'m [Id], Cause> {
+    match groups.get(name) {
+        None => Err(Cause::UnknownGroup { name: name.to_string(), known: groups.keys().cloned().collect() }),
+        Some(members) if members.is_empty() => Err(Cause::EmptyGroup { name: name.to_string() }),
+        Some(members) => Ok(members),
+    }
+}
+
+/// Supported facets, prescribed components of nodes, and velocity tables.
+pub(super) struct Supports<const D: usize> {
+    pub(super) facets: Vec<[bool; D]>,
+    pub(super) prescribed: Vec<PrescribedComponent>,
+    pub(super) motions: Vec<Table<1>>,
+}
+
+/// Resolves the supports; two may overlap only if they prescribe the same motion.
+pub(super) fn supports<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    supports: &[Support<D>],
+) -> Result<Supports<D>, InputError> {
+    let mut facets = vec![[false; D]; mesh.facets().len()];
+    let mut motions: Vec<Table<1>> = Vec::new();
+    let mut by_node: BTreeMap<(NodeId, usize), (usize, Option<usize>)> = BTreeMap::new();
+    for (index, support) in supports.iter().enumerate() {
+        let fail = |cause: Cause, key| cause.at("support", Some(index), key);
+        let members = facet_group(mesh, &support.group).map_err(|c| fail(c, "group"))?;
+        if support.components == [false; D] {
+            return Err(fail(Cause::NoComponent, "components"));
+        }
+        if support.velocity.as_ref().is_some_and(|t| !t.is_finite()) {
+            return Err(fail(Cause::NotFinite, "velocity"));
+        }
+        for component in (0..D).filter(|&c| support.components[c]) {
+            let motion = support.velocity.as_ref().map(|table| motion_index(&mut motions, table.component(component)));
+            for facet in members {
+                facets[facet.index()][component] = true;
+                for node in mesh.facets()[facet.index()].nodes {
+                    let (first, earlier) = *by_node.entry((node, component)).or_insert((index, motion));
+                    if earlier != motion {
+                        let (node, component) = (node.index(), axis(component));
+                        return Err(fail(Cause::ConflictingSupports { node, component, first: first + 1 }, "velocity"));
+                    }
+                }
+            }
+        }
+    }
+    let prescribed = by_node
+        .into_iter()
+        .map(|((node, component), (_, motion))| PrescribedComponent { node, component, motion })
+        .collect();
+    Ok(Supports { facets, prescribed, motions })
+}
+
+/// Position of a motion among those known, added if it is new.
+fn motion_index(motions: &mut Vec<Table<1>>, motion: Table<1>) -> usize {
+    motions.iter().position(|known| *known == motion).unwrap_or_else(|| {
+        motions.push(motion);
+        motions.len() - 1
+    })
+}
+
+/// Tractions facet by facet.
+pub(super) fn tractions<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    tractions: &[Traction<D>],
+    supported: &[[bool; D]],
+) -> Result<Vec<FacetLoad<D>>, InputError> {
+    let mut loads = Vec::new();
+    for (table, traction) in tractions.iter().enumerate() {
+        let fail = |cause: Cause, key| cause.at("traction", Some(table), key);
+        let members = facet_group(mesh, &traction.group).map_err(|c| fail(c, "group"))?;
+        if !traction.value.is_finite() {
+            return Err(fail(Cause::NotFinite, "value"));
+        }
+        let acts = traction.value.acting_components();
+        for &facet in members {
+            if let Some(c) = (0..D).find(|&c| acts[c] && supported[facet.index()][c]) {
+                let nodes = mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+                return Err(fail(Cause::LoadedSupport { component: axis(c), nodes }, "group"));
+            }
+            let profile = Problem::profile_on(mesh, facet, &traction.profile);
+            if profile.iter().any(|p| !p.is_finite()) {
+                return Err(fail(Cause::NotFinite, "profile"));
+            }
+            loads.push(FacetLoad { facet, profile, table });
+        }
+    }
+    Ok(loads)
+}
+
+/// Body forces with the volume that feels them at each node, and the list of each element.
+#[allow(clippy::type_complexity)]
+pub(super) fn body_forces<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    forces: &[BodyForce<D>],
+    volume: impl Fn(ElementId) -> f64,
+) -> Result<(Vec<BodyLoad<D>>, Vec<Vec<u16>>), InputError> {
+    let mut loads = Vec::new();
+    let mut by_element = vec![Vec::new(); if forces.is_empty() { 0 } else { mesh.element_count() }];
+    for (index, force) in forces.iter().enumerate() {
+        let fail = |cause: Cause, key| cause.at("body_force", Some(index), key);
+        if !force.value.is_finite() {
+            return Err(fail(Cause::NotFinite, "value"));
+        }
+        let members: Vec<ElementId> = match &force.group {
+            Some(name) => element_group(mesh, name).map_err(|c| fail(c, "group"))?.to_vec(),
+            None => (0..mesh.element_count()).map(ElementId::new).collect(),
+        };
+        let mut nodal = vec![0.0; mesh.node_count()];
+        for element in members {
+            by_element[element.index()].push(index as u16);
+            for node in mesh.cells()[element.index()] {
+                nodal[node.index()] += volume(element) / N as f64;
+            }
+        }
+        let felt = nodal.into_iter().enumerate().filter(|&(_, v)| v > 0.0).map(|(i, v)| (NodeId::new(i), v));
+        loads.push(BodyLoad { value: force.value.clone(), nodal_volume: felt.collect() });
+    }
+    Ok((loads, by_element))
+}

@@ -1,0 +1,240 @@
+//! From what the user states to a checked problem.
+
+use super::boundary::{self, Supports};
+use super::error::axis;
+use super::{Cause, ContactSurface, InputError, Problem};
+use crate::ids::{ElementId, FacetId};
+use crate::load::{BodyForce, Support, Traction};
+use crate::material::Elastic;
+use crate::mesh::Mesh;
+use crate::obstacle::Plane;
+
+/// An initial field.
+#[derive(Clone, Debug)]
+pub enum Initial<const D: usize> {
+    /// The same value at all nodes.
+    Uniform([f64; D]),
+    /// One value per node.
+    Nodal(Vec<[f64; D]>),
+}
+
+/// Collects the parts of a problem; [`Builder::build`] checks them all, in one place.
+#[derive(Clone, Debug)]
+pub struct Builder<const D: usize, const N: usize> {
+    mesh: Mesh<D, N>,
+    materials: Vec<(Option<String>, Elastic)>,
+    displacement: Initial<D>,
+    velocity: Initial<D>,
+    supports: Vec<Support<D>>,
+    tractions: Vec<Traction<D>>,
+    body_forces: Vec<BodyForce<D>>,
+    obstacles: Vec<Plane<D>>,
+}
+
+impl<const D: usize, const N: usize> Builder<D, N> {
+    pub(super) fn new(mesh: Mesh<D, N>) -> Self {
+        Self {
+            mesh,
+            materials: Vec::new(),
+            displacement: Initial::Uniform([0.0; D]),
+            velocity: Initial::Uniform([0.0; D]),
+            supports: Vec::new(),
+            tractions: Vec::new(),
+            body_forces: Vec::new(),
+            obstacles: Vec::new(),
+        }
+    }
+
+    /// The material of all elements.
+    #[must_use]
+    pub fn material(mut self, material: Elastic) -> Self {
+        self.materials.push((None, material));
+        self
+    }
+
+    /// The material of a group of elements.
+    #[must_use]
+    pub fn material_of(mut self, group: impl Into<String>, material: Elastic) -> Self {
+        self.materials.push((Some(group.into()), material));
+        self
+    }
+
+    /// Initial displacement u₀ (m); zero unless given.
+    #[must_use]
+    pub fn initial_displacement(mut self, field: Initial<D>) -> Self {
+        self.displacement = field;
+        self
+    }
+
+    /// Initial velocity v₀ (m/s); zero unless given.
+    #[must_use]
+    pub fn initial_velocity(mut self, field: Initial<D>) -> Self {
+        self.velocity = field;
+        self
+    }
+
+    /// Adds a support.
+    #[must_use]
+    pub fn support(mut self, support: Support<D>) -> Self {
+        self.supports.push(support);
+        self
+    }
+
+    /// Adds a traction.
+    #[must_use]
+    pub fn traction(mut self, traction: Traction<D>) -> Self {
+        self.tractions.push(traction);
+        self
+    }
+
+    /// Adds a body force.
+    #[must_use]
+    pub fn body_force(mut self, force: BodyForce<D>) -> Self {
+        self.body_forces.push(force);
+        self
+    }
+
+    /// Adds a plane.
+    #[must_use]
+    pub fn obstacle(mut self, plane: Plane<D>) -> Self {
+        self.obstacles.push(plane);
+        self
+    }
+
+    /// Checks everything and builds the problem.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place.
+    pub fn build(self) -> Result<Problem<D, N>, InputError> {
+        let mesh = &self.mesh;
+        let (materials, element_material) = materials(mesh, &self.materials)?;
+        let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
+        let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
+        let area = |f: FacetId| mesh.facet_normal(f).1 * extent(mesh.facets()[f.index()].owner);
+
+        let mut mass = vec![0.0; mesh.node_count()];
+        for e in (0..mesh.element_count()).map(ElementId::new) {
+            let share = materials[usize::from(element_material[e.index()])].density() * volume(e) / N as f64;
+            for node in mesh.cells()[e.index()] {
+                mass[node.index()] += share;
+            }
+        }
+
+        let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
+        let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
+        let Supports { facets: supported, prescribed, motions } = boundary::supports(mesh, &self.supports)?;
+        let facet_loads = boundary::tractions(mesh, &self.tractions, &supported)?;
+        let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.body_forces, volume)?;
+
+        let mut loaded = vec![false; mesh.facets().len()];
+        facet_loads.iter().for_each(|load| loaded[load.facet.index()] = true);
+        let mut fixed = vec![false; mesh.node_count()];
+        prescribed.iter().for_each(|p| fixed[p.node.index()] = true);
+        let free = |f: FacetId| !loaded[f.index()] && supported[f.index()] == [false; D];
+        let mut surface = ContactSurface::default();
+        for (index, plane) in self.obstacles.iter().enumerate() {
+            surface.add(mesh, index, plane, free, |node| fixed[node.index()], area)?;
+        }
+
+        let problem = Problem {
+            materials,
+            element_material,
+            mass,
+            initial_displacement,
+            initial_velocity,
+            supported,
+            prescribed,
+            motions,
+            facet_loads,
+            traction_tables: self.tractions.into_iter().map(|t| t.value).collect(),
+            body_loads,
+            element_body_loads,
+            obstacles: self.obstacles,
+            surface,
+            mesh: self.mesh,
+        };
+        check_start_of_supports(&problem)?;
+        check_start_of_contact(&problem)?;
+        Ok(problem)
+    }
+}
+
+/// One material for each element.
+fn materials<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    given: &[(Option<String>, Elastic)],
+) -> Result<(Vec<Elastic>, Vec<u16>), InputError> {
+    const NONE: u16 = u16::MAX;
+    let mut of_element = vec![NONE; mesh.element_count()];
+    for (index, (group, _)) in given.iter().enumerate() {
+        let fail = |cause: Cause| cause.at("material", Some(index), "group");
+        let members: Vec<ElementId> = match group {
+            Some(name) => boundary::element_group(mesh, name).map_err(fail)?.to_vec(),
+            None => (0..mesh.element_count()).map(ElementId::new).collect(),
+        };
+        for element in members {
+            let slot = &mut of_element[element.index()];
+            if *slot != NONE {
+                return Err(fail(Cause::TwoMaterials { element: element.index(), first: usize::from(*slot) + 1 }));
+            }
+            *slot = index as u16;
+        }
+    }
+    if let Some(element) = of_element.iter().position(|&m| m == NONE) {
+        let count = of_element.iter().filter(|&&m| m == NONE).count();
+        return Err(Cause::NoMaterial { element, count }.at("material", None, ""));
+    }
+    Ok((given.iter().map(|(_, material)| *material).collect(), of_element))
+}
+
+/// The values of an initial field at the nodes.
+fn nodal<const D: usize>(field: &Initial<D>, nodes: usize, key: &'static str) -> Result<Vec<[f64; D]>, InputError> {
+    let values = match field {
+        Initial::Uniform(value) => vec![*value; nodes],
+        Initial::Nodal(values) => values.clone(),
+    };
+    if values.len() != nodes {
+        return Err(Cause::FieldLength { given: values.len(), nodes }.at("initial", None, key));
+    }
+    for (node, value) in values.iter().enumerate() {
+        if let Some(&value) = value.iter().find(|v| !v.is_finite()) {
+            return Err(Cause::FieldNotFinite { node, value }.at("initial", None, key));
+        }
+    }
+    Ok(values)
+}
+
+/// The initial velocity must agree with the supports (§3.1, remark).
+fn check_start_of_supports<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
+    let speeds = problem.initial_velocity.iter().flatten().map(|v| v.abs());
+    let largest = speeds.fold(0.0, f64::max);
+    for p in &problem.prescribed {
+        let initial = problem.initial_velocity[p.node.index()][p.component];
+        let prescribed = problem.prescribed_velocity(p, 0.0);
+        // Far above rounding of the two, far below any speed that matters.
+        if (initial - prescribed).abs() > 1e-12 * largest.max(prescribed.abs()) {
+            let (node, component) = (p.node.index(), axis(p.component));
+            let cause = Cause::InconsistentStart { node, component, initial, prescribed };
+            return Err(cause.at("initial", None, "velocity"));
+        }
+    }
+    Ok(())
+}
+
+/// At t = 0 no candidate node may lie behind its plane, nor on it with an inward velocity.
+fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
+    let tolerance = problem.contact_tolerance();
+    for (at, contact) in problem.surface.nodes().iter().enumerate() {
+        let node = contact.node.index();
+        let fail = |cause: Cause, key| cause.at("obstacle", Some(contact.obstacle), key);
+        let gap = problem.surface.gap(at, &problem.initial_displacement[node], &problem.obstacles);
+        if gap < -tolerance {
+            return Err(fail(Cause::Penetrates { node, depth: -gap }, "point"));
+        }
+        let (normal, _) = problem.obstacles[contact.obstacle].split(&problem.initial_velocity[node]);
+        if gap <= tolerance && normal < 0.0 && contact.free {
+            return Err(fail(Cause::StrikesAtStart { node, gap, speed: -normal }, "point"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,258 @@
+//! The reference problem, eq. [3]–[11], stated and checked.
+
+mod boundary;
+mod builder;
+mod error;
+mod surface;
+
+pub use builder::{Builder, Initial};
+pub use error::{Cause, InputError, Place};
+pub use surface::{ContactFacet, ContactNode, ContactSurface};
+
+use crate::ids::{ElementId, FacetId, NodeId};
+use crate::load::{Profile, Table};
+use crate::material::Elastic;
+use crate::mesh::Mesh;
+use crate::obstacle::Plane;
+
+/// One component of a node's motion that is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PrescribedComponent {
+    /// The node.
+    pub node: NodeId,
+    /// Which global component.
+    pub component: usize,
+    /// Its velocity table among [`Problem::motions`]; `None` is at rest.
+    pub motion: Option<usize>,
+}
+
+/// A traction on one facet.
+#[derive(Clone, Copy, Debug)]
+pub struct FacetLoad<const D: usize> {
+    /// The facet.
+    pub facet: FacetId,
+    /// Factor at each of the facet's nodes.
+    pub profile: [f64; D],
+    /// The table of the traction among [`Problem::traction_tables`].
+    pub table: usize,
+}
+
+/// A body force on part of the mesh.
+#[derive(Clone, Debug)]
+pub struct BodyLoad<const D: usize> {
+    /// Force per volume over time (N/m³).
+    pub value: Table<D>,
+    /// Per node, the volume that feels it (m³).
+    pub nodal_volume: Vec<(NodeId, f64)>,
+}
+
+/// An elastic body that may strike rigid planes: everything the simulation and the estimate need
+/// to know, checked.
+#[derive(Clone, Debug)]
+pub struct Problem<const D: usize, const N: usize> {
+    mesh: Mesh<D, N>,
+    materials: Vec<Elastic>,
+    element_material: Vec<u16>,
+    mass: Vec<f64>,
+    initial_displacement: Vec<[f64; D]>,
+    initial_velocity: Vec<[f64; D]>,
+    supported: Vec<[bool; D]>,
+    prescribed: Vec<PrescribedComponent>,
+    motions: Vec<Table<1>>,
+    facet_loads: Vec<FacetLoad<D>>,
+    traction_tables: Vec<Table<D>>,
+    body_loads: Vec<BodyLoad<D>>,
+    element_body_loads: Vec<Vec<u16>>,
+    obstacles: Vec<Plane<D>>,
+    surface: ContactSurface<D>,
+}
+
+/// A problem on a mesh of bars.
+pub type BarProblem = Problem<1, 2>;
+/// A problem on a mesh of triangles.
+pub type TriangleProblem = Problem<2, 3>;
+
+impl<const D: usize, const N: usize> Problem<D, N> {
+    /// Starts the statement of a problem on a mesh.
+    #[must_use]
+    pub fn builder(mesh: Mesh<D, N>) -> Builder<D, N> {
+        Builder::new(mesh)
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh<D, N> {
+        &self.mesh
+    }
+
+    /// The material of an element.
+    #[inline]
+    #[must_use]
+    pub fn material(&self, element: ElementId) -> &Elastic {
+        &self.materials[usize::from(self.element_material[element.index()])]
+    }
+
+    /// All materials.
+    #[must_use]
+    pub fn materials(&self) -> &[Elastic] {
+        &self.materials
+    }
+
+    /// Which of [`Problem::materials`] each element has.
+    #[must_use]
+    pub fn element_material(&self) -> &[u16] {
+        &self.element_material
+    }
+
+    /// Lumped mass of each node (kg), eq. [35]: each element gives ρ|E|/(D+1) to each of its nodes.
+    #[must_use]
+    pub fn mass(&self) -> &[f64] {
+        &self.mass
+    }
+
+    /// u₀ at the nodes (m), eq. [6].
+    #[must_use]
+    pub fn initial_displacement(&self) -> &[[f64; D]] {
+        &self.initial_displacement
+    }
+
+    /// v₀ at the nodes (m/s), eq. [7].
+    #[must_use]
+    pub fn initial_velocity(&self) -> &[[f64; D]] {
+        &self.initial_velocity
+    }
+
+    /// Which components of a facet are supported.
+    #[inline]
+    #[must_use]
+    pub fn supported(&self, facet: FacetId) -> [bool; D] {
+        self.supported[facet.index()]
+    }
+
+    /// All prescribed components of nodes, eq. [4], by node.
+    #[must_use]
+    pub fn prescribed(&self) -> &[PrescribedComponent] {
+        &self.prescribed
+    }
+
+    /// Velocity tables of moving supports (m/s).
+    #[must_use]
+    pub fn motions(&self) -> &[Table<1>] {
+        &self.motions
+    }
+
+    /// Velocity of a prescribed component at an instant (m/s).
+    #[must_use]
+    pub fn prescribed_velocity(&self, which: &PrescribedComponent, t: f64) -> f64 {
+        which.motion.map_or(0.0, |m| self.motions[m].at(t)[0])
+    }
+
+    /// Tractions on facets.
+    #[must_use]
+    pub fn facet_loads(&self) -> &[FacetLoad<D>] {
+        &self.facet_loads
+    }
+
+    /// Tables of the tractions (Pa).
+    #[must_use]
+    pub fn traction_tables(&self) -> &[Table<D>] {
+        &self.traction_tables
+    }
+
+    /// Body forces.
+    #[must_use]
+    pub fn body_loads(&self) -> &[BodyLoad<D>] {
+        &self.body_loads
+    }
+
+    /// Force per volume on each element at an instant (N/m³); empty if there is none anywhere.
+    #[must_use]
+    pub fn body_force_at(&self, t: f64) -> Vec<[f64; D]> {
+        let values: Vec<_> = self.body_loads.iter().map(|load| load.value.at(t)).collect();
+        let sum = |loads: &Vec<u16>| {
+            let mut total = [0.0; D];
+            for &load in loads {
+                for c in 0..D {
+                    total[c] += values[usize::from(load)][c];
+                }
+            }
+            total
+        };
+        self.element_body_loads.iter().map(sum).collect()
+    }
+
+    /// Whether any traction or body force acts.
+    #[must_use]
+    pub fn is_loaded(&self) -> bool {
+        !self.facet_loads.is_empty() || !self.body_loads.is_empty()
+    }
+
+    /// The planes.
+    #[must_use]
+    pub fn obstacles(&self) -> &[Plane<D>] {
+        &self.obstacles
+    }
+
+    /// The part of the boundary that may touch a plane.
+    #[must_use]
+    pub fn surface(&self) -> &ContactSurface<D> {
+        &self.surface
+    }
+
+    /// Volume of an element with section or thickness (m³).
+    #[must_use]
+    pub fn volume(&self, element: ElementId) -> f64 {
+        self.mesh.cell_geometry(element).volume * self.material(element).extent()
+    }
+
+    /// Area of a boundary facet with section or thickness (m²).
+    #[must_use]
+    pub fn facet_area(&self, facet: FacetId) -> f64 {
+        let owner = self.mesh.facets()[facet.index()].owner;
+        self.mesh.facet_normal(facet).1 * self.material(owner).extent()
+    }
+
+    /// Distances below this count as touching (m): 1e-12 of the body's size, so that landing
+    /// exactly on a plane does not hang on rounding.
+    #[must_use]
+    pub fn contact_tolerance(&self) -> f64 {
+        1e-12 * self.mesh.size()
+    }
+
+    /// Moments ∫ F φ_i (N) on a facet of area `area` of a density that is linear with these nodal
+    /// values (Pa).
+    #[inline]
+    #[must_use]
+    pub fn facet_moments(area: f64, density: &[[f64; D]; D]) -> [[f64; D]; D] {
+        let mut moments = [[0.0; D]; D];
+        let factor = area / (D * (D + 1)) as f64;
+        for c in 0..D {
+            let sum: f64 = density.iter().map(|f| f[c]).sum();
+            for i in 0..D {
+                moments[i][c] = factor * (density[i][c] + sum);
+            }
+        }
+        moments
+    }
+
+    /// The traction on a loaded facet's nodes at an instant (Pa).
+    #[must_use]
+    pub fn facet_traction_at(&self, load: &FacetLoad<D>, t: f64) -> [[f64; D]; D] {
+        let value = self.traction_tables[load.table].at(t);
+        load.profile.map(|factor| value.map(|v| factor * v))
+    }
+
+    /// How far the loads and motions that are solved, with their values at the instants joined by
+    /// straight lines, are from the tables: the largest relative difference.
+    #[must_use]
+    pub fn resampling_error(&self, instants: &[f64]) -> f64 {
+        let motions = self.motions.iter().map(|t| t.resampling_error(instants));
+        let tractions = self.traction_tables.iter().map(|t| t.resampling_error(instants));
+        let forces = self.body_loads.iter().map(|l| l.value.resampling_error(instants));
+        motions.chain(tractions).chain(forces).fold(0.0, f64::max)
+    }
+
+    fn profile_on(mesh: &Mesh<D, N>, facet: FacetId, profile: &Profile<D>) -> [f64; D] {
+        mesh.facets()[facet.index()].nodes.map(|node| profile.at(&mesh.points()[node.index()]))
+    }
+}

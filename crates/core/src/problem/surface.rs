@@ -1,0 +1,144 @@
+//! The candidate facets and nodes of contact.
+
+use super::{Cause, InputError};
+use crate::ids::{FacetId, NodeId};
+use crate::mesh::Mesh;
+use crate::obstacle::Plane;
+use std::collections::BTreeMap;
+
+/// A facet faces a plane if its outward unit normal · n is below this.
+const FACES: f64 = -1e-9;
+
+/// A node of the candidate facets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactNode {
+    /// The node.
+    pub node: NodeId,
+    /// The plane it may touch.
+    pub obstacle: usize,
+    /// Distance to the plane of its place in the undeformed mesh (m).
+    pub undeformed_gap: f64,
+    /// Whether it is a candidate: none of its components is prescribed.
+    pub free: bool,
+}
+
+/// A facet that may touch a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactFacet<const D: usize> {
+    /// The facet.
+    pub facet: FacetId,
+    /// Positions of its nodes in [`ContactSurface::nodes`], in the order of the facet's nodes.
+    pub nodes: [usize; D],
+    /// Its area, with thickness or section (m²).
+    pub area: f64,
+    /// The plane it may touch.
+    pub obstacle: usize,
+}
+
+/// All candidate facets, ordered along the boundary: in 2D a facet joins two nodes that follow
+/// each other in [`ContactSurface::nodes`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactSurface<const D: usize> {
+    nodes: Vec<ContactNode>,
+    facets: Vec<ContactFacet<D>>,
+}
+
+impl<const D: usize> ContactSurface<D> {
+    /// Nodes of the candidate facets.
+    #[must_use]
+    pub fn nodes(&self) -> &[ContactNode] {
+        &self.nodes
+    }
+
+    /// Candidate facets.
+    #[must_use]
+    pub fn facets(&self) -> &[ContactFacet<D>] {
+        &self.facets
+    }
+
+    /// The gap of a node with this displacement (m), eq. [3].
+    #[inline]
+    #[must_use]
+    pub fn gap(&self, at: usize, displacement: &[f64; D], planes: &[Plane<D>]) -> f64 {
+        let contact = &self.nodes[at];
+        contact.undeformed_gap + crate::obstacle::dot(displacement, planes[contact.obstacle].normal())
+    }
+
+    /// Adds the facets that may touch a plane.
+    pub(super) fn add<const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        index: usize,
+        plane: &Plane<D>,
+        free: impl Fn(FacetId) -> bool,
+        prescribed: impl Fn(NodeId) -> bool,
+        area: impl Fn(FacetId) -> f64,
+    ) -> Result<(), InputError> {
+        let facing = facing(mesh, index, plane, free)?;
+        let start = self.nodes.len();
+        for node in along_the_boundary(mesh, &facing) {
+            if let Some(other) = self.nodes[..start].iter().find(|c| c.node == node) {
+                let cause = Cause::TwoPlanes { node: node.index(), first: other.obstacle + 1 };
+                return Err(cause.at("obstacle", Some(index), "group"));
+            }
+            let undeformed_gap = plane.gap(&mesh.points()[node.index()]);
+            self.nodes.push(ContactNode { node, obstacle: index, undeformed_gap, free: !prescribed(node) });
+        }
+        let position: BTreeMap<NodeId, usize> =
+            self.nodes.iter().enumerate().skip(start).map(|(i, c)| (c.node, i)).collect();
+        for facet in facing {
+            let nodes = mesh.facets()[facet.index()].nodes.map(|n| position[&n]);
+            self.facets.push(ContactFacet { facet, nodes, area: area(facet), obstacle: index });
+        }
+        self.facets[..].sort_by_key(|f| f.nodes.iter().copied().min());
+        Ok(())
+    }
+}
+
+/// Free facets, of the plane's group if it names one, that face the plane.
+fn facing<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    index: usize,
+    plane: &Plane<D>,
+    free: impl Fn(FacetId) -> bool,
+) -> Result<Vec<FacetId>, InputError> {
+    let faces = |&facet: &FacetId| crate::obstacle::dot(&mesh.facet_normal(facet).0, plane.normal()) < FACES;
+    let (found, of): (Vec<_>, _) = if let Some(name) = plane.group() {
+        let group = super::boundary::facet_group(mesh, name).map_err(|c| c.at("obstacle", Some(index), "group"))?;
+        if let Some(facet) = group.iter().find(|&&f| !free(f)) {
+            let nodes = mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+            return Err(Cause::NotFree { nodes }.at("obstacle", Some(index), "group"));
+        }
+        (group.iter().copied().filter(faces).collect(), format!("of group \"{name}\""))
+    } else {
+        (mesh.boundary().filter(|&f| free(f)).filter(faces).collect(), "of the boundary".to_string())
+    };
+    if found.is_empty() {
+        let cause = Cause::NothingFaces { of, normal: plane.normal().to_vec() };
+        return Err(cause.at("obstacle", Some(index), "normal"));
+    }
+    Ok(found)
+}
+
+/// Nodes of the facets, piece by piece along the boundary. A piece is never closed: not all
+/// facets of a closed curve face the same plane.
+fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
+    let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
+    for facet in facets {
+        let nodes = &mesh.facets()[facet.index()].nodes;
+        for node in nodes {
+            neighbours.entry(*node).or_default().extend(nodes.iter().filter(|n| *n != node));
+        }
+    }
+    let mut ordered: Vec<NodeId> = Vec::with_capacity(neighbours.len());
+    let ends: Vec<NodeId> = neighbours.iter().filter(|(_, n)| n.len() < 2).map(|(n, _)| *n).collect();
+    for end in ends {
+        let mut next = neighbours.contains_key(&end).then_some(end);
+        while let Some(node) = next {
+            let around = neighbours.remove(&node).unwrap_or_default();
+            ordered.push(node);
+            next = around.into_iter().find(|n| neighbours.contains_key(n));
+        }
+    }
+    ordered
+}

@@ -1,0 +1,156 @@
+//! The instants t_0 … t_N of a simulation.
+
+use thiserror::Error;
+
+/// Runs longer than this many steps are taken for a mistake of unit.
+const MOST_STEPS: f64 = 1e9;
+
+/// Why a time grid was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum TimeError {
+    /// A length of time that must be positive.
+    #[error("`{name}` is {value} s; it must be positive and finite")]
+    NotPositive {
+        /// `end`, `step` or `steps[i]`.
+        name: String,
+        /// Its value (s).
+        value: f64,
+    },
+    /// No steps at all.
+    #[error("`steps` is empty; give at least one time step in seconds")]
+    Empty,
+    /// More steps than any run can have.
+    #[error("an end at {end} s with steps of {step} s makes {count:.3e} steps; at most 1e9 are possible")]
+    TooMany {
+        /// End of the run (s).
+        end: f64,
+        /// Step (s).
+        step: f64,
+        /// Number of steps.
+        count: f64,
+    },
+}
+
+/// Increasing instants from 0 to T.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeGrid {
+    instants: Vec<f64>,
+}
+
+impl TimeGrid {
+    /// `count` equal steps from 0 to `end` (s).
+    ///
+    /// # Errors
+    /// An end that is not positive, or no steps.
+    pub fn uniform(end: f64, count: usize) -> Result<Self, TimeError> {
+        positive("end", end)?;
+        if count == 0 {
+            return Err(TimeError::Empty);
+        }
+        Ok(Self { instants: (0..=count).map(|n| end * (n as f64 / count as f64)).collect() })
+    }
+
+    /// Equal steps of at most about `step` (s) that end at `end` (s) exactly:
+    /// N = ceil(T/Δt − 10⁻⁶) steps of T/N.
+    ///
+    /// # Errors
+    /// Lengths that are not positive, or more steps than a run can have.
+    pub fn with_step(end: f64, step: f64) -> Result<Self, TimeError> {
+        positive("end", end)?;
+        positive("step", step)?;
+        let count = (end / step - 1e-6).ceil().max(1.0);
+        if count > MOST_STEPS {
+            return Err(TimeError::TooMany { end, step, count });
+        }
+        Self::uniform(end, count as usize)
+    }
+
+    /// Steps of the lengths given (s).
+    ///
+    /// # Errors
+    /// No steps, or one that is not positive.
+    pub fn from_steps(steps: &[f64]) -> Result<Self, TimeError> {
+        if steps.is_empty() {
+            return Err(TimeError::Empty);
+        }
+        let mut instants = vec![0.0];
+        let mut time = 0.0;
+        for (i, &step) in steps.iter().enumerate() {
+            positive(&format!("steps[{i}]"), step)?;
+            time += step;
+            instants.push(time);
+        }
+        Ok(Self { instants })
+    }
+
+    /// The instants t_0 = 0 … t_N = T (s).
+    #[must_use]
+    pub fn instants(&self) -> &[f64] {
+        &self.instants
+    }
+
+    /// Number of steps N.
+    #[must_use]
+    pub fn step_count(&self) -> usize {
+        self.instants.len() - 1
+    }
+
+    /// T (s).
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.instants[self.step_count()]
+    }
+
+    /// Δt_n = t_{n+1} − t_n (s). Beyond the last step its length is kept, for the predictor that
+    /// gives the last reaction.
+    #[must_use]
+    pub fn step(&self, n: usize) -> f64 {
+        let n = n.min(self.step_count() - 1);
+        self.instants[n + 1] - self.instants[n]
+    }
+
+    /// Longest step (s).
+    #[must_use]
+    pub fn longest_step(&self) -> f64 {
+        (0..self.step_count()).map(|n| self.step(n)).fold(0.0, f64::max)
+    }
+
+    /// The factor h_n of a_n in v_{n+½} = v_{n−½} + h_n a_n: ½(Δt_{n−1} + Δt_n), at the start ½Δt_0
+    /// (eq. [29], [31]).
+    #[must_use]
+    pub fn velocity_step(&self, n: usize) -> f64 {
+        if n == 0 { 0.5 * self.step(0) } else { 0.5 * (self.step(n - 1) + self.step(n)) }
+    }
+}
+
+fn positive(name: &str, value: f64) -> Result<(), TimeError> {
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(TimeError::NotPositive { name: name.to_string(), value }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wanted_step_ends_at_the_end() {
+        let grid = TimeGrid::with_step(1.0, 0.3).unwrap();
+        assert_eq!((grid.step_count(), grid.end()), (4, 1.0));
+        // A step that divides the time to rounding is not shortened.
+        assert_eq!(TimeGrid::with_step(0.3, 0.1).unwrap().step_count(), 3);
+    }
+
+    #[test]
+    fn variable_steps_and_the_last_predictor() {
+        let grid = TimeGrid::from_steps(&[1.0, 2.0]).unwrap();
+        assert_eq!(grid.instants(), [0.0, 1.0, 3.0]);
+        assert_eq!([0, 1, 2].map(|n| grid.velocity_step(n)), [0.5, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn impossible_times_are_refused() {
+        assert!(TimeGrid::with_step(f64::NAN, 0.1).is_err());
+        assert!(TimeGrid::with_step(1.0, -0.1).is_err());
+        assert!(matches!(TimeGrid::with_step(1.0, 1e-12), Err(TimeError::TooMany { .. })));
+        assert_eq!(TimeGrid::from_steps(&[]), Err(TimeError::Empty));
+    }
+}

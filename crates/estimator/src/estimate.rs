@@ -1,0 +1,86 @@
+//! What an estimate says.
+
+use crate::residual::Residuals;
+use percute_core::ids::ElementId;
+
+/// The three parts of η (J), eq. [14].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Parts {
+    /// ½∫ρ(u̇_DA − u̇_CA)².
+    pub kinetic: f64,
+    /// ½∫(σ_DA − σ_CA) : K⁻¹ (σ_DA − σ_CA).
+    pub elastic: f64,
+    /// 2∫₀ᵗ∫[b(−w_CA, F_DA) + w_CA·F_DA].
+    pub contact: f64,
+}
+
+impl Parts {
+    /// η (J).
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.contact
+    }
+}
+
+/// η and d at one instant. Where the contact zone changes, an instant has two samples: before and
+/// after.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// t (s).
+    pub time: f64,
+    /// η(t) (J), eq. [14].
+    pub parts: Parts,
+    /// d(t) (J), eq. [24].
+    pub reference: f64,
+}
+
+/// The error measures. Absolute values are in J^½, per metre of thickness where that is 1 m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ErrorMeasures {
+    /// √sup η, eq. [15].
+    pub sup: f64,
+    /// √((1/T)∫η dt), eq. [16].
+    pub mean: f64,
+    /// sup over `reference_sup`, eq. [22].
+    pub relative_sup: f64,
+    /// mean over `reference_mean`.
+    pub relative_mean: f64,
+    /// D = √sup d, eq. [23].
+    pub reference_sup: f64,
+    /// √((1/T)∫d dt).
+    pub reference_mean: f64,
+}
+
+/// The constitutive relation error of a history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The measures.
+    pub error: ErrorMeasures,
+    /// When η is largest (s).
+    pub time_of_sup: f64,
+    /// Parts of η at that time (J).
+    pub parts: Parts,
+    /// η and d at all samples, in order of time.
+    pub over_time: Vec<Sample>,
+    /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. [20].
+    pub by_element: Vec<f64>,
+    /// How far each field is from exactly admissible.
+    pub residuals: Residuals,
+    /// Normal impulse of the admissible contact force over that of the simulation; `None` without
+    /// contact.
+    pub kept_impulse: Option<f64>,
+    /// Last step taken in.
+    pub steps: usize,
+    /// Its time T (s).
+    pub end: f64,
+}
+
+impl Estimate {
+    /// The `count` elements that contribute most, with e_E (J^½), largest first.
+    #[must_use]
+    pub fn worst_elements(&self, count: usize) -> Vec<(ElementId, f64)> {
+        let mut order: Vec<usize> = (0..self.by_element.len()).collect();
+        order.sort_by(|&a, &b| self.by_element[b].total_cmp(&self.by_element[a]).then(a.cmp(&b)));
+        order.into_iter().take(count).map(|e| (ElementId::new(e), self.by_element[e])).collect()
+    }
+}

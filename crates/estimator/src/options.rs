@@ -1,0 +1,110 @@
+//! The choices that the method leaves open.
+
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// How contact reactions become admissible densities.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactForce {
+    /// On each interval, on the edges that touch throughout it, statically equivalent to the
+    /// reactions: force starts with contact.
+    #[default]
+    Sharp,
+    /// The paper's: reaction over tributary length, from one step after impact to one step before
+    /// release and away from the border of the contact zone (eq. [45]–[50]).
+    Paper,
+}
+
+/// Which field Γ_DA balances the equilibrated tractions of an element.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Acceleration {
+    /// The one nearest to ρ ã_h: ρ ã_h plus a rotation.
+    #[default]
+    Closest,
+    /// A rigid motion: constant plus rotation.
+    Rigid,
+    /// The linear one that does the lumped work on each shape function.
+    Weak,
+}
+
+/// Options of an estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Reading of the contact force.
+    pub contact_force: ContactForce,
+    /// Choice of Γ_DA.
+    pub acceleration: Acceleration,
+    /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, …
+    pub every: usize,
+    /// How many steps are worked on at once; by default as many as fit into a modest memory. The
+    /// result does not depend on it.
+    pub window: Option<usize>,
+    /// How many threads; by default one for each core. The result does not depend on it.
+    pub threads: Option<usize>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            contact_force: ContactForce::default(),
+            acceleration: Acceleration::default(),
+            every: 1,
+            window: None,
+            threads: None,
+        }
+    }
+}
+
+/// A name that is not among those known.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("\"{given}\" is not known; choose one of {}", .known.join(", "))]
+pub struct UnknownName {
+    /// The name given.
+    pub given: String,
+    /// The names that exist.
+    pub known: Vec<&'static str>,
+}
+
+/// Gives the variants of an option their names, for reading and printing.
+macro_rules! named {
+    ($type:ident: $($variant:ident = $name:literal),+) => {
+        impl FromStr for $type {
+            type Err = UnknownName;
+
+            fn from_str(name: &str) -> Result<Self, UnknownName> {
+                match name {
+                    $($name => Ok(Self::$variant),)+
+                    _ => Err(UnknownName { given: name.to_string(), known: vec![$($name),+] }),
+                }
+            }
+        }
+
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self {
+                    $(Self::$variant => $name,)+
+                })
+            }
+        }
+    };
+}
+
+named!(ContactForce: Sharp = "sharp", Paper = "paper");
+named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_round_trip() {
+        for choice in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
+            assert_eq!(choice.to_string().parse(), Ok(choice));
+        }
+        for choice in [ContactForce::Sharp, ContactForce::Paper] {
+            assert_eq!(choice.to_string().parse(), Ok(choice));
+        }
+        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["sharp", "paper"]);
+    }
+}

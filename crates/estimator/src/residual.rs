@@ -1,0 +1,71 @@
+//! How far the fields are from exactly admissible.
+
+/// The largest residual of every admissibility condition.
+///
+/// Each is relative to the largest term of its own equation at that node or element, floored at
+/// 1e-12 of that term's largest value in the mesh at that instant. Rounding leaves some 1e-13;
+/// anything above 1e-10 means that a field is not admissible.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. [6], [7].
+    pub initial_conditions: f64,
+    /// u_CA = u_d on supports, eq. [4].
+    pub supports: f64,
+    /// u_CA on the plane when a contact phase begins (problem P_CA).
+    pub rendezvous: f64,
+    /// Normal velocity during contact, eq. [42].
+    pub normal_velocity: f64,
+    /// Penetration at the knots, eq. [3].
+    pub penetration_at_knots: f64,
+    /// Penetration between the knots.
+    pub penetration_between_knots: f64,
+    /// F_DA in Coulomb's cone, eq. [18].
+    pub cone: f64,
+    /// F_DA where or when a node does not touch.
+    pub force_off_contact: f64,
+    /// Σ η b = r for every element of every star.
+    pub star_compatibility: f64,
+    /// Resultant and moment of tractions, Γ_DA and f_d on every element.
+    pub element_resultants: f64,
+    /// div σ_DA + f_d = Γ_DA at points.
+    pub divergence: f64,
+    /// σ_DA n = F̂ on the edges.
+    pub edge_tractions: f64,
+    /// Continuity of σ_DA n inside the macro-elements.
+    pub inner_tractions: f64,
+}
+
+impl Residuals {
+    /// Name and value of every residual, in the order of the method.
+    #[must_use]
+    pub fn entries(&self) -> [(&'static str, f64); 13] {
+        [
+            ("initial_conditions", self.initial_conditions),
+            ("supports", self.supports),
+            ("rendezvous", self.rendezvous),
+            ("normal_velocity", self.normal_velocity),
+            ("penetration_at_knots", self.penetration_at_knots),
+            ("penetration_between_knots", self.penetration_between_knots),
+            ("cone", self.cone),
+            ("force_off_contact", self.force_off_contact),
+            ("star_compatibility", self.star_compatibility),
+            ("element_resultants", self.element_resultants),
+            ("divergence", self.divergence),
+            ("edge_tractions", self.edge_tractions),
+            ("inner_tractions", self.inner_tractions),
+        ]
+    }
+
+    /// The largest of them.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.entries().iter().fold(0.0, |largest, &(_, value)| worse(largest, value))
+    }
+}
+
+/// The larger of two residuals; NaN counts as largest, so that it cannot hide.
+#[inline]
+#[must_use]
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
