@@ -29,7 +29,13 @@ pub struct Elastic {
 }
 
 /// Checks one parameter; NaN fails every test.
-fn require(ok: bool, name: &'static str, value: f64, unit: &'static str, allowed: &'static str) -> Result<(), MaterialError> {
+fn require(
+    ok: bool,
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    allowed: &'static str,
+) -> Result<(), MaterialError> {
     if ok && value.is_finite() { Ok(()) } else { Err(MaterialError { name, value, unit, allowed }) }
 }
 
@@ -140,7 +146,8 @@ mod tests {
         let gradient = [[1e-3, 4e-4], [-7e-4, 2e-3]];
         for law in laws {
             let stress = law.stress(&gradient);
-            let work: f64 = (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| stress[a][b] * gradient[a][b]).sum();
+            let work: f64 =
+                (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| stress[a][b] * gradient[a][b]).sum();
             let form = law.complementary_form(&stress);
             assert!((form - work).abs() <= 1e-13 * work, "{form} against {work}");
         }

@@ -91,15 +91,19 @@ impl<const D: usize> Plane<D> {
     }
 
     /// Splits a vector into its normal component and its tangential part, eq. [1].
+    ///
+    /// In 2D the tangential part is built from the tangent, not by subtraction: it is orthogonal to
+    /// the normal to rounding of itself, however large the normal component is.
     #[inline]
     #[must_use]
     pub fn split(&self, v: &[f64; D]) -> (f64, [f64; D]) {
-        let normal = dot(v, &self.normal);
-        let mut tangential = *v;
-        for c in 0..D {
-            tangential[c] -= normal * self.normal[c];
+        let mut tangential = [0.0; D];
+        if D == 2 {
+            let tangent = [-self.normal[1], self.normal[0]];
+            let along = v[0] * tangent[0] + v[1] * tangent[1];
+            (0..2).for_each(|c| tangential[c] = along * tangent[c]);
         }
-        (normal, tangential)
+        (dot(v, &self.normal), tangential)
     }
 
     /// Projects a force into Coulomb's cone: F_n ← max(0, F_n), ‖F_t‖ ≤ μF_n, eq. [49], [50].

@@ -124,7 +124,11 @@ impl TimeGrid {
 }
 
 fn positive(name: &str, value: f64) -> Result<(), TimeError> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(TimeError::NotPositive { name: name.to_string(), value }) }
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(TimeError::NotPositive { name: name.to_string(), value })
+    }
 }
 
 #[cfg(test)]

@@ -56,6 +56,28 @@ impl Residuals {
         ]
     }
 
+    /// Takes the larger of each.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        let fields = [
+            (&mut self.initial_conditions, other.initial_conditions),
+            (&mut self.supports, other.supports),
+            (&mut self.rendezvous, other.rendezvous),
+            (&mut self.normal_velocity, other.normal_velocity),
+            (&mut self.penetration_at_knots, other.penetration_at_knots),
+            (&mut self.penetration_between_knots, other.penetration_between_knots),
+            (&mut self.cone, other.cone),
+            (&mut self.force_off_contact, other.force_off_contact),
+            (&mut self.star_compatibility, other.star_compatibility),
+            (&mut self.element_resultants, other.element_resultants),
+            (&mut self.divergence, other.divergence),
+            (&mut self.edge_tractions, other.edge_tractions),
+            (&mut self.inner_tractions, other.inner_tractions),
+        ];
+        for (mine, theirs) in fields {
+            *mine = worse(*mine, theirs);
+        }
+    }
+
     /// The largest of them.
     #[must_use]
     pub fn largest(&self) -> f64 {

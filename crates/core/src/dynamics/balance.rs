@@ -47,7 +47,12 @@ impl<const D: usize> WorkMeter<D> {
     }
 
     /// Work since the last call, node by node; `force` gives F_n of the i-th node.
-    fn advance(&mut self, u: &[[f64; D]], force: impl Fn(usize) -> [f64; D], mut each: impl FnMut(usize, [f64; D], [f64; D])) {
+    fn advance(
+        &mut self,
+        u: &[[f64; D]],
+        force: impl Fn(usize) -> [f64; D],
+        mut each: impl FnMut(usize, [f64; D], [f64; D]),
+    ) {
         for (i, node) in self.nodes.iter().enumerate() {
             let (now, at) = (force(i), u[node.index()]);
             let (mut mean, mut path) = ([0.0; D], [0.0; D]);
@@ -174,13 +179,17 @@ impl<const D: usize> BalanceKeeper<D> {
 
         now.reaction.iter().for_each(&mut add);
         let nodes = problem.surface().nodes();
-        self.contact.advance(now.displacement, |i| now.reaction[i], |i, mean, path| {
-            if !first {
-                let plane = &problem.obstacles()[nodes[i].obstacle];
-                b.work_of_contact += dot(&mean, &path);
-                b.friction -= dot(&plane.split(&mean).1, &path);
-            }
-        });
+        self.contact.advance(
+            now.displacement,
+            |i| now.reaction[i],
+            |i, mean, path| {
+                if !first {
+                    let plane = &problem.obstacles()[nodes[i].obstacle];
+                    b.work_of_contact += dot(&mean, &path);
+                    b.friction -= dot(&plane.split(&mean).1, &path);
+                }
+            },
+        );
         total
     }
 }

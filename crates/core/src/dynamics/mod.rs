@@ -68,6 +68,12 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         self.stiffness.subtract_internal_forces(displacement, force)
     }
 
+    /// The forces M a_n of all nodes (N) but for contact, supports included.
+    pub fn forces_without_contact(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) {
+        self.forces(n, displacement, force);
+        self.apply_supports(n, force, |_, _| ());
+    }
+
     /// Sets the force on prescribed components to what their motion needs (N), and hands each
     /// support reaction to `reaction`.
     pub fn apply_supports(&self, n: usize, force: &mut [[f64; D]], mut reaction: impl FnMut(usize, f64)) {
@@ -93,17 +99,5 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
             return (velocity(k + 1) - velocity(k)) / self.times.step(k);
         }
         0.5 * (velocity(n + 1) - velocity(n - 1)) / self.times.velocity_step(n)
-    }
-
-    /// a_n (m/s²) from u_n and the contact reactions R_n on the nodes of the contact surface.
-    pub fn acceleration(&self, n: usize, displacement: &[[f64; D]], reactions: &[[f64; D]], a: &mut [[f64; D]]) {
-        self.forces(n, displacement, a);
-        self.apply_supports(n, a, |_, _| ());
-        for (contact, reaction) in self.problem.surface().nodes().iter().zip(reactions) {
-            (0..D).for_each(|c| a[contact.node.index()][c] += reaction[c]);
-        }
-        for (a, inverse_mass) in a.iter_mut().zip(&self.inverse_mass) {
-            (0..D).for_each(|c| a[c] *= inverse_mass);
-        }
     }
 }

@@ -100,6 +100,12 @@ pub enum MeshError {
         /// The elements.
         elements: Vec<usize>,
     },
+    /// Two elements on the same side of a facet.
+    #[error("elements {} and {} lie on the same side of the facet they share: they overlap", .elements[0], .elements[1])]
+    Overlap {
+        /// The elements.
+        elements: [usize; 2],
+    },
     /// A node at which parts of the body touch by a point only.
     #[error(
         "at node {node} the body hangs together by a point only ({reached} of its {elements} elements are joined by facets); \

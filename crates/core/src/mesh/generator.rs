@@ -29,8 +29,7 @@ impl BarMesh {
         count("elements", elements)?;
         let points = (0..=elements).map(|i| [length * i as f64 / elements as f64]).collect();
         let cells: Vec<_> = (0..elements).map(|e| [e, e + 1]).collect();
-        let groups =
-            FacetGroups::from([("start".to_string(), vec![[0]]), ("end".to_string(), vec![[elements]])]);
+        let groups = FacetGroups::from([("start".to_string(), vec![[0]]), ("end".to_string(), vec![[elements]])]);
         Self::new(points, &cells, &groups, &ElementGroups::new())
     }
 }

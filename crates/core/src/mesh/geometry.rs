@@ -64,9 +64,8 @@ pub(super) fn diameter<const D: usize, const N: usize>(points: &[[f64; D]; N]) -
 /// Diagonal of the box that encloses the points.
 pub(super) fn bounding_box_diagonal<const D: usize>(points: &[[f64; D]]) -> f64 {
     let extent = |c: usize| {
-        let (low, high) = points
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[c]), high.max(p[c])));
+        let (low, high) =
+            points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[c]), high.max(p[c])));
         (high - low) * (high - low)
     };
     (0..D).map(extent).sum::<f64>().sqrt()

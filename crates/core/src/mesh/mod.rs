@@ -11,7 +11,7 @@ mod topology;
 
 pub use check::MeshError;
 pub use geometry::CellGeometry;
-pub use star::{Star, Stars};
+pub use star::{Star, Stars, entry_and_exit};
 pub use topology::Facet;
 
 use crate::ids::{ElementId, FacetId, NodeId};

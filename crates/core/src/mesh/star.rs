@@ -5,9 +5,10 @@ use crate::ids::{ElementId, FacetId, NodeId};
 
 /// The stars of all nodes, one after the other.
 ///
-/// A star of k elements is a chain: facet, element, facet, …, element, facet. An interior node of
-/// a 2D mesh has a closed chain whose first and last facet are the same; in 1D, where an element
-/// has a single facet at a node, the outer ends of the chain are `None`.
+/// A star of k elements is a chain: facet, element, facet, …, element, facet, walked
+/// counterclockwise (in 1D from left to right). An interior node of a 2D mesh has a closed chain
+/// whose first and last facet are the same; in 1D, where an element has a single facet at a node,
+/// the outer ends of the chain are `None`.
 #[derive(Clone, Debug, Default)]
 pub struct Stars {
     offsets: Vec<u32>,
@@ -25,21 +26,47 @@ pub struct Star<'a> {
 }
 
 impl Star<'_> {
-    /// Whether the chain of a star closes on itself.
+    /// Whether the chain closes on itself.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        self.links.len() > 1 && self.links[0].is_some() && self.links[0] == self.links[self.links.len() - 1]
+        self.links[0].is_some() && self.links[0] == self.links[self.links.len() - 1]
+    }
+}
+
+/// Local numbers of the facets through which a counterclockwise walk around local node `i` enters
+/// and leaves an element; in 1D only one of them exists.
+#[must_use]
+pub const fn entry_and_exit<const D: usize>(i: usize) -> [Option<usize>; 2] {
+    match (D, i) {
+        (1, 0) => [Some(1), None],
+        (1, _) => [None, Some(0)],
+        _ => [Some((i + 2) % 3), Some((i + 1) % 3)],
     }
 }
 
 impl Stars {
     /// The star of a node.
+    #[inline]
     #[must_use]
     pub fn star(&self, node: NodeId) -> Star<'_> {
+        let links = self.link_range(node);
         let i = node.index();
-        let (start, end) = (self.offsets[i] as usize, self.offsets[i + 1] as usize);
-        // Each earlier star holds one facet more than elements.
-        Star { elements: &self.elements[start..end], links: &self.links[start + i..=end + i] }
+        Star { elements: &self.elements[links.start - i..links.end - i - 1], links: &self.links[links] }
+    }
+
+    /// Where the links of a star lie among those of all stars.
+    #[inline]
+    #[must_use]
+    pub fn link_range(&self, node: NodeId) -> std::ops::Range<usize> {
+        let i = node.index();
+        // Each earlier star holds one link more than elements.
+        self.offsets[i] as usize + i..self.offsets[i + 1] as usize + i + 1
+    }
+
+    /// Number of links in all stars.
+    #[must_use]
+    pub fn link_count(&self) -> usize {
+        self.links.len()
     }
 
     /// Walks every star; a star that falls into several chains is a non-manifold node.
@@ -51,38 +78,30 @@ impl Stars {
     ) -> Result<Self, MeshError> {
         let incident = incident_elements(node_count, cells);
         let mut stars = Self { offsets: vec![0], ..Self::default() };
-        let sides = |element: ElementId, node: NodeId| -> [Option<FacetId>; 2] {
-            let mut found = [None; 2];
-            let all = cells[element.index()].iter().zip(&cell_facets[element.index()]);
-            let around = all.filter(|&(&other, _)| other != node).map(|(_, &facet)| Some(facet));
-            // In 1D the single facet comes last, behind the absent one.
-            for (slot, facet) in found[2 - D..].iter_mut().zip(around) {
-                *slot = facet;
-            }
-            found
+        let sides = |element: ElementId, node: NodeId| {
+            let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
+            entry_and_exit::<D>(local).map(|side| side.map(|k| cell_facets[element.index()][k]))
         };
+        let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets[f.index()].neighbour.is_none());
         for (i, around) in incident.iter().enumerate() {
             let node = NodeId::new(i);
-            let is_end = |f: Option<FacetId>| f.is_none_or(|f| facets[f.index()].neighbour.is_none());
-            let start = around
-                .iter()
-                .flat_map(|&e| sides(e, node).map(|facet| (facet, e)))
-                .find(|&(facet, _)| is_end(facet))
-                .unwrap_or((sides(around[0], node)[0], around[0]));
-
-            let (mut entry, mut element) = start;
+            let first = around.iter().copied().find(|&e| is_end(sides(e, node)[0])).unwrap_or(around[0]);
+            let start = sides(first, node)[0];
+            let mut element = first;
             let mut count = 0;
-            stars.links.push(entry);
+            stars.links.push(start);
             loop {
-                let [a, b] = sides(element, node);
-                let exit = if entry == a { b } else { a };
+                let exit = sides(element, node)[1];
                 stars.elements.push(element);
                 stars.links.push(exit);
                 count += 1;
-                let Some(facet) = exit.filter(|_| exit != start.0) else { break };
+                let Some(facet) = exit.filter(|_| exit != start) else { break };
                 let Facet { owner, neighbour, .. } = facets[facet.index()];
                 let Some(next) = neighbour.map(|n| if n == element { owner } else { n }) else { break };
-                (entry, element) = (exit, next);
+                if sides(next, node)[0] != exit {
+                    return Err(MeshError::Overlap { elements: [element.index(), next.index()] });
+                }
+                element = next;
             }
             if count != around.len() {
                 return Err(MeshError::NonManifoldNode { node: i, elements: around.len(), reached: count });
@@ -102,4 +121,42 @@ fn incident_elements<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -
         }
     }
     incident
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::ids::NodeId;
+    use crate::mesh::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
+
+    #[test]
+    fn stars_of_a_square() {
+        let mesh = TriangleMesh::rectangle(1.0, 1.0, 2, 2).unwrap();
+        let sizes: Vec<_> = (0..9).map(|i| mesh.stars().star(NodeId::new(i)).elements.len()).collect();
+        assert_eq!(sizes, [2, 3, 1, 3, 6, 3, 1, 3, 2]);
+        let closed: Vec<_> = (0..9).map(|i| mesh.stars().star(NodeId::new(i)).is_closed()).collect();
+        assert_eq!(closed.iter().filter(|c| **c).count(), 1);
+        assert!(closed[4]);
+        for i in [0, 1, 2, 3, 5, 6, 7, 8] {
+            let star = mesh.stars().star(NodeId::new(i));
+            for end in [star.links[0], star.links[star.links.len() - 1]] {
+                assert_eq!(mesh.facets()[end.unwrap().index()].neighbour, None);
+            }
+        }
+    }
+
+    #[test]
+    fn elements_on_the_same_side_of_a_facet_overlap() {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [0.5, 2.0]];
+        let made = TriangleMesh::new(points, &[[0, 1, 2], [0, 1, 3]], &FacetGroups::new(), &ElementGroups::new());
+        assert_eq!(made.unwrap_err(), MeshError::Overlap { elements: [0, 1] });
+    }
+
+    #[test]
+    fn stars_of_a_bar() {
+        let mesh = BarMesh::uniform_bar(1.0, 2).unwrap();
+        let star = |i: usize| mesh.stars().star(NodeId::new(i));
+        assert_eq!((star(0).links[0].is_some(), star(0).links[1]), (true, None));
+        assert_eq!((star(1).links[0], star(1).links[1].is_some(), star(1).links[2]), (None, true, None));
+        assert!(!star(1).is_closed());
+    }
 }

@@ -68,7 +68,9 @@ pub enum Cause {
         name: String,
     },
     /// No material at all, or not on all elements.
-    #[error("element {element} has no material ({count} such elements); give a material without a group, or one for each group")]
+    #[error(
+        "element {element} has no material ({count} such elements); give a material without a group, or one for each group"
+    )]
     NoMaterial {
         /// First element without.
         element: usize,
@@ -139,7 +141,9 @@ pub enum Cause {
         nodes: Vec<usize>,
     },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
-    #[error("the facet of nodes {nodes:?} is supported or loaded and cannot touch a plane too; take it out of the group")]
+    #[error(
+        "the facet of nodes {nodes:?} is supported or loaded and cannot touch a plane too; take it out of the group"
+    )]
     NotFree {
         /// Nodes of the facet.
         nodes: Vec<usize>,

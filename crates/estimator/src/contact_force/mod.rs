@@ -1,0 +1,155 @@
+//! Admissible contact forces F_DA (§6.2.1), in two readings.
+//!
+//! A density lives on the candidate facets, linear on each and linear in time inside each step.
+//! An [`Interval`] holds it at both ends of a step; at an instant where the touching facets change,
+//! the `sharp` reading has one value before and another after.
+
+mod paper;
+mod sharp;
+
+use crate::options::ContactForce;
+use crate::residual::{Residuals, worse};
+use paper::Paper;
+use percute_core::problem::{ContactFacet, Problem};
+
+/// Nodal values of a density on each candidate facet (Pa).
+pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
+
+/// What the contact surface did at t_n.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceStep<const D: usize> {
+    pub(crate) reaction: Vec<[f64; D]>,
+    pub(crate) touching: Vec<bool>,
+}
+
+/// F_DA at the beginning and the end of one step.
+#[derive(Clone, Debug)]
+pub(crate) struct Interval<const D: usize> {
+    pub(crate) start: Densities<D>,
+    pub(crate) end: Densities<D>,
+}
+
+/// Makes densities from reactions.
+#[derive(Clone, Debug)]
+pub(crate) enum Reading<const D: usize> {
+    Paper(Paper),
+    Sharp,
+}
+
+impl<const D: usize> Reading<D> {
+    pub(crate) fn new<const N: usize>(choice: ContactForce, problem: &Problem<D, N>) -> Self {
+        match choice {
+            ContactForce::Paper => Self::Paper(Paper::new(problem)),
+            ContactForce::Sharp => Self::Sharp,
+        }
+    }
+
+    /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
+    /// them; there is none before the first, nor after the last.
+    pub(crate) fn interval<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        before: Option<&SurfaceStep<D>>,
+        now: &SurfaceStep<D>,
+        next: &SurfaceStep<D>,
+        after: Option<&SurfaceStep<D>>,
+    ) -> Interval<D> {
+        match self {
+            Self::Paper(paper) => Interval {
+                start: before.map_or_else(
+                    || none(problem),
+                    |before| paper.densities(problem, &before.touching, now, Some(&next.touching)),
+                ),
+                end: paper.densities(problem, &now.touching, next, after.map(|a| a.touching.as_slice())),
+            },
+            Self::Sharp => sharp::interval(problem, now, next),
+        }
+    }
+}
+
+/// No force anywhere.
+pub(crate) fn none<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Densities<D> {
+    vec![[[0.0; D]; D]; problem.surface().facets().len()]
+}
+
+/// ∫F φ_k over all facets, for each node of the contact surface (N).
+pub(crate) fn nodal_forces<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    densities: &Densities<D>,
+) -> Vec<[f64; D]> {
+    let mut forces = vec![[0.0; D]; problem.surface().nodes().len()];
+    for (facet, density) in problem.surface().facets().iter().zip(densities) {
+        let moments = Problem::<D, N>::facet_moments(facet.area, density);
+        for (node, moment) in facet.nodes.iter().zip(moments) {
+            (0..D).for_each(|c| forces[*node][c] += moment[c]);
+        }
+    }
+    forces
+}
+
+/// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes, for F
+/// is zero unless both nodes stay on the plane. In 2D both are linear along the edge, so that two
+/// Gauss points are exact on each piece on which w_t keeps its sign.
+pub(crate) fn misfit_power<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    facet: &ContactFacet<D>,
+    density: &[[f64; D]; D],
+    velocity: &[[f64; D]; D],
+) -> f64 {
+    if D == 1 || density.iter().flatten().all(|f| *f == 0.0) {
+        return 0.0;
+    }
+    let plane = &problem.obstacles()[facet.obstacle];
+    // A tangent: the normal turned by a quarter.
+    let mut tangent = [0.0; D];
+    tangent[0] = -plane.normal()[1];
+    tangent[1] = plane.normal()[0];
+    let along = |v: &[f64; D]| v.iter().zip(&tangent).map(|(a, b)| a * b).sum::<f64>();
+    let force = density.map(|f| (plane.split(&f).0, along(&f)));
+    let sliding = velocity.map(|v| along(&v));
+
+    let (w0, w1) = (sliding[0], sliding[1]);
+    let turn = if w0 * w1 < 0.0 { w0 / (w0 - w1) } else { 1.0 };
+    let gauss = 0.5 / 3.0_f64.sqrt();
+    let mut power = 0.0;
+    for (from, to) in [(0.0, turn), (turn, 1.0)] {
+        for at in [0.5 - gauss, 0.5 + gauss] {
+            let s = from + at * (to - from);
+            let line = |a: f64, b: f64| (1.0 - s) * a + s * b;
+            let w = line(w0, w1);
+            let (normal, tangential) = (line(force[0].0, force[1].0), line(force[0].1, force[1].1));
+            power += 0.5 * (to - from) * (plane.friction() * normal * w.abs() + w * tangential);
+        }
+    }
+    facet.area * power
+}
+
+/// Checks that a step's densities are in the cone and act only where both nodes of a facet touch
+/// throughout the step.
+pub(crate) fn check<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    now: &SurfaceStep<D>,
+    next: &SurfaceStep<D>,
+    interval: &Interval<D>,
+    residuals: &mut Residuals,
+) {
+    for densities in [&interval.start, &interval.end] {
+        let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let largest = densities.iter().flatten().map(size).fold(0.0, f64::max);
+        if largest == 0.0 {
+            continue;
+        }
+        for (facet, density) in problem.surface().facets().iter().zip(densities) {
+            let plane = &problem.obstacles()[facet.obstacle];
+            let touches = facet.nodes.iter().all(|&k| now.touching[k] && next.touching[k]);
+            for f in density {
+                let scale = size(f).max(1e-12 * largest);
+                let (normal, tangential) = plane.split(f);
+                let outside = (size(&tangential) - plane.friction() * normal).max(-normal).max(0.0);
+                residuals.cone = worse(residuals.cone, outside / scale);
+                let off = if touches { 0.0 } else { size(f) / scale };
+                residuals.force_off_contact = worse(residuals.force_off_contact, off);
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The paper's densities, eq. [45]–[50].
+
+use super::{Densities, SurfaceStep, none};
+use percute_core::problem::{ContactFacet, Problem};
+
+/// Edges that meet at more than 45° are no neighbours: their normals' cosine is below this.
+const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Lengths and neighbours, fixed in time.
+#[derive(Clone, Debug)]
+pub(crate) struct Paper {
+    /// For each node of each candidate facet.
+    ends: Vec<Vec<End>>,
+}
+
+/// One node of one candidate facet.
+#[derive(Clone, Debug)]
+struct End {
+    /// Position of the node in the contact surface.
+    node: usize,
+    /// Tributary area (m²) of the candidate facets that go on smoothly here.
+    tributary: f64,
+    /// The other nodes of those facets.
+    neighbours: Vec<usize>,
+}
+
+impl Paper {
+    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+        let facets = problem.surface().facets();
+        let normals: Vec<_> = facets.iter().map(|f| problem.mesh().facet_normal(f.facet).0).collect();
+        let mut around = vec![Vec::new(); problem.surface().nodes().len()];
+        for (f, facet) in facets.iter().enumerate() {
+            facet.nodes.iter().for_each(|&node| around[node].push(f));
+        }
+        let smooth =
+            |a: usize, b: usize| normals[a].iter().zip(&normals[b]).map(|(x, y)| x * y).sum::<f64>() >= NEIGHBOUR;
+        let end = |f: usize, node: usize| {
+            let piece: Vec<usize> = around[node].iter().copied().filter(|&g| smooth(f, g)).collect();
+            let others = |g: &usize| facets[*g].nodes.into_iter().filter(move |&n| n != node);
+            End {
+                node,
+                tributary: piece.iter().map(|&g| facets[g].area / D as f64).sum(),
+                neighbours: piece.iter().flat_map(others).collect(),
+            }
+        };
+        let ends = |(f, facet): (usize, &ContactFacet<D>)| facet.nodes.iter().map(|&node| end(f, node)).collect();
+        Self { ends: facets.iter().enumerate().map(ends).collect() }
+    }
+
+    /// Densities at one instant, given the touching status one step before and after (`None` after
+    /// the last step, where an open phase goes on).
+    pub(super) fn densities<const D: usize, const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        before: &[bool],
+        now: &SurfaceStep<D>,
+        after: Option<&[bool]>,
+    ) -> Densities<D> {
+        // i+1 ≤ n ≤ j−1: the node touches at the instants before, at and after t_n.
+        let keeps = |k: usize| before[k] && now.touching[k] && after.is_none_or(|after| after[k]);
+        let mut densities = none(problem);
+        for ((facet, ends), density) in problem.surface().facets().iter().zip(&self.ends).zip(&mut densities) {
+            for (end, value) in ends.iter().zip(density) {
+                if keeps(end.node) && end.neighbours.iter().all(|&k| keeps(k)) {
+                    let force = now.reaction[end.node].map(|r| r / end.tributary);
+                    *value = problem.obstacles()[facet.obstacle].project_into_cone(&force);
+                }
+            }
+        }
+        densities
+    }
+}

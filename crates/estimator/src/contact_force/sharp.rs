@@ -1,0 +1,85 @@
+//! Densities on the facets that touch throughout a step, statically equivalent to the reactions.
+
+use super::{Densities, Interval, SurfaceStep, none};
+use percute_core::problem::Problem;
+
+/// The densities of one step: R = B F at both ends, with the consistent mass matrix B of the facets
+/// whose nodes touch at both ends, then the projection into the cone.
+pub(super) fn interval<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    now: &SurfaceStep<D>,
+    next: &SurfaceStep<D>,
+) -> Interval<D> {
+    let touches = |k: usize| now.touching[k] && next.touching[k];
+    let live: Vec<bool> = problem.surface().facets().iter().map(|f| f.nodes.iter().all(|&k| touches(k))).collect();
+    if !live.contains(&true) {
+        return Interval { start: none(problem), end: none(problem) };
+    }
+    let mass = BoundaryMass::new(problem, &live);
+    let densities = |reaction: &[[f64; D]]| mass.densities(problem, &live, reaction);
+    Interval { start: densities(&now.reaction), end: densities(&next.reaction) }
+}
+
+/// ∫φ_iφ_j over the live facets: tridiagonal, for facets join nodes that follow each other.
+struct BoundaryMass {
+    diagonal: Vec<f64>,
+    /// Coupling of node k with node k + 1.
+    upper: Vec<f64>,
+}
+
+impl BoundaryMass {
+    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, live: &[bool]) -> Self {
+        let count = problem.surface().nodes().len();
+        let mut mass = Self { diagonal: vec![0.0; count], upper: vec![0.0; count] };
+        for (facet, _) in problem.surface().facets().iter().zip(live).filter(|(_, live)| **live) {
+            let share = facet.area / (D * (D + 1)) as f64;
+            for &k in &facet.nodes {
+                mass.diagonal[k] += 2.0 * share;
+            }
+            if D == 2 {
+                mass.upper[facet.nodes[0].min(facet.nodes[1])] += share;
+            }
+        }
+        mass
+    }
+
+    /// B⁻¹R by elimination along the boundary; nodes without live facets get zero.
+    fn solve<const D: usize>(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+        let count = self.diagonal.len();
+        let mut pivot = self.diagonal.clone();
+        let mut value = reaction.to_vec();
+        for k in 1..count {
+            if self.upper[k - 1] > 0.0 {
+                let factor = self.upper[k - 1] / pivot[k - 1];
+                pivot[k] -= factor * self.upper[k - 1];
+                let before = value[k - 1];
+                (0..D).for_each(|c| value[k][c] -= factor * before[c]);
+            }
+        }
+        for k in (0..count).rev() {
+            if pivot[k] == 0.0 {
+                value[k] = [0.0; D];
+                continue;
+            }
+            let after = if self.upper[k] > 0.0 { value[k + 1] } else { [0.0; D] };
+            (0..D).for_each(|c| value[k][c] = (value[k][c] - self.upper[k] * after[c]) / pivot[k]);
+        }
+        value
+    }
+
+    fn densities<const D: usize, const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        live: &[bool],
+        reaction: &[[f64; D]],
+    ) -> Densities<D> {
+        let nodal = self.solve(reaction);
+        let mut densities = none(problem);
+        for ((facet, density), _) in
+            problem.surface().facets().iter().zip(&mut densities).zip(live).filter(|(_, l)| **l)
+        {
+            *density = facet.nodes.map(|k| problem.obstacles()[facet.obstacle].project_into_cone(&nodal[k]));
+        }
+        densities
+    }
+}

@@ -1,0 +1,81 @@
+//! What is needed of each element again and again, computed once.
+
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::problem::Problem;
+
+/// Geometry and mass of one element.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Element<const D: usize, const N: usize> {
+    pub(crate) nodes: [NodeId; N],
+    /// V∇φ_i (m² with thickness), V the volume: σ times it is a nodal force.
+    pub(crate) gradients: [[f64; D]; N],
+    /// V (m³).
+    pub(crate) volume: f64,
+    /// Lumped mass at each node, ρV/(D+1) (kg).
+    pub(crate) nodal_mass: f64,
+    /// For each node, where the facet by which a walk around it enters this element lies among the
+    /// links of all stars; the facet by which it leaves comes next.
+    pub(crate) links: [u32; N],
+}
+
+/// The elements of a problem.
+pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Element<D, N>> {
+    let mesh = problem.mesh();
+    let mut links = vec![[0; N]; mesh.element_count()];
+    for node in (0..mesh.node_count()).map(NodeId::new) {
+        let first = mesh.stars().link_range(node).start;
+        for (m, &element) in mesh.stars().star(node).elements.iter().enumerate() {
+            if let Some(i) = mesh.local_node(element, node) {
+                links[element.index()][i] = (first + m) as u32;
+            }
+        }
+    }
+    let element = |(e, links): (usize, [u32; N])| {
+        let id = ElementId::new(e);
+        let geometry = mesh.cell_geometry(id);
+        let volume = problem.volume(id);
+        Element {
+            nodes: mesh.cells()[e],
+            gradients: geometry.gradients.map(|g| g.map(|x| volume * x)),
+            volume,
+            nodal_mass: problem.material(id).density() * volume / N as f64,
+            links,
+        }
+    };
+    links.into_iter().enumerate().map(element).collect()
+}
+
+impl<const D: usize, const N: usize> Element<D, N> {
+    /// ∂u_a/∂x_b of a linear field, from differences with its value at the first node.
+    #[inline]
+    pub(crate) fn gradient(&self, u: &[[f64; D]; N]) -> [[f64; D]; D] {
+        let inverse = 1.0 / self.volume;
+        let mut gradient = [[0.0; D]; D];
+        for i in 1..N {
+            for a in 0..D {
+                for b in 0..D {
+                    gradient[a][b] += inverse * (u[i][a] - u[0][a]) * self.gradients[i][b];
+                }
+            }
+        }
+        gradient
+    }
+
+    /// The values of a nodal field at the nodes.
+    #[inline]
+    pub(crate) fn gather(&self, field: &[[f64; D]]) -> [[f64; D]; N] {
+        self.nodes.map(|n| field[n.index()])
+    }
+
+    /// Vσ∇φ_i of node `i`.
+    #[inline]
+    pub(crate) fn internal_force(&self, i: usize, stress: &[[f64; D]; D]) -> [f64; D] {
+        let mut force = [0.0; D];
+        for a in 0..D {
+            for b in 0..D {
+                force[a] += stress[a][b] * self.gradients[i][b];
+            }
+        }
+        force
+    }
+}

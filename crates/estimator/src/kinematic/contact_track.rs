@@ -1,0 +1,128 @@
+//! The normal motion of a candidate node over the whole run: contact phases and the windows
+//! between them.
+
+use super::window::{Window, least_of_parabola};
+use crate::residual::{Residuals, worse};
+
+/// Normal velocity (m/s) and gap (m) of a candidate node at the knots known so far.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactTrack {
+    undeformed_gap: f64,
+    /// Body size (m), which the residuals of distances refer to.
+    size: f64,
+    known: Vec<(f64, f64)>,
+    /// Half steps and wanted velocities since the last known knot.
+    lengths: Vec<f64>,
+    wanted: Vec<f64>,
+    touching: bool,
+    /// Whether contact is solved for; a prescribed node keeps its motion.
+    free: bool,
+    rendezvous: f64,
+    at_knots: f64,
+    between_knots: f64,
+}
+
+/// One step of the simulation as a candidate node sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NormalStep {
+    /// Length of each of its two half steps (s).
+    pub(crate) half: f64,
+    /// Normal velocity at t_{n−½} and t_n (m/s).
+    pub(crate) velocity: [f64; 2],
+    /// Touching status at t_n.
+    pub(crate) touching: bool,
+}
+
+impl ContactTrack {
+    /// A node with this gap (m) and normal velocity (m/s) at t = 0.
+    pub(crate) fn new(undeformed_gap: f64, size: f64, free: bool, start: (f64, f64), touching: bool) -> Self {
+        Self {
+            undeformed_gap,
+            size,
+            known: vec![(start.1, start.0)],
+            lengths: Vec::new(),
+            wanted: Vec::new(),
+            touching,
+            free,
+            rendezvous: 0.0,
+            at_knots: 0.0,
+            between_knots: 0.0,
+        }
+    }
+
+    /// Takes in the step from t_{n−1} to t_n.
+    pub(crate) fn push(&mut self, step: &NormalStep, tolerance: f64) {
+        let arrives = step.touching && !self.touching && self.free;
+        if step.touching && self.touching && self.free {
+            // Within a phase: at rest on the plane.
+            let (_, gap) = self.last();
+            self.known.extend([(0.0, gap); 2]);
+        } else {
+            self.lengths.extend([step.half; 2]);
+            self.wanted.extend(step.velocity);
+            if arrives || !self.free {
+                self.close(arrives, tolerance);
+            }
+        }
+        self.touching = step.touching;
+    }
+
+    /// Solves the last window, which ends with the run.
+    pub(crate) fn finish(&mut self, tolerance: f64) {
+        if !self.lengths.is_empty() {
+            self.close(false, tolerance);
+        }
+    }
+
+    /// Solves the window since the last known knot.
+    fn close(&mut self, arrives: bool, tolerance: f64) {
+        let (velocity, gap) = self.last();
+        let window = Window { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
+        // A prescribed node cannot be moved out of the way.
+        let path = if self.free { window.solve(tolerance) } else { window.integrate(&self.wanted) };
+        if arrives {
+            let travelled: f64 = self.lengths.iter().zip(&path).map(|(h, (v, _))| h * v.abs()).sum();
+            let (_, end) = path[path.len() - 1];
+            self.rendezvous = worse(self.rendezvous, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
+        }
+        let mut before = (velocity, gap);
+        for (m, &after) in path.iter().enumerate() {
+            let (_, least) = least_of_parabola(before, after, self.lengths[m], m);
+            self.at_knots = worse(self.at_knots, (-after.1 / self.size).max(0.0));
+            self.between_knots = worse(self.between_knots, (-least / self.size).max(0.0));
+            before = after;
+        }
+        self.known.extend(path);
+        self.lengths.clear();
+        self.wanted.clear();
+    }
+
+    fn last(&self) -> (f64, f64) {
+        self.known[self.known.len() - 1]
+    }
+
+    /// Number of knots known so far.
+    #[inline]
+    pub(crate) fn known(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Normal velocity (m/s) and gap (m) at a known knot.
+    #[inline]
+    pub(crate) fn at(&self, knot: usize) -> (f64, f64) {
+        self.known[knot]
+    }
+
+    /// Gap of the node's place in the undeformed mesh (m).
+    #[inline]
+    pub(crate) fn undeformed_gap(&self) -> f64 {
+        self.undeformed_gap
+    }
+
+    /// Adds what this node leaves to the residuals.
+    pub(crate) fn report(&self, residuals: &mut Residuals) {
+        residuals.rendezvous = worse(residuals.rendezvous, self.rendezvous);
+        residuals.penetration_at_knots = worse(residuals.penetration_at_knots, self.at_knots);
+        residuals.penetration_between_knots = worse(residuals.penetration_between_knots, self.between_knots);
+    }
+}

@@ -1,0 +1,97 @@
+//! Nodal motion between contacts: velocity continuous and linear between the knots t_n and
+//! t_{n+½}, displacement its exact integral.
+
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+
+/// Nodal values at one knot.
+#[derive(Clone, Debug)]
+pub(crate) struct Knot<const D: usize> {
+    /// u_CA (m); the normal component at contact nodes is that of the simulation.
+    pub(crate) displacement: Vec<[f64; D]>,
+    /// u̇_CA (m/s), likewise.
+    pub(crate) velocity: Vec<[f64; D]>,
+    /// ∫₀ᵗ ã (m/s).
+    pub(crate) increment: Vec<[f64; D]>,
+}
+
+/// The motion of all nodes, advanced step by step.
+#[derive(Clone, Debug)]
+pub(crate) struct FreeMotion<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    velocity: Vec<[f64; D]>,
+    /// v_{n+½} by the scheme.
+    half_step: Vec<[f64; D]>,
+    next: usize,
+}
+
+/// Displacement and velocity at a knot.
+pub(crate) type Motion<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+
+impl<const D: usize> FreeMotion<D> {
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+        Self {
+            displacement: problem.initial_displacement().to_vec(),
+            velocity: problem.initial_velocity().to_vec(),
+            half_step: problem.initial_velocity().to_vec(),
+            next: 0,
+        }
+    }
+
+    /// Advances over the half steps to t_{n−½} and t_n with a_n, and returns the motion at both;
+    /// at n = 0 there is no half step and the initial conditions are returned.
+    pub(crate) fn advance<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        acceleration: &[[f64; D]],
+    ) -> (Option<Motion<D>>, Motion<D>) {
+        let n = self.next;
+        self.next += 1;
+        let mut mid = None;
+        if n > 0 {
+            let half = 0.5 * times.step(n - 1);
+            let mut velocity = self.half_step.clone();
+            prescribe(problem, &mut velocity, |p| {
+                let v = |k: usize| problem.prescribed_velocity(p, times.instants()[k]);
+                0.5 * (v(n - 1) + v(n))
+            });
+            self.integrate(half, &velocity);
+            mid = Some((self.displacement.clone(), velocity.clone()));
+
+            // v_n = v_{n−½} + ½Δt_{n−1} a_n, [38] when the step is constant.
+            for (v, (h, a)) in velocity.iter_mut().zip(self.half_step.iter().zip(acceleration)) {
+                (0..D).for_each(|c| v[c] = h[c] + half * a[c]);
+            }
+            prescribe(problem, &mut velocity, |p| problem.prescribed_velocity(p, times.instants()[n]));
+            self.integrate(half, &velocity);
+        }
+        let h = times.velocity_step(n);
+        for (v, a) in self.half_step.iter_mut().zip(acceleration) {
+            (0..D).for_each(|c| v[c] += h * a[c]);
+        }
+        (mid, (self.displacement.clone(), self.velocity.clone()))
+    }
+
+    /// Exact integral of a velocity that is linear over a length of time.
+    fn integrate(&mut self, length: f64, velocity: &[[f64; D]]) {
+        let states = self.displacement.iter_mut().zip(&mut self.velocity).zip(velocity);
+        for ((u, before), after) in states {
+            for c in 0..D {
+                u[c] += 0.5 * length * (before[c] + after[c]);
+            }
+            *before = *after;
+        }
+    }
+}
+
+/// Prescribed components take v_d.
+fn prescribe<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    velocity: &mut [[f64; D]],
+    value: impl Fn(&percute_core::problem::PrescribedComponent) -> f64,
+) {
+    for p in problem.prescribed() {
+        velocity[p.node.index()][p.component] = value(p);
+    }
+}

@@ -1,0 +1,47 @@
+//! All nodal and element fields at one instant t_n.
+
+use crate::contact_force::{Densities, SurfaceStep};
+use crate::kinematic::Knot;
+
+/// Which value at an instant where contact changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Before,
+    After,
+}
+
+/// The fields of one instant, filled as they become known: first the motion, then the contact force
+/// on both sides and ã, then stress and tractions.
+#[derive(Clone, Debug)]
+pub(crate) struct Level<const D: usize> {
+    /// n.
+    pub(crate) index: usize,
+    pub(crate) knot: Knot<D>,
+    /// The knot t_{n−½}.
+    pub(crate) mid: Option<Knot<D>>,
+    /// u_n of the simulation (m).
+    pub(crate) displacement: Vec<[f64; D]>,
+    /// Σ forces but contact (N): external, internal, supports. Emptied once ã is known.
+    pub(crate) force: Vec<[f64; D]>,
+    /// f_d on each element (N/m³), empty if there is none.
+    pub(crate) body_force: Vec<[f64; D]>,
+    /// Prescribed moments on the loaded facets (N).
+    pub(crate) load_moments: Vec<[[f64; D]; D]>,
+    pub(crate) surface: SurfaceStep<D>,
+    /// ã (m/s²), at contact nodes on the side `After`.
+    pub(crate) acceleration: Vec<[f64; D]>,
+    /// ã at contact nodes on the side `Before`.
+    pub(crate) acceleration_before: Vec<[f64; D]>,
+    pub(crate) density_before: Densities<D>,
+    pub(crate) density_after: Densities<D>,
+    /// Contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
+    pub(crate) contact: Vec<[f64; 2]>,
+    /// σ_h of each element (Pa).
+    pub(crate) stress: Vec<[[f64; D]; D]>,
+    /// Largest nodal force of any element (N).
+    pub(crate) force_scale: f64,
+    /// Moments of the tractions along the walks around all nodes (N), side `After`.
+    pub(crate) flux: Vec<[f64; D]>,
+    /// The same around contact nodes, side `Before`.
+    pub(crate) flux_before: Vec<[f64; D]>,
+}

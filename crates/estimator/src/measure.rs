@@ -1,0 +1,236 @@
+//! η of one element (§4.2), exact in space.
+
+use crate::element::Element;
+use crate::inertia::{Inertia, mass_product};
+use crate::kinematic::ElementMotion;
+use crate::level::{Level, Side};
+use crate::options::Acceleration;
+use crate::residual::{Residuals, worse};
+use crate::stress::{Loading, StressMap, facet_node};
+use crate::traction::Equilibration;
+use percute_core::ids::ElementId;
+use percute_core::material::Elastic;
+use percute_core::problem::Problem;
+
+/// What one element adds to η and d at one sample (J), contact apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ElementError {
+    pub(crate) kinetic: f64,
+    pub(crate) elastic: f64,
+    pub(crate) reference: f64,
+}
+
+impl ElementError {
+    #[inline]
+    pub(crate) fn total(&self) -> f64 {
+        self.kinetic + self.elastic
+    }
+
+    #[inline]
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.kinetic += other.kinetic;
+        self.elastic += other.elastic;
+        self.reference += other.reference;
+    }
+}
+
+/// The dynamically admissible fields of an element at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Balanced<const D: usize, const N: usize> {
+    /// Tractions and Γ_DA − f_d.
+    pub(crate) loading: Loading<D, N>,
+}
+
+impl<const D: usize, const N: usize> Balanced<D, N> {
+    /// Half way between two instants, [57]–[58].
+    pub(crate) fn middle(a: &Self, b: &Self) -> Self {
+        let mut middle = *a;
+        for k in 0..N {
+            for c in 0..D {
+                for p in 0..D {
+                    let (x, y) = (a.loading.traction[k][p][c], b.loading.traction[k][p][c]);
+                    middle.loading.traction[k][p][c] = 0.5 * (x + y);
+                }
+                middle.loading.volume[k][c] = 0.5 * (a.loading.volume[k][c] + b.loading.volume[k][c]);
+            }
+        }
+        middle
+    }
+}
+
+/// The maps of one element, constant in time.
+#[derive(Clone, Debug)]
+pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
+    element: &'a Element<D, N>,
+    id: ElementId,
+    law: &'a Elastic,
+    points: [[f64; D]; N],
+    inertia: Inertia<D, N>,
+    stress: StressMap,
+    start: [[f64; D]; N],
+}
+
+impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
+    pub(crate) fn new(
+        problem: &'a Problem<D, N>,
+        element: &'a Element<D, N>,
+        id: ElementId,
+        choice: Acceleration,
+    ) -> Self {
+        let points = problem.mesh().cell_points(id);
+        let law = problem.material(id);
+        Self {
+            element,
+            id,
+            law,
+            points,
+            inertia: Inertia::new(choice, &points),
+            stress: StressMap::new(&points, &problem.mesh().cell_geometry(id), law),
+            start: element.gather(problem.initial_velocity()),
+        }
+    }
+
+    /// Tractions and Γ_DA − f_d at t_n. `contact` gives the contact node at each local node.
+    pub(crate) fn balanced(
+        &self,
+        equilibration: &Equilibration<'_, D, N>,
+        level: &Level<D>,
+        contact: &[Option<usize>; N],
+        side: Side,
+    ) -> Balanced<D, N> {
+        let extent = self.law.extent();
+        // Outward moments of each facet at its nodes: entering moments with the other sign.
+        let mut moments = [[[0.0; D]; D]; N];
+        let mut acceleration = self.element.gather(&level.acceleration);
+        for i in 0..N {
+            let (entry, exit) = equilibration.flux_around(level, self.element, i, contact[i], side);
+            if D == 1 {
+                moments[1 - i][0] = if i == 0 { entry.map(|f| -f) } else { *exit };
+            } else {
+                moments[(i + 2) % N][0] = entry.map(|f| -f);
+                moments[(i + 1) % N][D - 1] = *exit;
+            }
+            if let (Some(at), Side::Before) = (contact[i], side) {
+                acceleration[i] = level.acceleration_before[at];
+            }
+        }
+        let mut traction = [[[0.0; D]; D]; N];
+        for k in 0..N {
+            for c in 0..D {
+                let sum: f64 = moments[k].iter().map(|b| b[c]).sum();
+                for p in 0..D {
+                    traction[k][p][c] = D as f64 / extent * ((D + 1) as f64 * moments[k][p][c] - sum);
+                }
+            }
+        }
+        let body = level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
+        let mut volume = self.inertia.apply(&acceleration);
+        for value in &mut volume {
+            (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
+        }
+        Balanced { loading: Loading { traction, volume } }
+    }
+
+    /// The error at one sample; `increment` is ∫ã dt at the nodes.
+    pub(crate) fn error(
+        &self,
+        balanced: &Balanced<D, N>,
+        increment: &[[f64; D]; N],
+        motion: &ElementMotion<D, N>,
+    ) -> ElementError {
+        let mass = N as f64 * self.element.nodal_mass;
+        let integral = self.inertia.apply(increment);
+        let (mut dynamic, mut misfit) = (self.start, [[0.0; D]; N]);
+        for i in 0..N {
+            for c in 0..D {
+                dynamic[i][c] += integral[i][c];
+                misfit[i][c] = dynamic[i][c] - motion.velocity()[i][c];
+            }
+        }
+        let kinetic = 0.5 * mass_product(mass, &misfit, &misfit);
+
+        // σ_DA − σ_CA balances the loading less the tractions of the constant σ_CA.
+        let stress = self.law.stress(&self.element.gradient(motion.displacement()));
+        let mut difference = balanced.loading;
+        for k in 0..N {
+            let pull = self.element.internal_force(k, &stress);
+            for c in 0..D {
+                let traction = -(D as f64) * pull[c] / self.law.extent();
+                (0..D).for_each(|p| difference.traction[k][p][c] -= traction);
+            }
+        }
+        let elastic = self.law.extent() * self.stress.energy(&difference);
+        // |a + b|² = |a − b|² + 4 a·b.
+        let products = mass_product(mass, &dynamic, motion.velocity()) + self.work(balanced, motion.displacement());
+        ElementError { kinetic, elastic, reference: 2.0 * (kinetic + elastic) + 4.0 * products }
+    }
+
+    /// ∫σ_DA : ε(u) as the work of what σ_DA balances (J).
+    fn work(&self, balanced: &Balanced<D, N>, u: &[[f64; D]; N]) -> f64 {
+        let volume = self.element.volume / self.law.extent();
+        let mut work = 0.0;
+        for c in 0..D {
+            // The loading balances: a translation does no work and is left out.
+            let lift: [f64; N] = std::array::from_fn(|i| u[i][c] - u[0][c]);
+            for k in 0..N {
+                let traction = &balanced.loading.traction[k];
+                let sum: f64 = traction.iter().map(|t| t[c]).sum();
+                for p in 0..D {
+                    work += lift[facet_node::<N>(k, p)] * (traction[p][c] + sum) / (D * (D + 1)) as f64;
+                }
+            }
+            let total: f64 = balanced.loading.volume.iter().map(|g| g[c]).sum();
+            for i in 0..N {
+                work -= lift[i] * volume * (balanced.loading.volume[i][c] + total) / ((D + 1) * (D + 2)) as f64;
+            }
+        }
+        self.law.extent() * work
+    }
+
+    /// Residuals of the equilibrium of the element; `scale` is the largest nodal force in the mesh
+    /// (N).
+    pub(crate) fn check(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
+        let floor = 1e-12 * scale / self.law.extent();
+        let stress = self.stress.residuals(&balanced.loading, floor);
+        residuals.divergence = worse(residuals.divergence, stress.divergence);
+        residuals.edge_tractions = worse(residuals.edge_tractions, stress.edges);
+        residuals.inner_tractions = worse(residuals.inner_tractions, stress.inner);
+        let resultant = self.resultant_residual(balanced, floor);
+        residuals.element_resultants = worse(residuals.element_resultants, resultant);
+    }
+
+    /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
+    fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
+        let volume = self.element.volume / self.law.extent();
+        let Loading { traction, volume: load } = &balanced.loading;
+        let (mut force, mut moment) = ([0.0; D], 0.0);
+        let (mut scale, mut reach) = (floor, 0.0_f64);
+        let arm = |i: usize, c: usize| (0..N).map(|j| self.points[i][c] - self.points[j][c]).sum::<f64>() / N as f64;
+        let mut apply = |i: usize, f: [f64; D]| {
+            for c in 0..D {
+                force[c] += f[c];
+                scale = scale.max(f[c].abs());
+                reach = reach.max(arm(i, c).abs());
+            }
+            if D == 2 {
+                moment += arm(i, 0) * f[D - 1] - arm(i, D - 1) * f[0];
+            }
+        };
+        for k in 0..N {
+            for p in 0..D {
+                let mut f = traction[k][p];
+                for c in 0..D {
+                    f[c] = (f[c] + traction[k].iter().map(|t| t[c]).sum::<f64>()) / (D * (D + 1)) as f64;
+                }
+                apply(facet_node::<N>(k, p), f);
+            }
+            let mut f = load[k];
+            for c in 0..D {
+                f[c] = -volume * (f[c] + load.iter().map(|g| g[c]).sum::<f64>()) / ((D + 1) * (D + 2)) as f64;
+            }
+            apply(k, f);
+        }
+        let miss = force.iter().fold(moment.abs() / reach, |m, f| m.max(f.abs()));
+        miss / scale.max(f64::MIN_POSITIVE)
+    }
+}

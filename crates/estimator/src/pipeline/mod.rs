@@ -1,0 +1,80 @@
+//! From steps to an estimate: steps are prepared one after the other ([`prepare`]), gathered in
+//! windows, worked on in parallel ([`window`]), and summed in a fixed order ([`totals`]).
+
+mod near;
+mod prepare;
+mod totals;
+mod window;
+
+use crate::error::EstimateError;
+use crate::estimate::Estimate;
+use crate::options::Options;
+use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use prepare::Preparation;
+use rayon::ThreadPool;
+use window::Window;
+
+/// Takes in the steps of a history and estimates its constitutive relation error.
+///
+/// Steps may come from the integrator as it runs or from a stored history. They are worked on in
+/// windows; memory does not grow with their number, but for the elements around candidate nodes
+/// of contact, which wait until their nodes' next contact is known.
+#[derive(Debug)]
+pub struct Estimator<'p, const D: usize, const N: usize> {
+    pool: ThreadPool,
+    preparation: Preparation<'p, D, N>,
+    window: Window<'p, D, N>,
+}
+
+impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
+    /// Prepares the estimate of a problem over a time grid.
+    ///
+    /// # Errors
+    /// Options out of range, or threads that cannot be started.
+    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: Options) -> Result<Self, EstimateError> {
+        for (name, value) in [("every", Some(options.every)), ("window", options.window), ("threads", options.threads)]
+        {
+            if value == Some(0) {
+                return Err(EstimateError::Zero { name });
+            }
+        }
+        // A pool of its own: a process forked later must not wait for threads it does not have.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+        Ok(Self {
+            pool: pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?,
+            preparation: Preparation::new(problem, times, &options),
+            window: Window::new(problem, times, &options),
+        })
+    }
+
+    /// Ends with the steps taken so far and sums up.
+    ///
+    /// # Errors
+    /// Fewer than two steps.
+    pub fn finish(mut self) -> Result<Estimate, EstimateError> {
+        if self.preparation.count() < 2 {
+            return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
+        }
+        self.preparation.finish();
+        self.pass_on(true);
+        Ok(self.window.finish(&self.pool, self.preparation))
+    }
+
+    /// Hands the levels that are ready to the window.
+    fn pass_on(&mut self, last: bool) {
+        while let Some(level) = self.preparation.next_ready(last) {
+            self.window.push(&self.pool, level, self.preparation.tracks());
+        }
+    }
+}
+
+impl<const D: usize, const N: usize> StepSink<D> for Estimator<'_, D, N> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        self.preparation.check(step)?;
+        self.preparation.push(step);
+        self.pass_on(false);
+        Ok(())
+    }
+}

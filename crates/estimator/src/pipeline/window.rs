@@ -1,0 +1,293 @@
+//! The parallel part: stress, tractions and errors of all elements over a window of levels.
+//!
+//! Nothing here depends on the number of threads or on where windows end: every number is computed
+//! by one task from its own data, and sums are taken over fixed blocks of elements in order.
+
+use super::near::{Context, NearElement, near_elements};
+use super::prepare::Preparation;
+use super::totals::{self, FarSums};
+use crate::element::Element;
+use crate::estimate::Estimate;
+use crate::kinematic::{ContactTrack, ElementMotion, Knot};
+use crate::level::{Level, Side};
+use crate::measure::{Balanced, ElementError, ElementMeasure};
+use crate::options::{Acceleration, Options};
+use crate::residual::{Residuals, worse};
+use crate::traction::Equilibration;
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+/// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
+const BLOCK: usize = 256;
+/// Memory that a window may take unless told otherwise (bytes).
+const MODEST_MEMORY: usize = 256 << 20;
+/// More levels than this gain nothing.
+const MOST_LEVELS: usize = 32;
+
+/// Levels in work, and what has been summed so far.
+#[derive(Debug)]
+pub(crate) struct Window<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    equilibration: Equilibration<'p, D, N>,
+    choice: Acceleration,
+    /// Number of intervals worked on at once.
+    size: usize,
+    levels: Vec<Level<D>>,
+    /// Whether the first level was the last of the window before.
+    carried: bool,
+    near: Vec<NearElement<D, N>>,
+    is_near: Vec<bool>,
+    far: FarSums,
+    /// Twice the time integral of η_E, and η_E at the last level, of far elements.
+    progress: Vec<(f64, f64)>,
+    residuals: Residuals,
+}
+
+impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+        let near = near_elements(problem);
+        let mut is_near = vec![false; problem.mesh().element_count()];
+        near.iter().for_each(|n| is_near[n.element.index()] = true);
+        let mesh = problem.mesh();
+        let numbers = D * (8 * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count());
+        let fitting = MODEST_MEMORY / (8 * numbers);
+        Self {
+            problem,
+            times,
+            equilibration: Equilibration::new(problem),
+            choice: options.acceleration,
+            size: options.window.unwrap_or(fitting.clamp(1, MOST_LEVELS)),
+            levels: Vec::new(),
+            carried: false,
+            near,
+            is_near,
+            far: FarSums::default(),
+            progress: vec![(0.0, 0.0); mesh.element_count()],
+            residuals: Residuals::default(),
+        }
+    }
+
+    /// Takes in a level; works when the window is full.
+    pub(super) fn push(&mut self, pool: &ThreadPool, level: Level<D>, tracks: &[ContactTrack]) {
+        self.levels.push(level);
+        if self.levels.len() > self.size {
+            self.work(pool, tracks);
+        }
+    }
+
+    /// Works on what is left and sums up.
+    pub(super) fn finish(mut self, pool: &ThreadPool, preparation: Preparation<'p, D, N>) -> Estimate {
+        self.work(pool, preparation.tracks());
+        let residuals = self.residuals;
+        totals::estimate(self.problem, self.times, preparation, self.far, &self.near, &self.progress, residuals)
+    }
+
+    /// Works on the levels of the window and keeps the last for the next one.
+    fn work(&mut self, pool: &ThreadPool, tracks: &[ContactTrack]) {
+        let first = usize::from(self.carried);
+        if self.levels.len() <= first {
+            return;
+        }
+        pool.install(|| {
+            self.stresses(first);
+            self.stars(first);
+            self.far_elements(first);
+            let context =
+                Context { problem: self.problem, equilibration: &self.equilibration, choice: self.choice, tracks };
+            self.near.par_iter_mut().for_each(|near| near.advance(&context, &self.levels));
+        });
+        let last = self.levels.len() - 1;
+        self.levels.swap(0, last);
+        self.levels.truncate(1);
+        self.carried = true;
+    }
+
+    /// σ_h of every element, and the largest nodal force.
+    fn stresses(&mut self, first: usize) {
+        let (problem, elements) = (self.problem, &self.equilibration.elements);
+        for level in &mut self.levels[first..] {
+            let mut stress = vec![[[0.0; D]; D]; elements.len()];
+            let largest = stress.par_chunks_mut(BLOCK).zip(elements.par_chunks(BLOCK)).enumerate().map(
+                |(block, (stress, elements))| {
+                    let mut largest: f64 = 0.0;
+                    for (k, (stress, element)) in stress.iter_mut().zip(elements).enumerate() {
+                        let law = problem.material(ElementId::new(block * BLOCK + k));
+                        *stress = law.stress(&element.gradient(&element.gather(&level.displacement)));
+                        largest = largest.max(largest_force(element, stress, &level.acceleration));
+                    }
+                    largest
+                },
+            );
+            level.force_scale = largest.reduce(|| 0.0, f64::max);
+            level.stress = stress;
+        }
+    }
+
+    /// The star problems of all nodes.
+    fn stars(&mut self, first: usize) {
+        let stars = self.problem.mesh().stars();
+        let nodes = self.problem.mesh().node_count();
+        for level in &mut self.levels[first..] {
+            let mut flux = vec![[0.0; D]; stars.link_count()];
+            let mut blocks = Vec::with_capacity(nodes.div_ceil(BLOCK));
+            let mut rest = flux.as_mut_slice();
+            for start in (0..nodes).step_by(BLOCK) {
+                let end = (start + BLOCK).min(nodes);
+                let links = stars.link_range(NodeId::new(end - 1)).end - stars.link_range(NodeId::new(start)).start;
+                let (block, others) = rest.split_at_mut(links);
+                blocks.push((start..end, block));
+                rest = others;
+            }
+            let (equilibration, here) = (&self.equilibration, &*level);
+            let solve = |(nodes, mut block): (std::ops::Range<usize>, &mut [[f64; D]])| {
+                let mut worst: f64 = 0.0;
+                for node in nodes.map(NodeId::new) {
+                    let (flux, others) = std::mem::take(&mut block).split_at_mut(stars.link_range(node).len());
+                    block = others;
+                    let acceleration = &here.acceleration[node.index()];
+                    let star = equilibration.solve_star(here, node, acceleration, &here.density_after, flux);
+                    worst = worse(worst, ratio(star.miss, star.scale.max(1e-12 * here.force_scale)));
+                }
+                worst
+            };
+            let miss = blocks.into_par_iter().map(solve).reduce(|| 0.0, worse);
+            self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
+            level.flux = flux;
+            let miss = contact_stars(self.problem, &self.equilibration, level);
+            self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
+        }
+    }
+
+    /// Errors of the elements away from contact, summed by blocks.
+    fn far_elements(&mut self, first: usize) {
+        let blocks = self.progress.par_chunks_mut(BLOCK).zip(self.equilibration.elements.par_chunks(BLOCK));
+        let shared = Shared {
+            problem: self.problem,
+            equilibration: &self.equilibration,
+            choice: self.choice,
+            levels: &self.levels,
+            first,
+            times: self.times,
+        };
+        let is_near = &self.is_near;
+        let results: Vec<(FarSums, Residuals)> = blocks
+            .enumerate()
+            .map(|(block, (progress, elements))| {
+                let mut sums = FarSums::new(self.levels.len() - first, self.levels.len() - 1);
+                let mut residuals = Residuals::default();
+                for (k, (element, progress)) in elements.iter().zip(progress).enumerate() {
+                    let id = block * BLOCK + k;
+                    if !is_near[id] {
+                        shared.one_element(ElementId::new(id), element, progress, &mut sums, &mut residuals);
+                    }
+                }
+                (sums, residuals)
+            })
+            .collect();
+        let mut window = FarSums::new(self.levels.len() - first, self.levels.len() - 1);
+        for (sums, residuals) in &results {
+            window.add(sums);
+            self.residuals.merge(residuals);
+        }
+        self.far.extend(window);
+    }
+}
+
+/// What the far elements of a window share.
+struct Shared<'a, 'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    equilibration: &'a Equilibration<'p, D, N>,
+    choice: Acceleration,
+    levels: &'a [Level<D>],
+    first: usize,
+    times: &'p TimeGrid,
+}
+
+impl<const D: usize, const N: usize> Shared<'_, '_, D, N> {
+    /// Adds one element's errors at all samples of the window.
+    fn one_element(
+        &self,
+        id: ElementId,
+        element: &Element<D, N>,
+        progress: &mut (f64, f64),
+        sums: &mut FarSums,
+        residuals: &mut Residuals,
+    ) {
+        let measure = ElementMeasure::new(self.problem, element, id, self.choice);
+        let error = |balanced: &Balanced<D, N>, knot: &Knot<D>| {
+            measure.error(balanced, &element.gather(&knot.increment), &ElementMotion::gather(knot, &element.nodes))
+        };
+        let mut before: Option<Balanced<D, N>> = None;
+        for (k, level) in self.levels.iter().enumerate() {
+            let now = measure.balanced(self.equilibration, level, &[None; N], Side::After);
+            let mut middle = ElementError::default();
+            if let (Some(before), Some(mid)) = (&before, self.mid(k)) {
+                middle = error(&Balanced::middle(before, &now), mid);
+                sums.mids[k - 1].add(&middle);
+            }
+            if k >= self.first {
+                measure.check(&now, level.force_scale, residuals);
+                let end = error(&now, &level.knot);
+                sums.levels[k - self.first].add(&end);
+                if let Some(from) = k.checked_sub(1).map(|k| &self.levels[k]) {
+                    let instants = self.times.instants();
+                    let length = instants[level.index] - instants[from.index];
+                    let has_middle = self.mid(k).is_some();
+                    progress.0 +=
+                        totals::trapezoid(length, progress.1, has_middle.then(|| middle.total()), end.total());
+                }
+                progress.1 = end.total();
+            }
+            before = Some(now);
+        }
+    }
+
+    /// The knot between levels k − 1 and k, if they are one step apart.
+    fn mid(&self, k: usize) -> Option<&Knot<D>> {
+        let single = k > 0 && self.levels[k].index == self.levels[k - 1].index + 1;
+        self.levels[k].mid.as_ref().filter(|_| single)
+    }
+}
+
+/// Largest |Vσ∇φ_i| and lumped inertia force of an element (N).
+fn largest_force<const D: usize, const N: usize>(
+    element: &Element<D, N>,
+    stress: &[[f64; D]; D],
+    acceleration: &[[f64; D]],
+) -> f64 {
+    let mut largest: f64 = 0.0;
+    for i in 0..N {
+        let internal = element.internal_force(i, stress);
+        let a = &acceleration[element.nodes[i].index()];
+        for c in 0..D {
+            largest = largest.max(internal[c].abs()).max((element.nodal_mass * a[c]).abs());
+        }
+    }
+    largest
+}
+
+/// The stars of contact nodes once more, with the values before t_n.
+fn contact_stars<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    equilibration: &Equilibration<'_, D, N>,
+    level: &mut Level<D>,
+) -> f64 {
+    let mut flux = vec![[0.0; D]; equilibration.contact_links.last().copied().unwrap_or(0)];
+    let mut worst: f64 = 0.0;
+    for (at, contact) in problem.surface().nodes().iter().enumerate() {
+        let links = equilibration.contact_links[at]..equilibration.contact_links[at + 1];
+        let acceleration = &level.acceleration_before[at];
+        let star = equilibration.solve_star(level, contact.node, acceleration, &level.density_before, &mut flux[links]);
+        worst = worse(worst, ratio(star.miss, star.scale.max(1e-12 * level.force_scale)));
+    }
+    level.flux_before = flux;
+    worst
+}
+
+fn ratio(miss: f64, scale: f64) -> f64 {
+    if miss == 0.0 { 0.0 } else { miss / scale }
+}

@@ -1,0 +1,77 @@
+//! The stress of a bar element: the quadratic that its loading determines.
+
+use super::{Loading, StressResiduals};
+use percute_core::material::Elastic;
+
+/// A bar element of given length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BarStress {
+    length: f64,
+    /// 1/E.
+    compliance: f64,
+}
+
+impl BarStress {
+    pub(super) fn new(length: f64, law: &Elastic) -> Self {
+        Self { length, compliance: law.complementary_form(&[[1.0]]) }
+    }
+
+    /// Stress at both ends and in the middle: σ(0) = −F̂_0 and σ' = Γ_DA − f_d.
+    fn stress<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; 3] {
+        // Facet 1, at node 0, has the outward normal −1.
+        let start = -loading.traction[1][0][0];
+        let (g0, g1) = (loading.volume[0][0], loading.volume[1][0]);
+        let at = |s: f64| start + self.length * s * (g0 + 0.5 * s * (g1 - g0));
+        [at(0.0), at(0.5), at(1.0)]
+    }
+
+    /// ½∫σ²/E; the square of a quadratic with nodal values a, m, b integrates to
+    /// L(4a² + 16m² + 4b² + 4am + 4mb − 2ab)/30.
+    pub(super) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+        let [a, m, b] = self.stress(loading);
+        let square = 4.0 * (a * a + b * b) + 16.0 * m * m + 4.0 * m * (a + b) - 2.0 * a * b;
+        0.5 * self.compliance * self.length * square / 30.0
+    }
+
+    pub(super) fn residuals<const D: usize, const N: usize>(
+        &self,
+        loading: &Loading<D, N>,
+        floor: f64,
+    ) -> StressResiduals {
+        let [a, m, b] = self.stress(loading);
+        let scale = a.abs().max(b.abs()).max(m.abs()).max(floor);
+        // Slopes of the quadratic at both ends against Γ_DA − f_d.
+        let slopes = [(4.0 * m - 3.0 * a - b) / self.length, (3.0 * b + a - 4.0 * m) / self.length];
+        let slope_scale = loading.volume.iter().map(|g| g[0].abs()).fold(scale / self.length, f64::max);
+        let misses = slopes.iter().zip(&loading.volume).map(|(s, g)| (s - g[0]).abs() / slope_scale);
+        StressResiduals {
+            divergence: misses.fold(0.0, f64::max),
+            edges: (a + loading.traction[1][0][0]).abs().max((b - loading.traction[0][0][0]).abs()) / scale,
+            inner: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against Gauss points: σ = 1 + 2x + 3x² on [0, 2] with E = 5.
+    #[test]
+    fn energy_of_a_quadratic() {
+        let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
+        let loading = Loading { traction: [[[17.0]], [[-1.0]]], volume: [[2.0], [14.0]] };
+        let exact = 0.5 / 5.0 * (2.0 + 2.0 * 4.0 + (4.0 + 6.0) * 8.0 / 3.0 + 12.0 * 4.0 + 9.0 * 32.0 / 5.0);
+        assert!((map.energy(&loading) - exact).abs() < 1e-13 * exact);
+        let r = map.residuals(&loading, 0.0);
+        assert!(r.divergence < 1e-14 && r.edges < 1e-14);
+    }
+
+    /// Tractions that do not balance leave a residual.
+    #[test]
+    fn imbalance_shows() {
+        let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
+        let loading = Loading { traction: [[[17.1]], [[-1.0]]], volume: [[2.0], [14.0]] };
+        assert!(map.residuals(&loading, 0.0).edges > 1e-3);
+    }
+}

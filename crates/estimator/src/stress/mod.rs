@@ -1,0 +1,79 @@
+//! Admissible stress σ_DA on an element (§6.2.2): in equilibrium with the tractions on its facets
+//! and with Γ_DA − f_d, exactly, and of least complementary energy among a family.
+
+mod bar;
+mod reference;
+mod triangle;
+
+use bar::BarStress;
+use percute_core::material::Elastic;
+use percute_core::mesh::CellGeometry;
+use triangle::TriangleStress;
+
+/// What an element's stress must balance, per unit of section or thickness.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Loading<const D: usize, const N: usize> {
+    /// |e| F̂ at the nodes of each facet: facet k lies opposite to node k, its p-th node is
+    /// k + 1 + p (mod N).
+    pub(crate) traction: [[[f64; D]; D]; N],
+    /// Γ_DA − f_d at the nodes (N/m³).
+    pub(crate) volume: [[f64; D]; N],
+}
+
+/// Local number of the p-th node of the facet opposite to node k.
+#[inline]
+pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
+    (k + 1 + p) % N
+}
+
+/// Largest relative violations of the equations of one element's stress.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct StressResiduals {
+    pub(crate) divergence: f64,
+    pub(crate) edges: f64,
+    pub(crate) inner: f64,
+}
+
+/// The linear map from loading to stress of one element; constant in time.
+#[derive(Clone, Debug)]
+pub(crate) enum StressMap {
+    Bar(BarStress),
+    Triangle(Box<TriangleStress>),
+}
+
+impl StressMap {
+    pub(crate) fn new<const D: usize, const N: usize>(
+        points: &[[f64; D]; N],
+        geometry: &CellGeometry<D, N>,
+        law: &Elastic,
+    ) -> Self {
+        if D == 1 {
+            Self::Bar(BarStress::new(geometry.volume, law))
+        } else {
+            let corners = std::array::from_fn(|i| [points[i][0], points[i][D - 1]]);
+            Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
+        }
+    }
+
+    /// ½∫σ : K⁻¹ σ (J per unit of section or thickness) of the stress that balances a loading.
+    #[inline]
+    pub(crate) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+        match self {
+            Self::Bar(map) => map.energy(loading),
+            Self::Triangle(map) => map.energy(loading),
+        }
+    }
+
+    /// How well the stress satisfies its equations; `floor` is the smallest traction |e|F that
+    /// counts.
+    pub(crate) fn residuals<const D: usize, const N: usize>(
+        &self,
+        loading: &Loading<D, N>,
+        floor: f64,
+    ) -> StressResiduals {
+        match self {
+            Self::Bar(map) => map.residuals(loading, floor),
+            Self::Triangle(map) => map.residuals(loading, floor),
+        }
+    }
+}
