@@ -64,7 +64,8 @@ pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
     element: &'a Element<D, N>,
     id: ElementId,
     law: &'a Elastic,
-    points: [[f64; D]; N],
+    /// Places of the nodes from the centroid (m).
+    arms: [[f64; D]; N],
     inertia: Inertia<D, N>,
     stress: StressMap,
     start: [[f64; D]; N],
@@ -83,7 +84,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             element,
             id,
             law,
-            points,
+            arms: points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64)),
             inertia: Inertia::new(choice, &points),
             stress: StressMap::new(&points, &problem.mesh().cell_geometry(id), law),
             start: element.gather(problem.initial_velocity()),
@@ -166,71 +167,77 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// ∫σ_DA : ε(u) as the work of what σ_DA balances (J).
+    #[inline]
     fn work(&self, balanced: &Balanced<D, N>, u: &[[f64; D]; N]) -> f64 {
-        let volume = self.element.volume / self.law.extent();
         let mut work = 0.0;
-        for c in 0..D {
-            // The loading balances: a translation does no work and is left out.
-            let lift: [f64; N] = std::array::from_fn(|i| u[i][c] - u[0][c]);
-            for k in 0..N {
-                let traction = &balanced.loading.traction[k];
-                let sum: f64 = traction.iter().map(|t| t[c]).sum();
-                for p in 0..D {
-                    work += lift[facet_node::<N>(k, p)] * (traction[p][c] + sum) / (D * (D + 1)) as f64;
-                }
-            }
-            let total: f64 = balanced.loading.volume.iter().map(|g| g[c]).sum();
-            for i in 0..N {
-                work -= lift[i] * volume * (balanced.loading.volume[i][c] + total) / ((D + 1) * (D + 2)) as f64;
+        // The loading balances: a translation does no work and is left out.
+        for (force, u_i) in self.nodal_forces(balanced).iter().zip(u) {
+            for c in 0..D {
+                work += (force.outer[c] - force.inner[c]) * (u_i[c] - u[0][c]);
             }
         }
         self.law.extent() * work
     }
 
-    /// Residuals of the equilibrium of the element; `scale` is the largest nodal force in the mesh
-    /// (N).
-    pub(crate) fn check(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
-        let floor = 1e-12 * scale / self.law.extent();
-        let stress = self.stress.residuals(&balanced.loading, floor);
+    /// Residuals of the pointwise equilibrium of σ_DA; `scale` is the largest nodal force in the
+    /// mesh (N).
+    pub(crate) fn check_stress(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
+        let stress = self.stress.residuals(&balanced.loading, 1e-12 * scale / self.law.extent());
         residuals.divergence = worse(residuals.divergence, stress.divergence);
         residuals.edge_tractions = worse(residuals.edge_tractions, stress.edges);
         residuals.inner_tractions = worse(residuals.inner_tractions, stress.inner);
-        let resultant = self.resultant_residual(balanced, floor);
+    }
+
+    /// Residual of the balance of the element as a whole.
+    pub(crate) fn check_resultants(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
+        let resultant = self.resultant_residual(balanced, 1e-12 * scale / self.law.extent());
         residuals.element_resultants = worse(residuals.element_resultants, resultant);
     }
 
     /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
     fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
-        let volume = self.element.volume / self.law.extent();
-        let Loading { traction, volume: load } = &balanced.loading;
-        let (mut force, mut moment) = ([0.0; D], 0.0);
-        let (mut scale, mut reach) = (floor, 0.0_f64);
-        let arm = |i: usize, c: usize| (0..N).map(|j| self.points[i][c] - self.points[j][c]).sum::<f64>() / N as f64;
-        let mut apply = |i: usize, f: [f64; D]| {
+        let forces = self.nodal_forces(balanced);
+        let (mut resultant, mut moment) = ([0.0; D], 0.0);
+        let mut scale = floor;
+        for (force, arm) in forces.iter().zip(&self.arms) {
             for c in 0..D {
-                force[c] += f[c];
-                scale = scale.max(f[c].abs());
-                reach = reach.max(arm(i, c).abs());
+                resultant[c] += force.outer[c] - force.inner[c];
+                scale = scale.max(force.outer[c].abs()).max(force.inner[c].abs());
             }
             if D == 2 {
-                moment += arm(i, 0) * f[D - 1] - arm(i, D - 1) * f[0];
+                let net = |c: usize| force.outer[c] - force.inner[c];
+                moment += arm[0] * net(D - 1) - arm[D - 1] * net(0);
             }
-        };
-        for k in 0..N {
-            for p in 0..D {
-                let mut f = traction[k][p];
-                for c in 0..D {
-                    f[c] = (f[c] + traction[k].iter().map(|t| t[c]).sum::<f64>()) / (D * (D + 1)) as f64;
-                }
-                apply(facet_node::<N>(k, p), f);
-            }
-            let mut f = load[k];
-            for c in 0..D {
-                f[c] = -volume * (f[c] + load.iter().map(|g| g[c]).sum::<f64>()) / ((D + 1) * (D + 2)) as f64;
-            }
-            apply(k, f);
         }
-        let miss = force.iter().fold(moment.abs() / reach, |m, f| m.max(f.abs()));
+        let reach = self.arms.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
+        let miss = resultant.iter().fold(moment.abs() / reach, |m, f| m.max(f.abs()));
         miss / scale.max(f64::MIN_POSITIVE)
     }
+
+    /// Work of the tractions, and of Γ_DA − f_d, on the shape function of each node (N per unit of
+    /// section or thickness).
+    #[inline]
+    fn nodal_forces(&self, balanced: &Balanced<D, N>) -> [NodalForce<D>; N] {
+        let volume = self.element.volume / self.law.extent() / ((D + 1) * (D + 2)) as f64;
+        let Loading { traction, volume: load } = &balanced.loading;
+        let mut forces = [NodalForce { outer: [0.0; D], inner: [0.0; D] }; N];
+        for c in 0..D {
+            let total: f64 = load.iter().map(|g| g[c]).sum();
+            for k in 0..N {
+                forces[k].inner[c] = volume * (load[k][c] + total);
+                let sum: f64 = traction[k].iter().map(|t| t[c]).sum();
+                for p in 0..D {
+                    forces[facet_node::<N>(k, p)].outer[c] += (traction[k][p][c] + sum) / (D * (D + 1)) as f64;
+                }
+            }
+        }
+        forces
+    }
+}
+
+/// What acts on one node of an element.
+#[derive(Clone, Copy, Debug)]
+struct NodalForce<const D: usize> {
+    outer: [f64; D],
+    inner: [f64; D],
 }

@@ -117,8 +117,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     ) {
         let balanced = |level, side| measure.balanced(context.equilibration, level, &self.contact, side);
         let (start, end) = (balanced(from, Side::After), balanced(to, Side::Before));
-        measure.check(&start, from.force_scale, &mut self.residuals);
-        measure.check(&end, to.force_scale, &mut self.residuals);
+        for (balanced, level) in [(&start, from), (&end, to)] {
+            measure.check_resultants(balanced, level.force_scale, &mut self.residuals);
+            measure.check_stress(balanced, level.force_scale, &mut self.residuals);
+        }
         let contact = |k: usize| self.facets.iter().map(|&f| to.contact[f][k]).sum::<f64>();
         let single = to.index == from.index + 1;
         let mid = to.mid.as_ref().filter(|_| single);

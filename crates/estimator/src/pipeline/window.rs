@@ -22,6 +22,10 @@ use rayon::prelude::*;
 
 /// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
 const BLOCK: usize = 256;
+/// Away from contact the pointwise equilibrium of σ_DA is checked at every instant of so many, each
+/// element in its turn: the map that makes it is linear and the same at all instants, while a check
+/// costs more than the measure itself.
+const CHECK: usize = 16;
 /// Memory that a window may take unless told otherwise (bytes).
 const MODEST_MEMORY: usize = 256 << 20;
 /// More levels than this gain nothing.
@@ -230,7 +234,10 @@ impl<const D: usize, const N: usize> Shared<'_, '_, D, N> {
                 sums.mids[k - 1].add(&middle);
             }
             if k >= self.first {
-                measure.check(&now, level.force_scale, residuals);
+                measure.check_resultants(&now, level.force_scale, residuals);
+                if (level.index + id.index()).is_multiple_of(CHECK) {
+                    measure.check_stress(&now, level.force_scale, residuals);
+                }
                 let end = error(&now, &level.knot);
                 sums.levels[k - self.first].add(&end);
                 if let Some(from) = k.checked_sub(1).map(|k| &self.levels[k]) {
