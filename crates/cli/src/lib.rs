@@ -1,1 +1,3 @@
-//! TODO
+//! The `percute` command as a library.
+
+pub mod case;

@@ -1,0 +1,2 @@
+//! The `percute` command.
+fn main() {}
