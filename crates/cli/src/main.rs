@@ -10,7 +10,11 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 fn main() -> ExitCode {
     // The first Ctrl-C asks for a clean stop; a second one does not wait for it.
     #[allow(clippy::exit)]
-    let handler = ctrlc::set_handler(|| if ASKED.swap(true, Relaxed) { std::process::exit(130) });
+    let handler = ctrlc::set_handler(|| {
+        if ASKED.swap(true, Relaxed) {
+            std::process::exit(130)
+        }
+    });
     let (mut out, mut err) = (stdout().lock(), stderr());
     let progress = handler.is_ok() && err.is_terminal();
     let interrupted = || ASKED.load(Relaxed);

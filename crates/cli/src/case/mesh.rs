@@ -71,7 +71,11 @@ fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<AnyMesh, CaseErr
 fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N>, CaseError> {
     let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m")?;
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
-    let cells = cells.list("elements, each the numbers of its nodes")?.iter().map(Value::nodes).collect::<Result<Vec<_>, _>>()?;
+    let cells = cells
+        .list("elements, each the numbers of its nodes")?
+        .iter()
+        .map(Value::nodes)
+        .collect::<Result<Vec<_>, _>>()?;
     let mut facets = FacetGroups::new();
     if let Some(groups) = table.get("groups") {
         for (name, members) in groups.any_table(GROUPS)?.entries() {

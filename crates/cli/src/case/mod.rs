@@ -17,8 +17,8 @@ mod table;
 mod time;
 mod value;
 
-pub use source::{CaseError, Source};
 pub(crate) use source::At;
+pub use source::{CaseError, Source};
 
 use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;

@@ -7,7 +7,8 @@ use percute_core::problem::Place;
 /// The key that a place names; where the file leaves it out, its table; where that is left out
 /// too, what must have made it matter.
 pub(super) fn find(root: &Table<'_>, place: Place) -> At {
-    let path = if place.key.is_empty() { format!("[{}]", place.table) } else { format!("[{}], {}", place.table, place.key) };
+    let path =
+        if place.key.is_empty() { format!("[{}]", place.table) } else { format!("[{}], {}", place.table, place.key) };
     let Ok(tables) = root.tables(place.table) else { return At { path, span: 0..0 } };
     match tables.get(place.index.unwrap_or(0)) {
         Some(table) => match table.get(place.key) {

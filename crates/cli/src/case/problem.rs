@@ -9,7 +9,10 @@ use percute_core::mesh::Mesh;
 use percute_core::problem::{Cause, Initial, InputError, Problem};
 
 /// Reads all that makes the problem on a mesh.
-pub(super) fn read<const D: usize, const N: usize>(root: &Table<'_>, mesh: Mesh<D, N>) -> Result<Problem<D, N>, CaseError> {
+pub(super) fn read<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    mesh: Mesh<D, N>,
+) -> Result<Problem<D, N>, CaseError> {
     let mut builder = Problem::builder(mesh);
     for (group, law) in material::read::<D>(root)? {
         builder = match group {

@@ -26,7 +26,7 @@ pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>)
         let starts = length >= 3 && (name.starts_with(given) || given.starts_with(name));
         let changes = distance(given, name);
         // One letter in three may be wrong: more is another word.
-        (starts || changes <= length.max(name.chars().count()).div_ceil(3)).then_some(changes)
+        (starts || changes <= length.max(name.chars().count()) / 3).then_some(changes)
     };
     known.into_iter().filter_map(|name| Some((near(name)?, name))).min_by_key(|&(changes, _)| changes).map(|(_, n)| n)
 }
@@ -48,11 +48,14 @@ mod tests {
     #[test]
     fn slips_are_found_and_strangers_are_not() {
         let known = ["young", "poisson", "density", "thickness"];
-        for (given, meant) in [("poison", "poisson"), ("yuong", "young"), ("Density", "density"), ("thick", "thickness")] {
+        for (given, meant) in
+            [("poison", "poisson"), ("yuong", "young"), ("Density", "density"), ("thick", "thickness")]
+        {
             assert_eq!(nearest(given, known), Some(meant));
         }
         assert_eq!(nearest("colour", known), None);
         assert_eq!(nearest("E", known), None);
+        assert_eq!(nearest("z", ["x", "y"]), None);
     }
 
     #[test]

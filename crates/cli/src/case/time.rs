@@ -81,9 +81,10 @@ impl Wanted<'_> {
 
     fn agrees(&self, grid: &TimeGrid) -> Result<(), CaseError> {
         match &self.end {
-            Some((end, at)) if (end - grid.end()).abs() > AGREES * grid.end() => {
-                Err(at.error(format!("is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree", grid.end())))
-            }
+            Some((end, at)) if (end - grid.end()).abs() > AGREES * grid.end() => Err(at.error(format!(
+                "is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree",
+                grid.end()
+            ))),
             _ => Ok(()),
         }
     }
@@ -93,7 +94,9 @@ fn below(step: f64, critical: f64, at: &Value<'_>) -> Result<(), CaseError> {
     if step <= critical * (1.0 + SLACK) {
         return Ok(());
     }
-    Err(at.error(format!("is {step} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable")))
+    Err(at.error(format!(
+        "is {step} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
+    )))
 }
 
 fn refused(at: &Value<'_>, error: &TimeError) -> CaseError {

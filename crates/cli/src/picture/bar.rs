@@ -1,7 +1,9 @@
 //! The error of each element of a bar, over its length.
 
 use super::DrawError;
-use super::canvas::{AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, UNITS, colour, font, largest, picture, px, tick};
+use super::canvas::{
+    AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
+};
 use crate::case::CaseOf;
 use crate::report::Report;
 use percute_core::ids::ElementId;
@@ -16,7 +18,7 @@ const ROOM: f64 = 0.04;
 
 /// Draws the error as a step curve, and the planes.
 pub(super) fn draw(case: &CaseOf<1, 2>, report: &Report) -> Result<String, DrawError> {
-    let size = (AXIS_LEFT + PLOT.0 + 2 * MARGIN, HEAD + PLOT.1 + AXIS_BELOW + MARGIN);
+    let size = (AXIS_LEFT + PLOT.0 + 3 * MARGIN, HEAD + PLOT.1 + AXIS_BELOW + MARGIN);
     picture(size, report, |area| draw_curve(area, case, report))
 }
 
@@ -41,6 +43,7 @@ fn draw_curve(
     let room = ROOM * (high - low);
     let most = largest(&report.by_element);
     let mut chart = ChartBuilder::on(area)
+        .margin_left(px(f64::from(MARGIN)))
         .margin_right(px(f64::from(2 * MARGIN)))
         .margin_bottom(px(f64::from(MARGIN)))
         .x_label_area_size(px(f64::from(AXIS_BELOW)))
@@ -50,6 +53,7 @@ fn draw_curve(
     chart
         .configure_mesh()
         .disable_x_mesh()
+        .set_all_tick_mark_size(px(MARK))
         .light_line_style(TRANSPARENT)
         .bold_line_style(FAINT.mix(0.25).stroke_width(UNITS as u32))
         .x_label_formatter(&tick)

@@ -2,7 +2,7 @@
 
 use super::DrawError;
 use crate::report::Report;
-use crate::report::number::{percent, short};
+use crate::report::number::{percent, short, trimmed};
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -17,6 +17,8 @@ pub(super) const AXIS_LEFT: i32 = 74;
 pub(super) const AXIS_BELOW: i32 = 48;
 /// Room at the free sides (pixels).
 pub(super) const MARGIN: i32 = 16;
+/// Length of the marks at the axes, which also keeps the numbers off them (pixels).
+pub(super) const MARK: f64 = 5.0;
 
 pub(super) const INK: RGBColor = RGBColor(40, 40, 48);
 pub(super) const FAINT: RGBColor = RGBColor(110, 110, 120);
@@ -46,13 +48,7 @@ pub(super) fn largest(values: &[f64]) -> f64 {
 /// A coordinate or value at an axis, without trailing zeros.
 pub(super) fn tick(value: &f64) -> String {
     // What is left of zero after adding up steps of an axis.
-    if value.abs() < 1e-12 {
-        return "0".to_string();
-    }
-    let shown = short(*value, 6);
-    let (mantissa, exponent) = shown.split_once('e').map_or((shown.as_str(), None), |(m, e)| (m, Some(e)));
-    let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
-    exponent.map_or_else(|| mantissa.to_string(), |e| format!("{mantissa}e{e}"))
+    if value.abs() < 1e-12 { "0".to_string() } else { trimmed(*value, 6) }
 }
 
 /// Draws a picture of this size in pixels and returns its document.
@@ -79,9 +75,12 @@ fn head(root: &DrawingArea<SVGBackend<'_>, Shift>, report: &Report) -> Result<()
     let (error, relative) = (short(report.error.sup, 4), percent(report.error.relative_sup));
     let title = format!("Constitutive relation error {error} J^½ ({relative})");
     let cut = if report.interrupted { " (interrupted)" } else { "" };
-    let until = short(report.end, 3);
+    let until = trimmed(report.end, 4);
     let name = std::path::Path::new(&report.case).file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
-    let line = format!("{name}: share of each element up to t = {until} s{cut}; the largest misfit at t = {} s", short(report.time_of_sup, 3));
+    let line = format!(
+        "{name}: share of each element up to t = {until} s{cut}; the largest misfit at t = {} s",
+        trimmed(report.time_of_sup, 4)
+    );
     let left = px(f64::from(MARGIN)) as i32;
     root.draw_text(&title, &font(19.0, &INK), (left, px(14.0) as i32)).map_err(DrawError::from_library)?;
     root.draw_text(&line, &font(13.0, &FAINT), (left, px(38.0) as i32)).map_err(DrawError::from_library)
@@ -92,7 +91,7 @@ fn head(root: &DrawingArea<SVGBackend<'_>, Shift>, report: &Report) -> Result<()
 fn document(svg: &str, units: (u32, u32), pixels: (i32, i32)) -> String {
     let drawn = format!("<svg width=\"{}\" height=\"{}\"", units.0, units.1);
     let shown = format!("<svg width=\"{}\" height=\"{}\"", pixels.0, pixels.1);
-    let sharp = "<style>polygon{shape-rendering:crispEdges}</style>";
+    let sharp = "<style>polygon,rect{shape-rendering:crispEdges}</style>";
     let (start, rest) = svg.split_once(">\n").unwrap_or((svg, ""));
     format!("{}>\n{sharp}\n{rest}", start.replacen(&drawn, &shown, 1))
 }
@@ -103,7 +102,8 @@ mod tests {
 
     #[test]
     fn ticks_are_short() {
-        let shown: Vec<_> = [0.0, 1e-17, 0.01, 0.030_000_000_000_000_002, -2.0, 5e-5, 250_000.0].iter().map(tick).collect();
+        let shown: Vec<_> =
+            [0.0, 1e-17, 0.01, 0.030_000_000_000_000_002, -2.0, 5e-5, 250_000.0].iter().map(tick).collect();
         assert_eq!(shown, ["0", "0", "0.01", "0.03", "-2", "5e-5", "250000"]);
     }
 

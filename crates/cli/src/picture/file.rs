@@ -16,7 +16,9 @@ pub fn check_path(file: &Path) -> Result<(), Failure> {
     let extension = file.extension().map(|e| e.to_string_lossy().to_lowercase());
     if extension.as_deref() != Some("svg") {
         let file = file.display();
-        return Err(Failure::Argument(format!("--picture {file}: only SVG can be written; give a name that ends in .svg")));
+        return Err(Failure::Argument(format!(
+            "--picture {file}: only SVG can be written; give a name that ends in .svg"
+        )));
     }
     let fail = |cause: std::io::Error| Failure::Picture { file: file.to_path_buf(), cause: cause.to_string() };
     let new = !file.exists();

@@ -1,7 +1,7 @@
 //! The error of each triangle, on the mesh.
 
 use super::DrawError;
-use super::canvas::{AXIS_BELOW, AXIS_LEFT, HEAD, INK, MARGIN, UNITS, colour, font, largest, picture, px, tick};
+use super::canvas::{AXIS_BELOW, AXIS_LEFT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick};
 use super::frame::Frame;
 use crate::case::CaseOf;
 use crate::report::Report;
@@ -16,11 +16,11 @@ use plotters::prelude::*;
 type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Room for the scale of colours: a gap, the colours, its numbers (pixels).
-const SCALE: [i32; 3] = [26, 18, 92];
+const SCALE: [i32; 3] = [26, 18, 78];
 /// Steps of the scale of colours.
 const SHADES: usize = 128;
 /// Elements are outlined from this size on (pixels).
-const OUTLINED: f64 = 9.0;
+const OUTLINED: f64 = 14.0;
 /// Distance of the strokes that hatch the far side of a plane, and their length (pixels).
 const HATCH: f64 = 9.0;
 
@@ -28,11 +28,11 @@ const HATCH: f64 = 9.0;
 pub(super) fn draw(case: &CaseOf<2, 3>, report: &Report) -> Result<String, DrawError> {
     let corner = |corner: &[f64]| [corner[0], corner[1]];
     let frame = Frame::around(corner(&report.problem.lower_corner), corner(&report.problem.upper_corner));
-    let width = AXIS_LEFT + frame.pixels[0] + SCALE.iter().sum::<i32>() + MARGIN;
+    let width = MARGIN + AXIS_LEFT + frame.pixels[0] + SCALE.iter().sum::<i32>() + MARGIN;
     let height = HEAD + frame.pixels[1] + AXIS_BELOW + MARGIN;
     let most = largest(&report.by_element);
     picture((width, height), report, |area| {
-        let (map, scale) = area.split_horizontally(px(f64::from(AXIS_LEFT + frame.pixels[0])));
+        let (map, scale) = area.split_horizontally(px(f64::from(MARGIN + AXIS_LEFT + frame.pixels[0])));
         draw_map(&map, &frame, case, &report.by_element, most)?;
         draw_scale(&scale, most)
     })
@@ -46,6 +46,7 @@ fn draw_map(
     most: f64,
 ) -> Result<(), DrawError> {
     let mut chart = ChartBuilder::on(area)
+        .margin_left(px(f64::from(MARGIN)))
         .margin_bottom(px(f64::from(MARGIN)))
         .x_label_area_size(px(f64::from(AXIS_BELOW)))
         .y_label_area_size(px(f64::from(AXIS_LEFT)))
@@ -54,6 +55,7 @@ fn draw_map(
     chart
         .configure_mesh()
         .disable_mesh()
+        .set_all_tick_mark_size(px(MARK))
         .x_labels((frame.pixels[0] / 90).max(3) as usize)
         .y_labels((frame.pixels[1] / 60).max(3) as usize)
         .x_label_formatter(&tick)
@@ -84,7 +86,7 @@ fn draw_elements(
     if frame.scale() * (area / mesh.element_count() as f64).sqrt() < OUTLINED {
         return Ok(());
     }
-    let outline = WHITE.mix(0.35).stroke_width(UNITS as u32 / 2);
+    let outline = WHITE.mix(0.3).stroke_width(UNITS as u32 / 2);
     let outlined = |e: usize| {
         let [a, b, c] = corners(e);
         PathElement::new(vec![a, b, c, a], outline)
@@ -131,6 +133,7 @@ fn draw_scale(area: &DrawingArea<SVGBackend<'_>, Shift>, most: f64) -> Result<()
     chart
         .configure_mesh()
         .disable_mesh()
+        .set_all_tick_mark_size(px(MARK))
         .disable_x_axis()
         .y_labels(8)
         .y_label_formatter(&tick)

@@ -65,11 +65,7 @@ impl Report {
 }
 
 fn versions() -> Versions {
-    Versions {
-        percute: env!("CARGO_PKG_VERSION"),
-        architecture: std::env::consts::ARCH,
-        system: std::env::consts::OS,
-    }
+    Versions { percute: env!("CARGO_PKG_VERSION"), architecture: std::env::consts::ARCH, system: std::env::consts::OS }
 }
 
 fn options_used(options: Options) -> OptionsUsed {
@@ -84,7 +80,8 @@ fn options_used(options: Options) -> OptionsUsed {
 
 fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> ProblemSummary {
     let (problem, mesh) = (&case.problem, case.problem.mesh());
-    let extreme = |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
+    let extreme =
+        |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
     let obstacle = |plane: &percute_core::obstacle::Plane<D>| ObstacleSummary {
         normal: plane.normal().to_vec(),
         friction: plane.friction(),
@@ -156,7 +153,8 @@ fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate)
 fn largest_residual(estimate: &Estimate) -> LargestResidual {
     let rank = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     let entries = estimate.residuals.entries();
-    let (name, value) = entries.iter().fold(entries[0], |worst, &next| if rank(next.1) > rank(worst.1) { next } else { worst });
+    let (name, value) =
+        entries.iter().fold(entries[0], |worst, &next| if rank(next.1) > rank(worst.1) { next } else { worst });
     LargestResidual { name, value, admissible: value <= ADMISSIBLE }
 }
 

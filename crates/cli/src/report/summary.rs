@@ -1,12 +1,13 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
-use super::number::{percent, short};
+use super::number::{percent, short, trimmed};
 use super::{ADMISSIBLE, Report};
 use std::fmt::Write;
 
 /// What the number means, and what it does not.
-const MEANING: &str = "The error is the energy misfit of admissible fields; it holds the errors of space,
-time, lumped mass and contact together. It is a measure, not a strict bound.
+const MEANING: &str = "\
+The error is the energy misfit between admissible fields. It holds the errors of
+space, time, lumped mass and contact together: a measure, not a strict bound.
 ";
 
 /// The summary of a run.
@@ -40,28 +41,36 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
 fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
     let problem = &report.problem;
     let kind = if problem.dimension == 1 { "bar elements" } else { "triangles" };
-    let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| short(u - l, 4));
+    let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| trimmed(u - l, 4));
     let size = size.collect::<Vec<_>>().join(" x ");
     let (step, critical) = (report.time_step, report.critical_time_step);
-    let ratio = short(step / critical, 4);
+    let ratio = trimmed(step / critical, 4);
     let options = &report.options;
     let steps = match report.interrupted {
-        true => format!("INTERRUPTED at step {} of {}, t = {} s;", report.steps, report.steps_planned, short(report.end, 4)),
-        false => format!("{} s in {} steps;", short(report.end, 4), report.steps),
+        true => format!(
+            "INTERRUPTED at step {} of {}, t = {} s;",
+            report.steps,
+            report.steps_planned,
+            trimmed(report.end, 5)
+        ),
+        false => format!("{} s in {} steps;", trimmed(report.end, 5), report.steps),
     };
     vec![
         ("case", format!("{} (percute {}, {} s)", report.case, report.versions.percute, short(report.seconds, 3))),
         ("body", format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)),
         ("time", steps),
         ("", format!("step {step:.4e} s, critical {critical:.4e} s, ratio {ratio}")),
-        ("options", format!("{} forces, {} acceleration, every {}", options.contact_force, options.acceleration, options.every)),
+        (
+            "options",
+            format!("{} forces, {} acceleration, every {}", options.contact_force, options.acceleration, options.every),
+        ),
     ]
 }
 
 fn error(report: &Report) -> Vec<(&'static str, String)> {
     let measure = |name: &str, value: f64, relative: f64, reference: f64| {
         let (value, reference) = (short(value, 4), short(reference, 4));
-        format!("{name:<5}{value:>10} J^½  {:>8} of {reference} J^½", percent(relative))
+        format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
     };
     let (e, parts) = (&report.error, &report.parts);
     let total = parts.kinetic + parts.elastic + parts.contact;
@@ -70,7 +79,7 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
     let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
     let sup = measure("sup", e.sup, e.relative_sup, e.reference_sup);
     vec![
-        ("error", format!("{sup}, at t = {} s", short(report.time_of_sup, 4))),
+        ("error", format!("{sup}, at t = {} s", trimmed(report.time_of_sup, 5))),
         ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
         ("", format!("at the sup: {shares}")),
     ]
@@ -89,9 +98,13 @@ fn balance(report: &Report) -> Vec<(&'static str, String)> {
     let b = &report.balance;
     let joule = |x: f64| short(x, 4);
     vec![
-        ("energy", format!("initial {}, now kinetic {}, strain {} J", joule(b.initial), joule(b.kinetic), joule(b.strain))),
+        (
+            "energy",
+            format!("initial {}, now kinetic {}, strain {} J", joule(b.initial), joule(b.kinetic), joule(b.strain)),
+        ),
         ("work", {
-            let (loads, supports, contact) = (joule(b.work_of_loads), joule(b.work_of_supports), joule(b.work_of_contact));
+            let (loads, supports, contact) =
+                (joule(b.work_of_loads), joule(b.work_of_supports), joule(b.work_of_contact));
             format!("loads {loads}, supports {supports}, contact {contact}, friction {} J", joule(b.friction))
         }),
         ("drift", format!("energy {}, impulse {}", percent(b.energy_drift), percent(b.impulse_drift))),
@@ -101,7 +114,7 @@ fn balance(report: &Report) -> Vec<(&'static str, String)> {
 fn residual(report: &Report) -> String {
     let worst = &report.largest_residual;
     let verdict = if worst.admissible { "admissible" } else { "NOT ADMISSIBLE" };
-    format!("largest {:.1e} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", worst.value, worst.name)
+    format!("largest {} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", short(worst.value, 2), worst.name)
 }
 
 fn kept_impulse(report: &Report) -> String {
@@ -114,7 +127,8 @@ fn kept_impulse(report: &Report) -> String {
 /// One line each if there are two at most; else the first and how many more.
 fn warnings(report: &Report) -> Vec<(&'static str, String)> {
     let all = &report.warnings;
-    let mut lines: Vec<_> = all.iter().take(if all.len() > 2 { 1 } else { 2 }).map(|w| ("WARNING", w.brief.clone())).collect();
+    let mut lines: Vec<_> =
+        all.iter().take(if all.len() > 2 { 1 } else { 2 }).map(|w| ("WARNING", w.brief.clone())).collect();
     if all.len() > 2 {
         let names = all.iter().skip(1).map(|w| w.name).collect::<Vec<_>>().join(", ");
         lines.push(("WARNINGS", format!("and {}: {names}", all.len() - 1)));

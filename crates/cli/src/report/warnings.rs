@@ -39,10 +39,18 @@ pub(super) struct Facts<'a> {
 
 /// All warnings of a run.
 pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
-    [not_admissible(facts), energy_drift(facts), kept_impulse(facts), no_contact(facts), units(facts), resampled(facts), mended(facts)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        not_admissible(facts),
+        energy_drift(facts),
+        kept_impulse(facts),
+        no_contact(facts),
+        units(facts),
+        resampled(facts),
+        mended(facts),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Option<Warning> {
@@ -68,7 +76,9 @@ fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let drift = percent(drift);
-    let message = format!("the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it");
+    let message = format!(
+        "the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it"
+    );
     warning("energy_drift", format!("energy balance off by {drift}"), message)
 }
 
@@ -109,7 +119,9 @@ fn resampled(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let error = percent(error);
-    let message = format!("tables in time are joined by straight lines between the steps: they differ from what was given by up to {error}");
+    let message = format!(
+        "tables in time are joined by straight lines between the steps: they differ from what was given by up to {error}"
+    );
     warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
 }
 
