@@ -1,5 +1,22 @@
 //! Case files: TOML in, a checked problem with its instants and options out.
 //!
+//! Units are SI. A bar takes one number where a plane body takes a vector `[x, y]`. Tables:
+//!
+//! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
+//!   `top`), `bar = { length, elements }` (ends `start`, `end`), or arrays: `points` and `cells`, with
+//!   `groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
+//!   `elements = { name = [element, …] }`;
+//! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
+//!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
+//! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
+//! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
+//! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
+//!   one component, else a list in the order of `components`;
+//! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
+//!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
+//! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
+//! - `[estimate]`: `contact_force`, `acceleration`, `every`.
+//!
 //! The reader walks the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
@@ -40,7 +57,7 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub problem: Problem<D, N>,
     /// The instants.
     pub times: TimeGrid,
-    /// Δt_c (s), eq. [34].
+    /// Δt_c (s), eq. \[34\].
     pub critical_step: f64,
     /// Options of the estimate.
     pub options: Options,

@@ -1,7 +1,7 @@
 //! The statement of the problem, handed to the core, which checks it as a whole.
 
 use super::source::CaseError;
-use super::spelling::nearest;
+use super::spelling::hint;
 use super::table::Table;
 use super::value::Value;
 use super::{load, material, obstacle, place, support};
@@ -56,9 +56,7 @@ fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, Ca
 fn located(root: &Table<'_>, error: &InputError) -> CaseError {
     let mut message = error.cause.to_string();
     if let Cause::UnknownGroup { name, known } = &error.cause {
-        if let Some(near) = nearest(name, known.iter().map(String::as_str)) {
-            message = format!("{message}; did you mean `{near}`?");
-        }
+        message += &hint(name, known.iter().map(String::as_str));
     }
     root.source.error(&place::find(root, error.place), message)
 }

@@ -3,6 +3,7 @@
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
+use crate::report::number::trimmed;
 use percute_core::time::{TimeError, TimeGrid};
 
 /// A step may exceed the critical one by this much, so that `courant = 1` and a step copied from a
@@ -81,10 +82,12 @@ impl Wanted<'_> {
 
     fn agrees(&self, grid: &TimeGrid) -> Result<(), CaseError> {
         match &self.end {
-            Some((end, at)) if (end - grid.end()).abs() > AGREES * grid.end() => Err(at.error(format!(
-                "is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree",
-                grid.end()
-            ))),
+            Some((end, at)) if (end - grid.end()).abs() > AGREES * grid.end() => {
+                let (given, sum) = (at.shown(), trimmed(grid.end(), 10));
+                Err(at.error(format!(
+                    "is {given} s, but `steps` add up to {sum} s; leave `end` out or make the two agree"
+                )))
+            }
             _ => Ok(()),
         }
     }
@@ -94,8 +97,9 @@ fn below(step: f64, critical: f64, at: &Value<'_>) -> Result<(), CaseError> {
     if step <= critical * (1.0 + SLACK) {
         return Ok(());
     }
+    let given = at.shown();
     Err(at.error(format!(
-        "is {step} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
+        "is {given} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
     )))
 }
 

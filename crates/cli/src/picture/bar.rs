@@ -2,7 +2,7 @@
 
 use super::DrawError;
 use super::canvas::{
-    AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
+    AXIS_BELOW, AXIS_LEFT, Chart, FAINT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
 };
 use crate::case::CaseOf;
 use crate::report::Report;
@@ -41,15 +41,32 @@ fn draw_curve(
 ) -> Result<(), DrawError> {
     let (low, high) = (report.problem.lower_corner[0], report.problem.upper_corner[0]);
     let room = ROOM * (high - low);
-    let most = largest(&report.by_element);
+    let shown = low - room..high + room;
+    let top = largest(&report.by_element) * (1.0 + 2.0 * ROOM);
     let mut chart = ChartBuilder::on(area)
         .margin_left(px(f64::from(MARGIN)))
         .margin_right(px(f64::from(2 * MARGIN)))
         .margin_bottom(px(f64::from(MARGIN)))
         .x_label_area_size(px(f64::from(AXIS_BELOW)))
         .y_label_area_size(px(f64::from(AXIS_LEFT)))
-        .build_cartesian_2d(low - room..high + room, 0.0..most * (1.0 + 2.0 * ROOM))
+        .build_cartesian_2d(shown.clone(), 0.0..top)
         .map_err(DrawError::from_library)?;
+    draw_axes(&mut chart)?;
+    let pieces = pieces(case, &report.by_element);
+    let line = colour(0.35, 1.0);
+    let bars = pieces.iter().map(|&(a, b, v)| Rectangle::new([(a, 0.0), (b, v)], line.mix(0.25).filled()));
+    chart.draw_series(bars).map_err(DrawError::from_library)?;
+    let steps: Vec<(f64, f64)> = pieces.iter().flat_map(|&(a, b, v)| [(a, v), (b, v)]).collect();
+    let curve = LineSeries::new(steps, line.stroke_width(2 * UNITS as u32));
+    chart.draw_series(curve).map_err(DrawError::from_library)?;
+    let planes = case.problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.normal()[0]);
+    let planes = planes.filter(|x| shown.contains(x));
+    let lines = planes.map(|x| PathElement::new(vec![(x, 0.0), (x, top)], INK.stroke_width(2 * UNITS as u32)));
+    chart.draw_series(lines).map_err(DrawError::from_library)?;
+    Ok(())
+}
+
+fn draw_axes(chart: &mut Chart<'_, '_>) -> Result<(), DrawError> {
     chart
         .configure_mesh()
         .disable_x_mesh()
@@ -64,18 +81,5 @@ fn draw_curve(
         .x_desc("x (m)")
         .y_desc("e_E (J^½)")
         .draw()
-        .map_err(DrawError::from_library)?;
-    let pieces = pieces(case, &report.by_element);
-    let line = colour(0.35, 1.0);
-    let bars = pieces.iter().map(|&(a, b, v)| Rectangle::new([(a, 0.0), (b, v)], line.mix(0.25).filled()));
-    chart.draw_series(bars).map_err(DrawError::from_library)?;
-    let steps: Vec<(f64, f64)> = pieces.iter().flat_map(|&(a, b, v)| [(a, v), (b, v)]).collect();
-    let curve = LineSeries::new(steps, line.stroke_width(2 * UNITS as u32));
-    chart.draw_series(curve).map_err(DrawError::from_library)?;
-    let planes = case.problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.normal()[0]);
-    let shown = planes.filter(|x| (low - room..=high + room).contains(x));
-    let top = most * (1.0 + 2.0 * ROOM);
-    let lines = shown.map(|x| PathElement::new(vec![(x, 0.0), (x, top)], INK.stroke_width(2 * UNITS as u32)));
-    chart.draw_series(lines).map_err(DrawError::from_library)?;
-    Ok(())
+        .map_err(DrawError::from_library)
 }

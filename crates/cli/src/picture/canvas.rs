@@ -4,7 +4,9 @@ use super::DrawError;
 use crate::report::Report;
 use crate::report::number::{percent, short, trimmed};
 use plotters::backend::SVGBackend;
+use plotters::chart::ChartContext;
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 
@@ -22,6 +24,9 @@ pub(super) const MARK: f64 = 5.0;
 
 pub(super) const INK: RGBColor = RGBColor(40, 40, 48);
 pub(super) const FAINT: RGBColor = RGBColor(110, 110, 120);
+
+/// Axes with a plot between them.
+pub(super) type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Pixels in units of the drawing.
 pub(super) fn px(pixels: f64) -> u32 {

@@ -24,7 +24,7 @@ impl DrawError {
     }
 }
 
-/// The error e_E of each element (eq. [20]) as an SVG document: on the mesh of a plane body, along
+/// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along
 /// a bar.
 ///
 /// # Errors

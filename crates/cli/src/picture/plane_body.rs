@@ -1,19 +1,18 @@
 //! The error of each triangle, on the mesh.
 
 use super::DrawError;
-use super::canvas::{AXIS_BELOW, AXIS_LEFT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick};
+use super::canvas::{
+    AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
+};
 use super::frame::Frame;
 use crate::case::CaseOf;
 use crate::report::Report;
 use percute_core::ids::ElementId;
 use percute_core::obstacle::Plane;
 use plotters::backend::SVGBackend;
-use plotters::chart::{ChartContext, LabelAreaPosition};
+use plotters::chart::LabelAreaPosition;
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-
-type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Room for the scale of colours: a gap, the colours, its numbers (pixels).
 const SCALE: [i32; 3] = [26, 18, 78];

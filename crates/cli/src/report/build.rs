@@ -27,7 +27,7 @@ impl Report {
     ) -> Self {
         let largest_residual = largest_residual(&estimate);
         let problem = problem_summary(case);
-        let facts = Facts {
+        let warnings = warnings(&Facts {
             problem: &problem,
             softest: softest(&case.problem),
             size: case.problem.mesh().size(),
@@ -35,13 +35,13 @@ impl Report {
             kept_impulse: estimate.kept_impulse,
             residual: &largest_residual,
             interrupted: simulation.interrupted,
-        };
+        });
         Self {
             format: FORMAT,
             versions: versions(),
             case: case.source.name().to_string(),
-            warnings: warnings(&facts),
             problem,
+            warnings,
             options: options_used(options),
             time_step: case.times.longest_step(),
             critical_time_step: case.critical_step,

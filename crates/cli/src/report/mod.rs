@@ -97,7 +97,7 @@ pub struct OptionsUsed {
     pub window: Option<usize>,
 }
 
-/// The error measures, eq. [15], [16], [22], [23].
+/// The error measures, eq. \[15\], \[16\], \[22\], \[23\].
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct Measures {
@@ -109,7 +109,7 @@ pub struct Measures {
     pub reference_mean: f64,
 }
 
-/// The parts of η at one instant, eq. [14].
+/// The parts of η at one instant, eq. \[14\].
 #[derive(Clone, Copy, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct Parts {

@@ -1,6 +1,7 @@
 //! Every mistake in a case file is named with its line, and nothing is computed.
 
 use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr};
+use percute::case::{Case, Source};
 
 /// What to change in a good case, the line that the error must name, and words that it must say.
 struct Mistake(&'static str, &'static str, usize, &'static [&'static str]);
@@ -109,10 +110,10 @@ fn impossible_values() {
             Mistake("normal = [0.0, 1.0]", "normal = [0, 0]", 15, &["[0.0, 0.0]", "not zero"]),
             Mistake("end = 5e-6", "end = 0.0", 29, &["[time], end", "is 0.0", "a positive number in s"]),
             Mistake("courant = 0.9", "courant = 1.5", 30, &["is 1.5", "above 0 and at most 1"]),
-            Mistake("courant = 0.9", "step = 1e-3", 30, &["is 0.001 s", "critical step of this mesh, 1."]),
+            Mistake("courant = 0.9", "step = 1e-3", 30, &["is 1e-3 s", "critical step of this mesh, 1."]),
             Mistake("courant = 0.9", "step = 1e-30", 30, &["steps", "at most 1e9"]),
-            Mistake("courant = 0.9", "steps = [1e-6, 1e-3]", 30, &["steps[1]", "is 0.001 s", "critical step"]),
-            Mistake("courant = 0.9", "steps = [1e-6, 1e-6]", 29, &["[time], end", "is 0.000005 s", "0.000002 s"]),
+            Mistake("courant = 0.9", "steps = [1e-6, 1e-3]", 30, &["steps[1]", "is 1e-3 s", "critical step"]),
+            Mistake("courant = 0.9", "steps = [1e-6, 1e-6]", 29, &["[time], end", "is 5e-6 s", "2e-6 s"]),
             Mistake("courant = 0.9", "steps = []", 30, &["`steps` is empty"]),
             Mistake("\"sharp\"", "\"sharpe\"", 33, &["\"sharp\", \"paper\"", "did you mean `sharp`?"]),
             Mistake(
@@ -126,11 +127,10 @@ fn impossible_values() {
 }
 
 #[test]
-fn supports_loads_and_planes_that_contradict() {
+fn supports_and_loads_that_contradict() {
     check(
         BLOCK,
         &[
-            Mistake("group = \"bottom\"", "group = \"botom\"", 17, &["no group \"botom\"", "did you mean `bottom`?"]),
             Mistake("group = \"top\"", "group = \"roof\"", 20, &["no group \"roof\"", "\"left\""]),
             Mistake("group = \"left\"", "group = \"lfet\"", 25, &["[[traction]] 1, group", "did you mean `left`?"]),
             Mistake("[\"x\"]", "[\"z\"]", 21, &["components[0]", "is \"z\"", "`x`, `y`"]),
@@ -153,6 +153,23 @@ fn supports_loads_and_planes_that_contradict() {
                 &["profile", "`gradient` is missing"],
             ),
             Mistake("group = \"left\"", "group = \"top\"", 25, &["both loaded and supported"]),
+            Mistake("[initial]\nvelocity = [400.0, -400.0]\n", "", 20, &["[initial], velocity", "starts at 0 m/s"]),
+            Mistake(
+                "[time]",
+                "[[body_force]]\nvalue = [0, -9.81, 0]\n[time]",
+                29,
+                &["[[body_force]] 1, value", "N/m³"],
+            ),
+        ],
+    );
+}
+
+#[test]
+fn planes_that_contradict() {
+    check(
+        BLOCK,
+        &[
+            Mistake("group = \"bottom\"", "group = \"botom\"", 17, &["no group \"botom\"", "did you mean `bottom`?"]),
             Mistake("group = \"bottom\"", "group = \"left\"", 17, &["supported or loaded", "take it out of the group"]),
             Mistake(
                 "normal = [0.0, 1.0]",
@@ -163,13 +180,6 @@ fn supports_loads_and_planes_that_contradict() {
             Mistake("point = [0.0, -0.0005]", "point = [0.0, 0.001]", 14, &["behind the plane", "1.000000e-3 m"]),
             Mistake("point = [0.0, -0.0005]", "point = [0.0, 0.0]", 14, &["starts on the plane", "leave a gap"]),
             Mistake("point = [0.0, -0.0005]", "point = [0.0, -1e-6]", 14, &["too near", "start at least"]),
-            Mistake("[initial]\nvelocity = [400.0, -400.0]\n", "", 20, &["[initial], velocity", "starts at 0 m/s"]),
-            Mistake(
-                "[time]",
-                "[[body_force]]\nvalue = [0, -9.81, 0]\n[time]",
-                29,
-                &["[[body_force]] 1, value", "N/m³"],
-            ),
         ],
     );
 }
@@ -237,4 +247,58 @@ fn files_that_are_no_case() {
     std::fs::write(bench.path("latin.toml"), b"[mesh]\n# \xe9\n").unwrap();
     let said = stderr(&bench.percute(&["run", "latin.toml"]));
     assert!(said.starts_with("error: latin.toml:2: ") && said.contains("UTF-8"), "{said}");
+}
+
+/// Replaces every value of a case by values of all kinds and leaves every line out in turn: each
+/// text is read or refused with a line that exists.
+#[test]
+fn whatever_is_written_there_is_no_panic() {
+    let odd = [
+        "-1",
+        "0",
+        "1e300",
+        "1e-300",
+        "nan",
+        "true",
+        "\"x\"",
+        "[]",
+        "[[]]",
+        "[[1, 2], 3]",
+        "{}",
+        "{ x = 1 }",
+        "1979-05-27",
+    ];
+    let (mut read, mut refused) = (0, 0);
+    let mut try_text = |text: String| match Case::parse(Source::new("case.toml", text.clone())) {
+        Ok(_) => read += 1,
+        Err(error) => {
+            refused += 1;
+            assert!((1..=text.lines().count().max(1)).contains(&error.line), "{error}\n{text}");
+            assert!(error.message.len() > 10, "{error}");
+        }
+    };
+    for case in [BLOCK, BAR, ARRAYS] {
+        let lines: Vec<&str> = case.lines().collect();
+        let with = |at: usize, new: Option<String>| {
+            let kept = lines
+                .iter()
+                .enumerate()
+                .filter_map(|(i, line)| if i == at { new.clone() } else { Some((*line).to_string()) });
+            kept.collect::<Vec<_>>().join("\n")
+        };
+        for (at, line) in lines.iter().enumerate() {
+            try_text(with(at, None));
+            for (equals, _) in line.match_indices(" = ") {
+                // Inside a table in braces a value ends at the next comma or brace; lists are cut short.
+                let (before, after) = line.split_at(equals + 3);
+                let inner = line.find('{').is_some_and(|brace| brace < equals);
+                let end =
+                    if inner { after.find(", ").or(after.find(" }")).unwrap_or(after.len()) } else { after.len() };
+                for value in odd {
+                    try_text(with(at, Some(format!("{before}{value}{}", &after[end..]))));
+                }
+            }
+        }
+    }
+    assert!(read > 20 && refused > 300, "{read} read, {refused} refused");
 }

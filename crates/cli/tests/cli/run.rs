@@ -15,6 +15,12 @@ fn at<'v>(document: &'v Value, path: &str) -> &'v Value {
     path.split('.').fold(document, |value, key| value.get(key).unwrap_or_else(|| panic!("no `{key}` of `{path}`")))
 }
 
+/// Names of the warnings of a document.
+fn warnings(document: &Value) -> Vec<String> {
+    let all = at(document, "warnings").as_array().unwrap();
+    all.iter().map(|warning| warning["name"].as_str().unwrap().to_string()).collect()
+}
+
 /// All keys of a document, at any depth.
 fn keys(value: &Value, found: &mut Vec<String>) {
     match value {
@@ -77,7 +83,7 @@ fn the_json_document_agrees_with_the_case() {
     assert_eq!(at(&document, "problem.mass").as_f64().map(|m| (m * 1e6).round()), Some(5.4e6));
     let document = json(ARRAYS, &[]);
     assert_eq!(at(&document, "problem.mended_elements"), 1);
-    assert_eq!(at(&document, "warnings")[0]["name"], "mended_elements");
+    assert!(warnings(&document).contains(&"mended_elements".to_string()));
     assert_eq!(at(&document, "steps"), 3);
 }
 
@@ -132,7 +138,11 @@ fn warnings_go_to_standard_error_and_stay_in_the_summary() {
 fn nothing_but_the_result_is_printed_off_a_terminal() {
     for arguments in [["run", "case.toml", "--json"], ["run", "case.toml", "--quiet"]] {
         let output = Bench::new(BAR).percute(&arguments);
-        assert_eq!(stderr(&output), "", "no progress where there is no terminal");
+        let said = stderr(&output);
+        assert!(
+            said.lines().all(|line| line.starts_with("warning: ")),
+            "no progress where there is no terminal: {said}"
+        );
         assert!(stdout(&output).ends_with('\n'));
     }
 }
@@ -143,8 +153,7 @@ fn tables_that_bend_between_steps_are_a_warning() {
         BAR.to_string() + "[[traction]]\ngroup = \"end\"\ntime = [0.0, 1.25e-6, 2.5e-6]\nvalue = [0.0, 1e6, 0.0]\n";
     let document = json(&bent, &[]);
     assert!(at(&document, "problem.resampling_error").as_f64().unwrap() > 0.1);
-    let names: Vec<_> = at(&document, "warnings").as_array().unwrap().iter().map(|w| w["name"].clone()).collect();
-    assert!(names.contains(&"resampled".into()), "{names:?}");
+    assert!(warnings(&document).contains(&"resampled".to_string()), "{:?}", warnings(&document));
 }
 
 #[test]
@@ -175,9 +184,13 @@ fn wrong_arguments_are_bad_input() {
 
 #[test]
 fn the_examples_run() {
-    for case in [include_str!("../../../../examples/block.toml"), include_str!("../../../../examples/bar.toml")] {
+    for case in [
+        include_str!("../../../../examples/block.toml"),
+        include_str!("../../../../examples/bar.toml"),
+        include_str!("../../../../examples/stack.toml"),
+    ] {
         let document = json(case, &["--picture", "map.svg"]);
-        assert!(at(&document, "balance.work_of_contact").as_f64().unwrap() < 0.0, "no contact");
+        assert_ne!(at(&document, "balance.work_of_contact"), 0.0, "no contact");
         assert!(at(&document, "balance.energy_drift").as_f64().unwrap() < 0.1);
     }
 }
