@@ -57,3 +57,25 @@ impl Failure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::dynamics::SimulationError;
+
+    #[test]
+    fn a_run_that_fails_is_not_bad_input() {
+        let unstable = SimulationError::Unstable {
+            step: 3,
+            time: 1e-6,
+            node: 7,
+            speed: 1e9,
+            longest_step: 2e-7,
+            critical_step: 1e-7,
+        };
+        let failure = Failure::Run(RunError::Simulation(unstable));
+        assert_eq!(failure.exit_code(), FAILED);
+        assert!(failure.to_string().contains("unstable at step 3"), "{failure}");
+        assert_eq!(Failure::Argument("--threads".into()).exit_code(), BAD_INPUT);
+    }
+}
