@@ -25,21 +25,19 @@ impl Report {
         estimate: Estimate,
         seconds: f64,
     ) -> Self {
-        let largest_residual = largest_residual(&estimate);
-        let problem = problem_summary(case);
+        let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(case));
         let warnings = warnings(&Facts {
             problem: &problem,
             softest: softest(&case.problem),
             size: case.problem.mesh().size(),
-            balance: &simulation.balance,
+            simulation,
             kept_impulse: estimate.kept_impulse,
             residual: &largest_residual,
-            interrupted: simulation.interrupted,
         });
         Self {
             format: FORMAT,
-            versions: versions(),
-            case: case.source.name().to_string(),
+            versions: Versions::of_this_program(),
+            case: case.source.name().into(),
             problem,
             warnings,
             options: options_used(options),
@@ -62,10 +60,6 @@ impl Report {
             seconds,
         }
     }
-}
-
-fn versions() -> Versions {
-    Versions { percute: env!("CARGO_PKG_VERSION"), architecture: std::env::consts::ARCH, system: std::env::consts::OS }
 }
 
 fn options_used(options: Options) -> OptionsUsed {

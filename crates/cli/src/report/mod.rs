@@ -163,6 +163,13 @@ pub struct OverTime {
     pub reference: Vec<f64>,
 }
 
+impl Versions {
+    fn of_this_program() -> Self {
+        let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
+        Self { percute: env!("CARGO_PKG_VERSION"), architecture, system }
+    }
+}
+
 impl Report {
     /// The report as a JSON document. Numbers that are not finite become `null`.
     ///

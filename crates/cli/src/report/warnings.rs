@@ -2,7 +2,7 @@
 
 use super::number::{percent, short};
 use super::{LargestResidual, ProblemSummary};
-use percute_core::dynamics::Balance;
+use percute_core::dynamics::Simulation;
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
@@ -31,10 +31,9 @@ pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
     pub(super) softest: f64,
     pub(super) size: f64,
-    pub(super) balance: &'a Balance,
+    pub(super) simulation: &'a Simulation,
     pub(super) kept_impulse: Option<f64>,
     pub(super) residual: &'a LargestResidual,
-    pub(super) interrupted: bool,
 }
 
 /// All warnings of a run.
@@ -70,7 +69,7 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
-    let drift = facts.balance.energy_drift;
+    let drift = facts.simulation.balance.energy_drift;
     // A drift that is no number must not pass.
     if drift <= DRIFT {
         return None;
@@ -96,7 +95,7 @@ fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
     if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() {
         return None;
     }
-    let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
+    let when = if facts.simulation.interrupted { "before it was interrupted" } else { "before `end`" };
     let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
     warning("no_contact", format!("no contact {when}"), message)
 }
