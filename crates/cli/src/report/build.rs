@@ -26,14 +26,9 @@ impl Report {
         seconds: f64,
     ) -> Self {
         let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(case));
-        let warnings = warnings(&Facts {
-            problem: &problem,
-            softest: softest(&case.problem),
-            size: case.problem.mesh().size(),
-            simulation,
-            kept_impulse: estimate.kept_impulse,
-            residual: &largest_residual,
-        });
+        let (softest, size) = (softest(&case.problem), case.problem.mesh().size());
+        let (kept_impulse, residual) = (estimate.kept_impulse, &largest_residual);
+        let warnings = warnings(&Facts { problem: &problem, softest, size, simulation, kept_impulse, residual });
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),
@@ -44,8 +39,8 @@ impl Report {
             time_step: case.times.longest_step(),
             critical_time_step: case.critical_step,
             steps: estimate.steps,
-            steps_planned: case.times.step_count(),
             end: estimate.end,
+            steps_planned: case.times.step_count(),
             interrupted: simulation.interrupted,
             error: measures(&estimate.error),
             parts: parts(&estimate.parts),
@@ -54,7 +49,7 @@ impl Report {
             residuals: estimate.residuals.entries().to_vec(),
             largest_residual,
             balance: balance_summary(&simulation.balance),
-            kept_impulse: estimate.kept_impulse,
+            kept_impulse,
             over_time: over_time(&estimate.over_time),
             by_element: estimate.by_element,
             seconds,
