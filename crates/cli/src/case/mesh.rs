@@ -1,0 +1,112 @@
+//! `[mesh]`: a generator, or points, cells and groups.
+
+use super::source::CaseError;
+use super::table::Table;
+use super::value::Value;
+use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+
+const KEYS: [&str; 6] = ["rectangle", "bar", "points", "cells", "groups", "elements"];
+const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
+const BAR: &str = "{ length = 0.1, elements = 100 }";
+const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
+const ELEMENTS: &str = "{ core = [0, 1, 2] }";
+
+/// A mesh of either dimension.
+pub(super) enum AnyMesh {
+    Bar(BarMesh),
+    Plane(TriangleMesh),
+}
+
+/// Reads the mesh.
+pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
+    table.only(&KEYS)?;
+    let ways: Vec<Value<'_>> = ["rectangle", "bar", "points"].iter().filter_map(|key| table.get(key)).collect();
+    let [way] = ways.as_slice() else {
+        let message = "needs exactly one of `rectangle`, `bar` and `points` (the last with `cells`)";
+        return Err(ways.get(1).map_or_else(|| table.error(message), |second| second.error(message)));
+    };
+    if table.get("points").is_none() {
+        for key in ["cells", "groups", "elements"] {
+            table.refuse(key, "goes with `points`; a generated mesh has its own elements and groups")?;
+        }
+    }
+    match (table.get("rectangle"), table.get("bar")) {
+        (Some(value), _) => rectangle(&value).map(AnyMesh::Plane),
+        (_, Some(value)) => bar(&value).map(AnyMesh::Bar),
+        _ => from_arrays(table, way),
+    }
+}
+
+fn rectangle(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
+    let table = value.table(&["width", "height", "nx", "ny"], RECTANGLE)?;
+    let length = |key| table.require(key, "a length in m")?.number("m");
+    let count = |key| table.require(key, "a number of cells")?.count(1);
+    let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
+    TriangleMesh::rectangle(width, height, nx, ny).map_err(|error| generator(&table, &error))
+}
+
+fn bar(value: &Value<'_>) -> Result<BarMesh, CaseError> {
+    let table = value.table(&["length", "elements"], BAR)?;
+    let length = table.require("length", "a length in m")?.number("m")?;
+    let elements = table.require("elements", "a number of elements")?.count(1)?;
+    BarMesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
+}
+
+/// A generator's error, at the key that it names.
+fn generator(table: &Table<'_>, error: &MeshError) -> CaseError {
+    let value = match error {
+        MeshError::Generator { name, .. } => table.get(name),
+        _ => None,
+    };
+    value.map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
+}
+
+fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<AnyMesh, CaseError> {
+    let entries = points.list("points, each its coordinates in m")?;
+    let plane = entries.first().is_some_and(|first| first.list("").is_ok_and(|list| list.len() != 1));
+    if plane { arrays(table).map(AnyMesh::Plane) } else { arrays(table).map(AnyMesh::Bar) }
+}
+
+/// A mesh from points, cells, groups of facets and groups of elements.
+fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N>, CaseError> {
+    let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m")?;
+    let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
+    let cells = cells
+        .list("elements, each the numbers of its nodes")?
+        .iter()
+        .map(Value::nodes)
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut facets = FacetGroups::new();
+    if let Some(groups) = table.get("groups") {
+        for (name, members) in groups.any_table(GROUPS)?.entries() {
+            let members = members.list("edges (a bar: points), each the numbers of its nodes")?;
+            facets.insert(name.to_string(), members.iter().map(Value::nodes).collect::<Result<_, _>>()?);
+        }
+    }
+    let mut elements = ElementGroups::new();
+    if let Some(groups) = table.get("elements") {
+        for (name, members) in groups.any_table(ELEMENTS)?.entries() {
+            let members = members.list("element numbers, counted from 0")?;
+            elements.insert(name.to_string(), members.iter().map(|m| m.count(0)).collect::<Result<_, _>>()?);
+        }
+    }
+    Mesh::new(points, &cells, &facets, &elements).map_err(|error| array_error(table, &error))
+}
+
+/// The entry of the arrays that an error of the mesh is about.
+fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
+    let entry = |key: &str, at: usize| table.get(key)?.list("").ok()?.into_iter().nth(at);
+    let named = |key: &str, group: &str| table.get(key)?.any_table("").ok()?.get(group);
+    let value = match error {
+        MeshError::Empty { .. } => table.get("cells"),
+        MeshError::NotFinite { node, .. } | MeshError::UnusedNodes { first: node, .. } => entry("points", *node),
+        MeshError::DuplicateNodes { second, .. } => entry("points", *second),
+        MeshError::NoSuchNode { element, .. } | MeshError::Degenerate { element, .. } => entry("cells", *element),
+        MeshError::NonManifoldFacet { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
+        MeshError::NonManifoldNode { node, .. } => entry("points", *node),
+        MeshError::NoSuchFacet { group, .. } => named("groups", group),
+        MeshError::NoSuchElement { group, .. } => named("elements", group),
+        MeshError::Generator { .. } | MeshError::TooLarge { .. } => None,
+    };
+    value.map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
+}

@@ -1,0 +1,124 @@
+//! Case files: TOML in, a checked problem with its instants and options out.
+//!
+//! Units are SI. A bar takes one number where a plane body takes a vector `[x, y]`. Tables:
+//!
+//! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
+//!   `top`), `bar = { length, elements }` (ends `start`, `end`), or arrays: `points` and `cells`, with
+//!   `groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
+//!   `elements = { name = [element, …] }`;
+//! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
+//!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
+//! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
+//! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
+//! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
+//!   one component, else a list in the order of `components`;
+//! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
+//!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
+//! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
+//! - `[estimate]`: `contact_force`, `acceleration`, `every`.
+//!
+//! The reader walks the parsed document itself, because every error shall name the line, the path
+//! of the key, the value, its unit and what is allowed.
+
+mod estimate;
+mod load;
+mod material;
+mod mesh;
+mod obstacle;
+mod place;
+mod problem;
+mod source;
+mod spelling;
+mod support;
+mod table;
+mod time;
+mod value;
+
+pub(crate) use source::At;
+pub use source::{CaseError, Source};
+
+use percute_core::dynamics::SimulationError;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::Options;
+use table::Table;
+use toml::de::DeTable;
+
+/// The tables of a case file.
+const TABLES: [&str; 9] =
+    ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate"];
+
+/// A case of one dimension, ready to run.
+#[derive(Clone, Debug)]
+pub struct CaseOf<const D: usize, const N: usize> {
+    /// The file it came from.
+    pub source: Source,
+    /// The problem.
+    pub problem: Problem<D, N>,
+    /// The instants.
+    pub times: TimeGrid,
+    /// Δt_c (s), eq. \[34\].
+    pub critical_step: f64,
+    /// Options of the estimate.
+    pub options: Options,
+}
+
+/// A case ready to run.
+#[derive(Clone, Debug)]
+pub enum Case {
+    /// A bar.
+    Bar(Box<CaseOf<1, 2>>),
+    /// A plane body of triangles.
+    Plane(Box<CaseOf<2, 3>>),
+}
+
+impl Case {
+    /// Reads and checks a case file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn parse(source: Source) -> Result<Self, CaseError> {
+        let text = source.text().to_string();
+        let document = DeTable::parse(&text).map_err(|error| syntax(&source, &error))?;
+        let root = Table::root(&source, document.get_ref());
+        root.only(&TABLES)?;
+        let mesh = root.single("mesh")?.ok_or_else(|| root.error("the table [mesh] is missing"))?;
+        match mesh::read(&mesh)? {
+            mesh::AnyMesh::Bar(bar) => Ok(Self::Bar(Box::new(read(&source, &root, bar)?))),
+            mesh::AnyMesh::Plane(triangles) => Ok(Self::Plane(Box::new(read(&source, &root, triangles)?))),
+        }
+    }
+}
+
+fn read<const D: usize, const N: usize>(
+    source: &Source,
+    root: &Table<'_>,
+    mesh: percute_core::mesh::Mesh<D, N>,
+) -> Result<CaseOf<D, N>, CaseError> {
+    // Cheap tables first: a slip in the last line should not wait for the critical step.
+    let options = estimate::read(root)?;
+    let wanted = time::read(root)?;
+    let problem = problem::read(root, mesh)?;
+    let critical_step = percute_core::dynamics::critical_time_step(&problem);
+    let times = wanted.grid(critical_step)?;
+    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options })
+}
+
+fn syntax(source: &Source, error: &toml::de::Error) -> CaseError {
+    let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+    source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+}
+
+impl<const D: usize, const N: usize> CaseOf<D, N> {
+    /// The place in the file of a start that the simulation refuses; `None` for other failures,
+    /// which are not the input's.
+    #[must_use]
+    pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
+        let SimulationError::StartsTooNear { node, .. } = error else { return None };
+        let contact = self.problem.surface().nodes().iter().find(|contact| contact.node.index() == *node)?;
+        let document = DeTable::parse(self.source.text()).ok()?;
+        let root = Table::root(&self.source, document.get_ref());
+        let place = percute_core::problem::Place { table: "obstacle", index: Some(contact.obstacle), key: "point" };
+        Some(self.source.error(&place::find(&root, place), error.to_string()))
+    }
+}

@@ -1,0 +1,62 @@
+//! The statement of the problem, handed to the core, which checks it as a whole.
+
+use super::source::CaseError;
+use super::spelling::hint;
+use super::table::Table;
+use super::value::Value;
+use super::{load, material, obstacle, place, support};
+use percute_core::mesh::Mesh;
+use percute_core::problem::{Cause, Initial, InputError, Problem};
+
+/// Reads all that makes the problem on a mesh.
+pub(super) fn read<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    mesh: Mesh<D, N>,
+) -> Result<Problem<D, N>, CaseError> {
+    let mut builder = Problem::builder(mesh);
+    for (group, law) in material::read::<D>(root)? {
+        builder = match group {
+            Some(group) => builder.material_of(group, law),
+            None => builder.material(law),
+        };
+    }
+    if let Some(table) = root.single("initial")? {
+        table.only(&["velocity", "displacement"])?;
+        if let Some(value) = table.get("velocity") {
+            builder = builder.initial_velocity(field(&value, "m/s")?);
+        }
+        if let Some(value) = table.get("displacement") {
+            builder = builder.initial_displacement(field(&value, "m")?);
+        }
+    }
+    for plane in obstacle::read(root)? {
+        builder = builder.obstacle(plane);
+    }
+    for support in support::read(root)? {
+        builder = builder.support(support);
+    }
+    for traction in load::tractions(root)? {
+        builder = builder.traction(traction);
+    }
+    for force in load::body_forces(root)? {
+        builder = builder.body_force(force);
+    }
+    builder.build().map_err(|error| located(root, &error))
+}
+
+/// One vector for all nodes, or a list with one for each.
+fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, CaseError> {
+    let entries = if value.is_list() { value.list("")? } else { Vec::new() };
+    // A bar has at least two nodes: a list of one number is the same for all of them.
+    let nodal = if D == 1 { entries.len() > 1 } else { entries.first().is_some_and(Value::is_list) };
+    if nodal { value.vectors(unit).map(Initial::Nodal) } else { value.vector(unit).map(Initial::Uniform) }
+}
+
+/// An error of the core, at its place in the file.
+fn located(root: &Table<'_>, error: &InputError) -> CaseError {
+    let mut message = error.cause.to_string();
+    if let Cause::UnknownGroup { name, known } = &error.cause {
+        message += &hint(name, known.iter().map(String::as_str));
+    }
+    root.source.error(&place::find(root, error.place), message)
+}

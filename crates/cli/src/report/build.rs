@@ -1,0 +1,160 @@
+//! From the results of a run to its report.
+
+use super::warnings::{Facts, warnings};
+use super::{
+    ADMISSIBLE, BalanceSummary, FORMAT, LargestResidual, Measures, ObstacleSummary, OptionsUsed, OverTime, Parts,
+    ProblemSummary, Report, Versions, WorstElement,
+};
+use crate::case::CaseOf;
+use percute_core::dynamics::{Balance, Simulation};
+use percute_core::ids::ElementId;
+use percute_core::mesh::Mesh;
+use percute_core::problem::Problem;
+use percute_estimator::{ErrorMeasures, Estimate, Options, Sample};
+
+/// How many elements the report names.
+const WORST: usize = 5;
+
+impl Report {
+    /// Puts together what a run gave.
+    #[must_use]
+    pub fn new<const D: usize, const N: usize>(
+        case: &CaseOf<D, N>,
+        options: Options,
+        simulation: &Simulation,
+        estimate: Estimate,
+        seconds: f64,
+    ) -> Self {
+        let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(case));
+        let (softest, size) = (softest(&case.problem), case.problem.mesh().size());
+        let (kept_impulse, residual) = (estimate.kept_impulse, &largest_residual);
+        let warnings = warnings(&Facts { problem: &problem, softest, size, simulation, kept_impulse, residual });
+        Self {
+            format: FORMAT,
+            versions: Versions::of_this_program(),
+            case: case.source.name().into(),
+            problem,
+            warnings,
+            options: options_used(options),
+            time_step: case.times.longest_step(),
+            critical_time_step: case.critical_step,
+            steps: estimate.steps,
+            end: estimate.end,
+            steps_planned: case.times.step_count(),
+            interrupted: simulation.interrupted,
+            error: measures(&estimate.error),
+            parts: parts(&estimate.parts),
+            time_of_sup: estimate.time_of_sup,
+            worst_elements: worst(case.problem.mesh(), &estimate),
+            residuals: estimate.residuals.entries().to_vec(),
+            largest_residual,
+            balance: balance_summary(&simulation.balance),
+            kept_impulse,
+            over_time: over_time(&estimate.over_time),
+            by_element: estimate.by_element,
+            seconds,
+        }
+    }
+}
+
+fn options_used(options: Options) -> OptionsUsed {
+    OptionsUsed {
+        contact_force: options.contact_force.to_string(),
+        acceleration: options.acceleration.to_string(),
+        every: options.every,
+        threads: options.threads,
+        window: options.window,
+    }
+}
+
+fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> ProblemSummary {
+    let (problem, mesh) = (&case.problem, case.problem.mesh());
+    let extreme =
+        |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
+    let obstacle = |plane: &percute_core::obstacle::Plane<D>| ObstacleSummary {
+        normal: plane.normal().to_vec(),
+        friction: plane.friction(),
+        group: plane.group().map(str::to_string),
+    };
+    ProblemSummary {
+        dimension: D,
+        nodes: mesh.node_count(),
+        elements: mesh.element_count(),
+        mended_elements: mesh.mended_elements(),
+        lower_corner: (0..D).map(|c| extreme(c, f64::min)).collect(),
+        upper_corner: (0..D).map(|c| extreme(c, f64::max)).collect(),
+        mass: problem.mass().iter().sum(),
+        wave_speed: problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max),
+        materials: problem.materials().len(),
+        obstacles: problem.obstacles().iter().map(obstacle).collect(),
+        contact_nodes: problem.surface().nodes().len(),
+        prescribed_components: problem.prescribed().len(),
+        loaded_facets: problem.facet_loads().len(),
+        body_forces: problem.body_loads().len(),
+        resampling_error: problem.resampling_error(case.times.instants()),
+    }
+}
+
+/// The smallest ρc² of all materials (Pa), of the order of Young's modulus.
+fn softest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+    problem.materials().iter().map(|m| m.density() * m.wave_speed().powi(2)).fold(f64::INFINITY, f64::min)
+}
+
+fn measures(error: &ErrorMeasures) -> Measures {
+    Measures {
+        sup: error.sup,
+        mean: error.mean,
+        relative_sup: error.relative_sup,
+        relative_mean: error.relative_mean,
+        reference_sup: error.reference_sup,
+        reference_mean: error.reference_mean,
+    }
+}
+
+fn parts(parts: &percute_estimator::Parts) -> Parts {
+    Parts { kinetic: parts.kinetic, elastic: parts.elastic, contact: parts.contact }
+}
+
+fn balance_summary(balance: &Balance) -> BalanceSummary {
+    BalanceSummary {
+        kinetic: balance.kinetic,
+        strain: balance.strain,
+        initial: balance.initial,
+        work_of_loads: balance.work_of_loads,
+        work_of_supports: balance.work_of_supports,
+        work_of_contact: balance.work_of_contact,
+        friction: balance.friction,
+        energy_drift: balance.energy_drift,
+        impulse_drift: balance.impulse_drift,
+    }
+}
+
+fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate) -> Vec<WorstElement> {
+    let centroid = |element: ElementId| {
+        let corners = mesh.cell_points(element);
+        (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect()
+    };
+    let named = |(id, error): (ElementId, f64)| WorstElement { element: id.index(), error, centroid: centroid(id) };
+    estimate.worst_elements(WORST).into_iter().map(named).collect()
+}
+
+/// The largest residual; one that is no number counts as largest, so that it cannot hide.
+fn largest_residual(estimate: &Estimate) -> LargestResidual {
+    let rank = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+    let entries = estimate.residuals.entries();
+    let (name, value) =
+        entries.iter().fold(entries[0], |worst, &next| if rank(next.1) > rank(worst.1) { next } else { worst });
+    LargestResidual { name, value, admissible: value <= ADMISSIBLE }
+}
+
+fn over_time(samples: &[Sample]) -> OverTime {
+    let column = |of: fn(&Sample) -> f64| samples.iter().map(of).collect();
+    OverTime {
+        time: column(|s| s.time),
+        kinetic: column(|s| s.parts.kinetic),
+        elastic: column(|s| s.parts.elastic),
+        contact: column(|s| s.parts.contact),
+        total: column(|s| s.parts.total()),
+        reference: column(|s| s.reference),
+    }
+}

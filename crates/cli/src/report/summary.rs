@@ -1,0 +1,137 @@
+//! The summary of a run: at most 24 lines of 80 columns.
+
+use super::number::{percent, short, trimmed};
+use super::{ADMISSIBLE, Report};
+use std::fmt::Write;
+
+/// What the number means, and what it does not.
+const MEANING: &str = "\
+The error is the energy misfit between admissible fields. It holds the errors of
+space, time, lumped mass and contact together: a measure, not a strict bound.
+";
+
+/// The summary of a run.
+#[must_use]
+pub fn summary(report: &Report) -> String {
+    let mut text = String::new();
+    for (name, value) in lines(report) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", cut(&format!("{name:<10}{value}")));
+    }
+    text + MEANING
+}
+
+/// A line that fits the screen.
+fn cut(line: &str) -> String {
+    let line = line.trim_end();
+    if line.chars().count() <= 80 { line.to_string() } else { line.chars().take(79).chain(['…']).collect() }
+}
+
+fn lines(report: &Report) -> Vec<(&'static str, String)> {
+    let mut lines = what_was_run(report);
+    lines.extend(error(report));
+    lines.extend(worst_elements(report));
+    lines.extend(balance(report));
+    lines.push(("residual", residual(report)));
+    lines.push(("impulse", kept_impulse(report)));
+    lines.extend(warnings(report));
+    lines
+}
+
+fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
+    let problem = &report.problem;
+    let kind = if problem.dimension == 1 { "bar elements" } else { "triangles" };
+    let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| trimmed(u - l, 4));
+    let size = size.collect::<Vec<_>>().join(" x ");
+    let (step, critical) = (report.time_step, report.critical_time_step);
+    let ratio = trimmed(step / critical, 4);
+    let options = &report.options;
+    let steps = match report.interrupted {
+        true => format!(
+            "INTERRUPTED at step {} of {}, t = {} s;",
+            report.steps,
+            report.steps_planned,
+            trimmed(report.end, 5)
+        ),
+        false => format!("{} s in {} steps;", trimmed(report.end, 5), report.steps),
+    };
+    vec![
+        ("case", format!("{} (percute {}, {} s)", report.case, report.versions.percute, short(report.seconds, 3))),
+        ("body", format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)),
+        ("time", steps),
+        ("", format!("step {step:.4e} s, critical {critical:.4e} s, ratio {ratio}")),
+        (
+            "options",
+            format!("{} forces, {} acceleration, every {}", options.contact_force, options.acceleration, options.every),
+        ),
+    ]
+}
+
+fn error(report: &Report) -> Vec<(&'static str, String)> {
+    let measure = |name: &str, value: f64, relative: f64, reference: f64| {
+        let (value, reference) = (short(value, 4), short(reference, 4));
+        format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
+    };
+    let (e, parts) = (&report.error, &report.parts);
+    let total = parts.kinetic + parts.elastic + parts.contact;
+    let share = |part: f64| if total > 0.0 { percent(part / total) } else { "0 %".to_string() };
+    let shares = [("kinetic", parts.kinetic), ("elastic", parts.elastic), ("contact", parts.contact)];
+    let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
+    let sup = measure("sup", e.sup, e.relative_sup, e.reference_sup);
+    vec![
+        ("error", format!("{sup}, at t = {} s", trimmed(report.time_of_sup, 5))),
+        ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
+        ("", format!("at the sup: {shares}")),
+    ]
+}
+
+fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
+    let line = |(i, worst): (usize, &super::WorstElement)| {
+        let centroid = worst.centroid.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ");
+        let value = format!("element {:<8} {:>10} J^½  at ({centroid}) m", worst.element, short(worst.error, 4));
+        (if i == 0 { "worst" } else { "" }, value)
+    };
+    report.worst_elements.iter().enumerate().map(line).collect()
+}
+
+fn balance(report: &Report) -> Vec<(&'static str, String)> {
+    let b = &report.balance;
+    let joule = |x: f64| short(x, 4);
+    vec![
+        (
+            "energy",
+            format!("initial {}, now kinetic {}, strain {} J", joule(b.initial), joule(b.kinetic), joule(b.strain)),
+        ),
+        ("work", {
+            let (loads, supports, contact) =
+                (joule(b.work_of_loads), joule(b.work_of_supports), joule(b.work_of_contact));
+            format!("loads {loads}, supports {supports}, contact {contact}, friction {} J", joule(b.friction))
+        }),
+        ("drift", format!("energy {}, impulse {}", percent(b.energy_drift), percent(b.impulse_drift))),
+    ]
+}
+
+fn residual(report: &Report) -> String {
+    let worst = &report.largest_residual;
+    let verdict = if worst.admissible { "admissible" } else { "NOT ADMISSIBLE" };
+    format!("largest {} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", short(worst.value, 2), worst.name)
+}
+
+fn kept_impulse(report: &Report) -> String {
+    match report.kept_impulse {
+        Some(kept) => format!("{} of the contact impulse kept by the admissible force", percent(kept)),
+        None => "no contact".to_string(),
+    }
+}
+
+/// One line each if there are two at most; else the first and how many more.
+fn warnings(report: &Report) -> Vec<(&'static str, String)> {
+    let all = &report.warnings;
+    let mut lines: Vec<_> =
+        all.iter().take(if all.len() > 2 { 1 } else { 2 }).map(|w| ("WARNING", w.brief.clone())).collect();
+    if all.len() > 2 {
+        let names = all.iter().skip(1).map(|w| w.name).collect::<Vec<_>>().join(", ");
+        lines.push(("WARNINGS", format!("and {}: {names}", all.len() - 1)));
+    }
+    lines
+}

@@ -1,0 +1,131 @@
+//! What the user should look at before trusting a result.
+
+use super::number::{percent, short};
+use super::{LargestResidual, ProblemSummary};
+use percute_core::dynamics::Simulation;
+use serde::Serialize;
+
+/// Energy that appears or goes by more than this, relatively, is a warning.
+const DRIFT: f64 = 0.1;
+/// So is a contact impulse of which less than this is kept.
+const KEPT: f64 = 0.9;
+/// Resampling of tables below this is rounding.
+const RESAMPLED: f64 = 1e-12;
+/// Softer than this (Pa) and longer than a metre: more likely megapascals or millimetres.
+const SOFT: f64 = 1e6;
+
+/// A warning.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// Its name, for programs.
+    pub name: &'static str,
+    /// A few words, for the summary.
+    #[serde(skip)]
+    pub brief: String,
+    /// What is the matter and what to do.
+    pub message: String,
+}
+
+/// What the warnings look at.
+pub(super) struct Facts<'a> {
+    pub(super) problem: &'a ProblemSummary,
+    pub(super) softest: f64,
+    pub(super) size: f64,
+    pub(super) simulation: &'a Simulation,
+    pub(super) kept_impulse: Option<f64>,
+    pub(super) residual: &'a LargestResidual,
+}
+
+/// All warnings of a run.
+pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
+    [
+        not_admissible(facts),
+        energy_drift(facts),
+        kept_impulse(facts),
+        no_contact(facts),
+        units(facts),
+        resampled(facts),
+        mended(facts),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Option<Warning> {
+    Some(Warning { name, brief: brief.into(), message: message.into() })
+}
+
+fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
+    let LargestResidual { name, value, admissible } = facts.residual;
+    if *admissible {
+        return None;
+    }
+    let message = format!(
+        "the residual `{name}` is {value:.2e}: above {:.0e} a field is not admissible and the error measure is not one",
+        super::ADMISSIBLE
+    );
+    warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
+}
+
+fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
+    let drift = facts.simulation.balance.energy_drift;
+    // A drift that is no number must not pass.
+    if drift <= DRIFT {
+        return None;
+    }
+    let drift = percent(drift);
+    let message = format!(
+        "the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it"
+    );
+    warning("energy_drift", format!("energy balance off by {drift}"), message)
+}
+
+fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
+    let kept = facts.kept_impulse.filter(|&kept| kept.is_nan() || kept < KEPT)?;
+    let kept = percent(kept);
+    let message = format!(
+        "the admissible contact force keeps {kept} of the simulated impulse; below 90 % the estimate is pessimistic: \
+         refine the mesh or the steps where contact begins"
+    );
+    warning("kept_impulse", format!("only {kept} of the contact impulse kept"), message)
+}
+
+fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
+    if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() {
+        return None;
+    }
+    let when = if facts.simulation.interrupted { "before it was interrupted" } else { "before `end`" };
+    let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
+    warning("no_contact", format!("no contact {when}"), message)
+}
+
+fn units(facts: &Facts<'_>) -> Option<Warning> {
+    if facts.softest >= SOFT || facts.size <= 1.0 {
+        return None;
+    }
+    let message = format!(
+        "a stiffness of {} Pa with a body of {} m: did you mix units? percute takes metres, pascals, kilograms and seconds",
+        short(facts.softest, 3),
+        short(facts.size, 3)
+    );
+    warning("units", "soft and large body: did you mix units?", message)
+}
+
+fn resampled(facts: &Facts<'_>) -> Option<Warning> {
+    let error = facts.problem.resampling_error;
+    if error <= RESAMPLED {
+        return None;
+    }
+    let error = percent(error);
+    let message = format!(
+        "tables in time are joined by straight lines between the steps: they differ from what was given by up to {error}"
+    );
+    warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
+}
+
+fn mended(facts: &Facts<'_>) -> Option<Warning> {
+    let count = facts.problem.mended_elements;
+    let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
+    if count == 0 { None } else { warning("mended_elements", format!("{count} elements turned round"), message) }
+}

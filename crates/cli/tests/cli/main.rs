@@ -1,0 +1,11 @@
+//! The `percute` command, as its users see it.
+
+// A test that cannot go on fails.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod common;
+#[cfg(target_os = "linux")]
+mod interrupt;
+mod mistakes;
+mod picture;
+mod run;

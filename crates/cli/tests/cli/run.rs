@@ -1,0 +1,196 @@
+//! Runs of good cases: what is printed where, and the exit codes.
+
+use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr, stdout};
+use serde_json::Value;
+
+/// Runs a case with `--json` and reads the document; standard output holds nothing else.
+fn json(case: &str, more: &[&str]) -> Value {
+    let output = Bench::new(case).percute(&[&["run", "case.toml", "--json"], more].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The value at a path like `error.sup`.
+fn at<'v>(document: &'v Value, path: &str) -> &'v Value {
+    path.split('.').fold(document, |value, key| value.get(key).unwrap_or_else(|| panic!("no `{key}` of `{path}`")))
+}
+
+/// Names of the warnings of a document.
+fn warnings(document: &Value) -> Vec<String> {
+    let all = at(document, "warnings").as_array().unwrap();
+    all.iter().map(|warning| warning["name"].as_str().unwrap().to_string()).collect()
+}
+
+/// All keys of a document, at any depth.
+fn keys(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => map.iter().for_each(|(key, value)| {
+            found.push(key.clone());
+            keys(value, found);
+        }),
+        Value::Array(list) => list.iter().take(3).for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+/// Paths of all `null`s.
+fn nulls(path: &str, value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::Null => found.push(path.to_string()),
+        Value::Object(map) => map.iter().for_each(|(key, value)| nulls(&format!("{path}.{key}"), value, found)),
+        Value::Array(list) => list.iter().for_each(|value| nulls(path, value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_json_document_has_its_keys() {
+    let document = json(BLOCK, &[]);
+    let numbers = "time_step critical_time_step steps end time_of_sup seconds kept_impulse \
+        error.sup error.mean error.relative_sup error.relative_mean error.reference_sup error.reference_mean \
+        parts.kinetic parts.elastic parts.contact \
+        balance.kinetic balance.strain balance.initial balance.work_of_loads balance.work_of_supports \
+        balance.work_of_contact balance.friction balance.energy_drift balance.impulse_drift \
+        residuals.star_compatibility residuals.divergence residuals.penetration_between_knots";
+    for path in numbers.split_whitespace() {
+        assert!(at(&document, path).is_number(), "{path}");
+    }
+    assert_eq!(at(&document, "by_element").as_array().unwrap().len(), 40);
+    assert_eq!(at(&document, "problem.elements"), 40);
+    assert_eq!(at(&document, "problem.nodes"), 30);
+    assert_eq!(at(&document, "options.contact_force"), "sharp");
+    assert_eq!(at(&document, "interrupted"), false);
+    assert_eq!(at(&document, "versions.percute"), env!("CARGO_PKG_VERSION"));
+    let worst = at(&document, "worst_elements").as_array().unwrap();
+    assert_eq!(worst.len(), 5);
+    assert_eq!(worst[0]["centroid"].as_array().unwrap().len(), 2);
+    let by_element = |i: &Value| document["by_element"][i.as_u64().unwrap() as usize].clone();
+    assert!(worst.iter().all(|w| w["error"] == by_element(&w["element"])));
+    let samples = ["time", "kinetic", "elastic", "contact", "total", "reference"]
+        .map(|key| document["over_time"][key].as_array().unwrap().len());
+    assert!(samples[0] > 1 && samples.iter().all(|&n| n == samples[0]), "{samples:?}");
+}
+
+#[test]
+fn the_json_document_agrees_with_the_case() {
+    let document = json(BAR, &["--threads", "1", "--window", "7"]);
+    // h/c on a uniform bar, eq. [33].
+    let critical = 0.1 / 20.0 / (70e9_f64 / 2700.0).sqrt();
+    let given = at(&document, "critical_time_step").as_f64().unwrap();
+    assert!((given / critical - 1.0).abs() < 1e-6, "{given} against {critical}");
+    assert_eq!(at(&document, "steps"), 40);
+    assert_eq!(at(&document, "options.window"), 7);
+    assert_eq!(at(&document, "problem.mass").as_f64().map(|m| (m * 1e6).round()), Some(5.4e6));
+    let document = json(ARRAYS, &[]);
+    assert_eq!(at(&document, "problem.mended_elements"), 1);
+    assert!(warnings(&document).contains(&"mended_elements".to_string()));
+    assert_eq!(at(&document, "steps"), 3);
+}
+
+#[test]
+fn every_key_of_the_json_document_is_described() {
+    let manual = include_str!("../../../../docs/json.md");
+    let mut found = Vec::new();
+    keys(&json(BLOCK, &[]), &mut found);
+    assert!(found.len() > 60, "{found:?}");
+    let missing: Vec<_> = found.iter().filter(|key| !manual.contains(&format!("`{key}`"))).collect();
+    assert!(missing.is_empty(), "not in docs/json.md: {missing:?}");
+}
+
+#[test]
+fn only_what_may_be_absent_is_null() {
+    for case in [BLOCK, BAR] {
+        let mut found = Vec::new();
+        nulls("", &json(case, &[]), &mut found);
+        let may_be = [".options.threads", ".options.window", ".problem.obstacles.group"];
+        assert!(found.iter().all(|path| may_be.contains(&path.as_str())), "{found:?}");
+    }
+}
+
+#[test]
+fn the_summary_fits_one_screen() {
+    let soft = ARRAYS.replace("70e9", "2e3").replace("210e9", "2e3").replace("0.01", "8.0").replace("e-7", "e-3");
+    let idle = soft + "[[obstacle]]\npoint = [0.0, -1.0]\nnormal = [0.0, 1.0]\nfriction = 0.0\n";
+    for case in [BLOCK, BAR, ARRAYS, &idle] {
+        let output = Bench::new(case).percute(&["run", "case.toml"]);
+        let summary = stdout(&output);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!((15..=24).contains(&summary.lines().count()), "{summary}");
+        assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+        for word in ["error", "sup", "mean", "worst", "drift", "residual", "impulse", "critical", "not a strict bound"]
+        {
+            assert!(summary.contains(word), "no `{word}` in {summary}");
+        }
+    }
+}
+
+#[test]
+fn warnings_go_to_standard_error_and_stay_in_the_summary() {
+    let bench = Bench::new(ARRAYS);
+    let loud = bench.percute(&["run", "case.toml"]);
+    assert!(stderr(&loud).contains("warning: 1 elements were given clockwise"), "{}", stderr(&loud));
+    let quiet = bench.percute(&["run", "case.toml", "--quiet"]);
+    assert_eq!(stderr(&quiet), "");
+    assert!(stdout(&quiet).contains("WARNING   1 elements turned round"), "{}", stdout(&quiet));
+}
+
+#[test]
+fn nothing_but_the_result_is_printed_off_a_terminal() {
+    for arguments in [["run", "case.toml", "--json"], ["run", "case.toml", "--quiet"]] {
+        let output = Bench::new(BAR).percute(&arguments);
+        let said = stderr(&output);
+        assert!(
+            said.lines().all(|line| line.starts_with("warning: ")),
+            "no progress where there is no terminal: {said}"
+        );
+        assert!(stdout(&output).ends_with('\n'));
+    }
+}
+
+#[test]
+fn tables_that_bend_between_steps_are_a_warning() {
+    let bent =
+        BAR.to_string() + "[[traction]]\ngroup = \"end\"\ntime = [0.0, 1.25e-6, 2.5e-6]\nvalue = [0.0, 1e6, 0.0]\n";
+    let document = json(&bent, &[]);
+    assert!(at(&document, "problem.resampling_error").as_f64().unwrap() > 0.1);
+    assert!(warnings(&document).contains(&"resampled".to_string()), "{:?}", warnings(&document));
+}
+
+#[test]
+fn wrong_arguments_are_bad_input() {
+    let bench = Bench::new(BAR);
+    let wrong: [(&[&str], &str); 8] = [
+        (&["run", "case.toml", "--threads", "0"], "from 1 to 1024"),
+        (&["run", "case.toml", "--threads", "many"], "from 1 to 1024"),
+        (&["run", "case.toml", "--window", "0"], "1 or more"),
+        (&["run", "case.toml", "--jsno"], "--json"),
+        (&["run"], "<CASE>"),
+        (&["rum", "case.toml"], "run"),
+        (&["run", "none.toml"], "none.toml: cannot read the case file"),
+        (&["run", "case.toml", "--picture", "map.png"], "ends in .svg"),
+    ];
+    for (arguments, phrase) in wrong {
+        let output = bench.percute(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(phrase), "{arguments:?}: {}", stderr(&output));
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+    for arguments in [["--help"], ["--version"]] {
+        let output = bench.percute(&arguments);
+        assert_eq!(output.status.code(), Some(0));
+        assert!(stdout(&output).contains("percute"));
+    }
+}
+
+#[test]
+fn the_examples_run() {
+    for case in [
+        include_str!("../../../../examples/block.toml"),
+        include_str!("../../../../examples/bar.toml"),
+        include_str!("../../../../examples/stack.toml"),
+    ] {
+        let document = json(case, &["--picture", "map.svg"]);
+        assert_ne!(at(&document, "balance.work_of_contact"), 0.0, "no contact");
+        assert!(at(&document, "balance.energy_drift").as_f64().unwrap() < 0.1);
+    }
+}
