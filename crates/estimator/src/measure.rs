@@ -39,6 +39,17 @@ impl ElementError {
 pub(crate) struct Balanced<const D: usize, const N: usize> {
     /// Tractions and Γ_DA − f_d.
     pub(crate) loading: Loading<D, N>,
+    /// Their work on the shape function of each node.
+    forces: [NodalForce<D>; N],
+}
+
+/// What acts on one node of an element (N per unit of section or thickness).
+#[derive(Clone, Copy, Debug)]
+struct NodalForce<const D: usize> {
+    /// Tractions.
+    outer: [f64; D],
+    /// Γ_DA − f_d.
+    inner: [f64; D],
 }
 
 impl<const D: usize, const N: usize> Balanced<D, N> {
@@ -51,7 +62,10 @@ impl<const D: usize, const N: usize> Balanced<D, N> {
                     let (x, y) = (a.loading.traction[k][p][c], b.loading.traction[k][p][c]);
                     middle.loading.traction[k][p][c] = 0.5 * (x + y);
                 }
-                middle.loading.volume[k][c] = 0.5 * (a.loading.volume[k][c] + b.loading.volume[k][c]);
+                let mean = |x: f64, y: f64| 0.5 * (x + y);
+                middle.loading.volume[k][c] = mean(a.loading.volume[k][c], b.loading.volume[k][c]);
+                middle.forces[k].outer[c] = mean(a.forces[k].outer[c], b.forces[k].outer[c]);
+                middle.forces[k].inner[c] = mean(a.forces[k].inner[c], b.forces[k].inner[c]);
             }
         }
         middle
@@ -129,7 +143,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         for value in &mut volume {
             (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
         }
-        Balanced { loading: Loading { traction, volume } }
+        let loading = Loading { traction, volume };
+        Balanced { forces: self.nodal_forces(&loading), loading }
     }
 
     /// The error at one sample; `increment` is ∫ã dt at the nodes.
@@ -171,7 +186,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     fn work(&self, balanced: &Balanced<D, N>, u: &[[f64; D]; N]) -> f64 {
         let mut work = 0.0;
         // The loading balances: a translation does no work and is left out.
-        for (force, u_i) in self.nodal_forces(balanced).iter().zip(u) {
+        for (force, u_i) in balanced.forces.iter().zip(u) {
             for c in 0..D {
                 work += (force.outer[c] - force.inner[c]) * (u_i[c] - u[0][c]);
             }
@@ -196,10 +211,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
     fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
-        let forces = self.nodal_forces(balanced);
         let (mut resultant, mut moment) = ([0.0; D], 0.0);
         let mut scale = floor;
-        for (force, arm) in forces.iter().zip(&self.arms) {
+        for (force, arm) in balanced.forces.iter().zip(&self.arms) {
             for c in 0..D {
                 resultant[c] += force.outer[c] - force.inner[c];
                 scale = scale.max(force.outer[c].abs()).max(force.inner[c].abs());
@@ -214,12 +228,11 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         miss / scale.max(f64::MIN_POSITIVE)
     }
 
-    /// Work of the tractions, and of Γ_DA − f_d, on the shape function of each node (N per unit of
-    /// section or thickness).
+    /// Work of the tractions, and of Γ_DA − f_d, on the shape function of each node.
     #[inline]
-    fn nodal_forces(&self, balanced: &Balanced<D, N>) -> [NodalForce<D>; N] {
+    fn nodal_forces(&self, loading: &Loading<D, N>) -> [NodalForce<D>; N] {
         let volume = self.element.volume / self.law.extent() / ((D + 1) * (D + 2)) as f64;
-        let Loading { traction, volume: load } = &balanced.loading;
+        let Loading { traction, volume: load } = loading;
         let mut forces = [NodalForce { outer: [0.0; D], inner: [0.0; D] }; N];
         for c in 0..D {
             let total: f64 = load.iter().map(|g| g[c]).sum();
@@ -233,11 +246,4 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         }
         forces
     }
-}
-
-/// What acts on one node of an element.
-#[derive(Clone, Copy, Debug)]
-struct NodalForce<const D: usize> {
-    outer: [f64; D],
-    inner: [f64; D],
 }

@@ -27,9 +27,9 @@ const BLOCK: usize = 256;
 /// costs more than the measure itself.
 const CHECK: usize = 16;
 /// Memory that a window may take unless told otherwise (bytes).
-const MODEST_MEMORY: usize = 256 << 20;
+const MODEST_MEMORY: usize = 1 << 30;
 /// More levels than this gain nothing.
-const MOST_LEVELS: usize = 32;
+const MOST_LEVELS: usize = 64;
 
 /// Levels in work, and what has been summed so far.
 #[derive(Debug)]
