@@ -1,0 +1,13 @@
+//! The explicit solution against mathematics: exact solutions, convergence, balances, invariance.
+
+mod balance;
+mod bar_impact;
+mod contact;
+mod critical_step;
+mod free_vibration;
+mod invariance;
+mod loads;
+mod run;
+mod stopping;
+mod supports;
+mod variable_steps;
