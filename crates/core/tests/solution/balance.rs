@@ -54,7 +54,6 @@ fn the_reported_energies_balance_to_rounding() {
     for problem in [falling_block().build().unwrap(), pulled_block().build().unwrap()] {
         let times = steps(&problem, 120);
         let whole = run(&problem, &times);
-        let dt = whole.step(0);
         let inertia = |n: usize| {
             let (before, after) = (whole.half_velocity(n - 1), whole.half_velocity(n));
             let rows = before.iter().zip(&after).zip(problem.mass());
