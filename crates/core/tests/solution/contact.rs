@@ -1,8 +1,9 @@
 //! The contact law at every step (eq. [2]): no penetration, Coulomb's cone, complementarity.
 
-use crate::run::{Run, aluminium, gravity, run};
+use crate::run::{Run, aluminium, gravity, run, swinging_steps};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
+use percute_core::load::Support;
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
@@ -31,6 +32,12 @@ fn thrown(mesh: TriangleMesh, velocity: [f64; 2], friction: f64, group: Option<&
 
 fn steps(problem: &TriangleProblem, count: usize) -> TimeGrid {
     TimeGrid::uniform(0.9 * critical_time_step(problem) * count as f64, count).unwrap()
+}
+
+/// About as many steps that change all the time: h_n and Δt_n differ.
+fn swinging(problem: &TriangleProblem, count: usize) -> TimeGrid {
+    let critical = critical_time_step(problem);
+    swinging_steps(critical, 0.7 * critical * count as f64, 6.0)
 }
 
 /// Checks the law on every node and step and returns the number of reactions.
@@ -72,9 +79,11 @@ fn the_law_holds_at_every_step() {
         let block = |angle: f64| rotated(&random_rectangle(0.05, 0.04, 8, 3).unwrap(), angle).unwrap();
         for (what, mesh) in [("flat", block(0.0)), ("tilted", block(0.05)), ("disc", disc(0.02, 0.003).unwrap())] {
             let problem = thrown(mesh, [200.0, -200.0], friction, None);
-            let run = run(&problem, &steps(&problem, 400));
-            let reactions = check_law(&run, &format!("{what}, friction {friction}"));
-            assert!(reactions > 40, "{what}, friction {friction}: only {reactions} reactions");
+            for (kind, times) in [("equal", steps(&problem, 400)), ("swinging", swinging(&problem, 400))] {
+                let reactions =
+                    check_law(&run(&problem, &times), &format!("{what}, friction {friction}, {kind} steps"));
+                assert!(reactions > 40, "{what}, friction {friction}, {kind} steps: only {reactions} reactions");
+            }
         }
     }
 }
@@ -145,19 +154,21 @@ fn a_sliding_block_loses_mu_times_the_normal_impulse() {
 #[test]
 fn sticking_nodes_do_not_move() {
     let problem = thrown(random_rectangle(0.05, 0.04, 8, 7).unwrap(), [100.0, -200.0], 1e6, Some("bottom"));
-    let run = run(&problem, &steps(&problem, 200));
-    let mut stuck = 0;
-    for n in 0..run.last() {
-        let velocity = run.half_velocity(n);
-        for (reaction, node) in run.history.step(n).unwrap().reaction.iter().zip(run.contact_nodes()) {
-            if reaction[1] > 0.0 {
-                stuck += 1;
-                assert!(velocity[node][0].abs() < STILL, "step {n}, node {node}: {} m/s", velocity[node][0]);
-                assert!(reaction[0].abs() < 1e6 * reaction[1], "step {n}, node {node} reached the cone: {reaction:?}");
+    for times in [steps(&problem, 200), swinging(&problem, 200)] {
+        let run = run(&problem, &times);
+        let mut stuck = 0;
+        for n in 0..run.last() {
+            let velocity = run.half_velocity(n);
+            for (reaction, node) in run.history.step(n).unwrap().reaction.iter().zip(run.contact_nodes()) {
+                if reaction[1] > 0.0 {
+                    stuck += 1;
+                    assert!(velocity[node][0].abs() < STILL, "step {n}, node {node}: {} m/s", velocity[node][0]);
+                    assert!(reaction[0].abs() < 1e6 * reaction[1], "step {n}, node {node} slides: {reaction:?}");
+                }
             }
         }
+        assert!(stuck > 100, "only {stuck} reactions");
     }
-    assert!(stuck > 100, "only {stuck} reactions");
 }
 
 /// Without friction the plane gives no tangential force, so that the momentum along it stays.
@@ -240,4 +251,27 @@ fn a_block_may_start_sliding_on_a_slope() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A node with a prescribed component is no candidate (method: supports come first): it gets no
+/// reaction, whatever its gap, and its neighbours do.
+#[test]
+fn held_nodes_get_no_reaction() {
+    let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
+        .material(aluminium())
+        .initial_velocity(Initial::Uniform([0.0, -100.0]))
+        .support(Support { group: "left".to_string(), components: [true, false], velocity: None })
+        .obstacle(Plane::new([0.0, -GAP], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
+        .build()
+        .unwrap();
+    let run = run(&problem, &steps(&problem, 60));
+    let held = problem.surface().nodes().iter().position(|c| problem.mesh().points()[c.node.index()] == [0.0, 0.0]);
+    let held = held.unwrap();
+    let mut reactions = 0;
+    for n in 0..=run.last() {
+        let step = run.history.step(n).unwrap();
+        assert_eq!((step.reaction[held], step.touching[held]), ([0.0; 2], false), "step {n}");
+        reactions += step.reaction.iter().filter(|r| r[1] > 0.0).count();
+    }
+    assert!(reactions > 20, "only {reactions} reactions");
 }

@@ -9,6 +9,7 @@ use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
+use std::f64::consts::TAU;
 
 /// A run and all its steps.
 pub(crate) struct Run<'p, const D: usize, const N: usize> {
@@ -89,6 +90,18 @@ pub(crate) fn largest<const D: usize>(a: &[[f64; D]]) -> f64 {
 /// The mean order of convergence over meshes each twice as fine as the one before.
 pub(crate) fn mean_rate(errors: &[f64]) -> f64 {
     (errors[0] / errors[errors.len() - 1]).log2() / (errors.len() - 1) as f64
+}
+
+/// Steps that swing `waves` times between 0.5 and 0.9 of `critical` until `end` at least: from one
+/// to the next they change by O(Δt²/end).
+pub(crate) fn swinging_steps(critical: f64, end: f64, waves: f64) -> TimeGrid {
+    let (mut steps, mut time) = (Vec::new(), 0.0);
+    while time < end {
+        let step = critical * (0.7 + 0.2 * (TAU * waves * time / end).sin());
+        steps.push(step);
+        time += step;
+    }
+    TimeGrid::from_steps(&steps).unwrap()
 }
 
 /// The aluminium of the paper's block (§7.2) in plane stress, 1 m thick.

@@ -1,6 +1,6 @@
 //! Steps of different lengths.
 
-use crate::run::{aluminium, difference, largest, mean_rate, on_rollers, run};
+use crate::run::{aluminium, difference, largest, mean_rate, on_rollers, run, swinging_steps};
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::Discard;
 use percute_core::load::{BodyForce, Table};
@@ -20,18 +20,6 @@ fn random_steps(critical: f64, end: f64, seed: u64) -> TimeGrid {
     let (mut steps, mut time) = (Vec::new(), 0.0);
     while time < end {
         let step = critical * random.between(0.5, 0.9);
-        steps.push(step);
-        time += step;
-    }
-    TimeGrid::from_steps(&steps).unwrap()
-}
-
-/// Steps that swing `waves` times between 0.5 and 0.9 of `critical` until `end` at least: from one
-/// to the next they change by O(Δt²/end).
-fn swinging_steps(critical: f64, end: f64, waves: f64) -> TimeGrid {
-    let (mut steps, mut time) = (Vec::new(), 0.0);
-    while time < end {
-        let step = critical * (0.7 + 0.2 * (TAU * waves * time / end).sin());
         steps.push(step);
         time += step;
     }
