@@ -5,3 +5,4 @@
 
 mod mesh;
 mod problem;
+mod time;

@@ -8,6 +8,7 @@ mod bar_impact;
 mod contact;
 mod critical_step;
 mod free_vibration;
+mod from_rest;
 mod invariance;
 mod loads;
 mod run;
