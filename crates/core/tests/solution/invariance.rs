@@ -119,10 +119,11 @@ proptest! {
     fn the_law_is_homogeneous(mesh in rectangle(5), scale in 0.1..10.0, friction in 0.0..0.6_f64) {
         let throw = Throw::new(&mesh, 60.0, 90.0, friction);
         let thrown = |factor: f64| {
+            let bottom = Some("bottom".to_string());
             TriangleProblem::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Uniform(throw.velocity.map(|v| factor * v)))
-                .obstacle(Plane::new([0.0, -throw.gap * factor], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap())
+                .obstacle(Plane::new([0.0, -throw.gap * factor], [0.0, 1.0], friction, bottom).unwrap())
                 .build()
                 .unwrap()
         };

@@ -1,6 +1,6 @@
 //! Runs that end before their time: unstable, too near at the start, interrupted, not taken.
 
-use crate::run::{aluminium, largest, run};
+use crate::run::{aluminium, run};
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::{Discard, History, SinkError, Step, StepSink};
 use percute_core::material::Elastic;
@@ -38,8 +38,6 @@ fn runs_above_the_critical_step_are_unstable() {
         assert!(step >= 1 && node < problem.mesh().node_count());
         assert!(speed > 1.0 && !speed.is_nan(), "factor {factor}: speed {speed}");
         assert_eq!((longest_step, critical_step), (times.longest_step(), critical));
-        assert!((0..history.len()).all(|n| largest(history.step(n).unwrap().displacement).is_finite()));
-        // fold with max skips NaN: ask for them apart.
         let finite = |n: usize| history.step(n).unwrap().displacement.iter().flatten().all(|u| u.is_finite());
         assert!((0..history.len()).all(finite), "factor {factor}");
     }
@@ -94,7 +92,8 @@ fn an_interrupted_run_ends_with_a_whole_step() {
         let mut history = History::new(&times);
         let ended = simulate(&problem, &times, &mut history, &mut observer).unwrap();
         assert!(ended.interrupted);
-        assert_eq!((ended.steps + 1, ended.steps + 1), (history.len(), stop));
+        // Steps 0 to stop − 1 were handed on.
+        assert_eq!((ended.steps, history.len()), (stop - 1, stop));
         for n in 0..history.len() {
             assert_eq!(history.step(n), whole.history.step(n), "step {n}");
         }
