@@ -1,0 +1,17 @@
+//! The explicit solution against mathematics: exact solutions, convergence, balances, invariance.
+
+// What helpers unwrap makes a test fail too; the general allowance covers test functions only.
+#![allow(clippy::unwrap_used)]
+
+mod balance;
+mod bar_impact;
+mod contact;
+mod critical_step;
+mod free_vibration;
+mod from_rest;
+mod invariance;
+mod loads;
+mod run;
+mod stopping;
+mod supports;
+mod variable_steps;

@@ -1,0 +1,130 @@
+//! Runs that end before their time: unstable, too near at the start, interrupted, not taken.
+
+use crate::run::{aluminium, run};
+use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
+use percute_core::history::{Discard, History, SinkError, Step, StepSink};
+use percute_core::material::Elastic;
+use percute_core::mesh::BarMesh;
+use percute_core::observer::{Progress, Unobserved};
+use percute_core::obstacle::Plane;
+use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::time::TimeGrid;
+use percute_testkit::{Random, random_rectangle};
+use std::ops::ControlFlow;
+
+/// A free block with velocities at random, so that every mode has its share.
+fn shaken_block() -> TriangleProblem {
+    let mesh = random_rectangle(0.05, 0.04, 6, 8).unwrap();
+    let mut random = Random::new(1);
+    let velocity = (0..mesh.node_count()).map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
+    TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
+}
+
+/// Above the critical step the run ends with an error that names a node, and no step that was
+/// handed on holds a NaN; just below it the run goes through.
+#[test]
+fn runs_above_the_critical_step_are_unstable() {
+    let problem = shaken_block();
+    let critical = critical_time_step(&problem);
+    run(&problem, &TimeGrid::uniform(2000.0 * 0.999 * critical, 2000).unwrap());
+    for factor in [1.01, 1.1, 2.0, 1e3, 1e8, 1e60, 1e120] {
+        let times = TimeGrid::uniform(2000.0 * factor * critical, 2000).unwrap();
+        let mut history = History::new(&times);
+        let error = simulate(&problem, &times, &mut history, &mut Unobserved).unwrap_err();
+        let SimulationError::Unstable { step, time, node, speed, longest_step, critical_step } = error else {
+            panic!("factor {factor}: {error}");
+        };
+        assert_eq!((history.len(), time), (step, times.instants()[step]), "factor {factor}");
+        assert!(step >= 1 && node < problem.mesh().node_count());
+        assert!(speed > 1.0 && !speed.is_nan(), "factor {factor}: speed {speed}");
+        assert_eq!((longest_step, critical_step), (times.longest_step(), critical));
+        let finite = |n: usize| history.step(n).unwrap().displacement.iter().flatten().all(|u| u.is_finite());
+        assert!((0..history.len()).all(finite), "factor {factor}");
+    }
+}
+
+fn near_bar(gap: f64) -> BarProblem {
+    BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+        .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
+        .initial_velocity(Initial::Uniform([-400.0]))
+        .obstacle(Plane::new([-gap], [1.0], 0.0, None).unwrap())
+        .build()
+        .unwrap()
+}
+
+/// A node that touches at step 1 needs a gap of |v|Δt/4; both ways out that the error names lead out.
+#[test]
+fn a_start_too_near_names_what_will_do() {
+    let grid = |step: f64| TimeGrid::uniform(10.0 * step, 10).unwrap();
+    let dt = 1e-6;
+    let simulate_at = |gap: f64, step: f64| simulate(&near_bar(gap), &grid(step), &mut Discard, &mut Unobserved);
+    let Err(SimulationError::StartsTooNear { node, gap, speed, step, smallest_gap, largest_step }) =
+        simulate_at(0.6e-4, dt)
+    else {
+        panic!("a gap of 0.15 |v|Δt was accepted");
+    };
+    assert_eq!((node, speed, step), (0, 400.0, grid(dt).step(0)));
+    // Products of two or three numbers: rounding only.
+    assert!((gap / 0.6e-4 - 1.0).abs() < 1e-12 && (smallest_gap / 1e-4 - 1.0).abs() < 1e-12);
+    assert!((largest_step / 0.6e-6 - 1.0).abs() < 1e-12);
+    assert!(simulate_at(smallest_gap * (1.0 + 1e-9), dt).is_ok());
+    assert!(simulate_at(gap, largest_step * (1.0 - 1e-9)).is_ok());
+    assert!(simulate_at(smallest_gap * (1.0 - 1e-9), dt).is_err());
+    // A gap of a whole step or more does not touch at step 1 at all.
+    assert!(simulate_at(4.0 * smallest_gap, dt).is_ok());
+}
+
+/// A step is done when it was handed on: what an interrupted run hands on is the beginning of the
+/// whole run, bit by bit.
+#[test]
+fn an_interrupted_run_ends_with_a_whole_step() {
+    let problem = shaken_block();
+    let times = TimeGrid::uniform(20.0 * 0.9 * critical_time_step(&problem), 20).unwrap();
+    let whole = run(&problem, &times);
+    assert!(!whole.simulation.interrupted);
+    for stop in [1, 7, 20] {
+        let mut calls = 0;
+        let mut observer = |progress: Progress| {
+            calls += 1;
+            assert_eq!(progress.total, 20);
+            if calls == stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let mut history = History::new(&times);
+        let ended = simulate(&problem, &times, &mut history, &mut observer).unwrap();
+        assert!(ended.interrupted);
+        // Steps 0 to stop − 1 were handed on.
+        assert_eq!((ended.steps, history.len()), (stop - 1, stop));
+        for n in 0..history.len() {
+            assert_eq!(history.step(n), whole.history.step(n), "step {n}");
+        }
+    }
+}
+
+/// Refuses one step.
+struct Full {
+    at: usize,
+    taken: usize,
+}
+
+impl StepSink<2> for Full {
+    fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
+        if step.index == self.at {
+            return Err("no room left".into());
+        }
+        self.taken += 1;
+        Ok(())
+    }
+}
+
+#[test]
+fn a_sink_that_fails_stops_the_run_at_its_step() {
+    let problem = shaken_block();
+    let times = TimeGrid::uniform(1e-6, 10).unwrap();
+    let mut sink = Full { at: 4, taken: 0 };
+    let error = simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap_err();
+    assert!(
+        matches!(&error, SimulationError::Sink { step: 4, cause } if cause.to_string() == "no room left"),
+        "{error}"
+    );
+    assert_eq!(sink.taken, 4);
+}

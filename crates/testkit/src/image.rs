@@ -1,0 +1,215 @@
+//! Images of meshes under motions, and the same mesh under other numbers.
+
+use crate::Random;
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+
+/// What [`Mesh::new`] takes.
+struct Parts<const D: usize, const N: usize> {
+    points: Vec<[f64; D]>,
+    cells: Vec<[usize; N]>,
+    facet_groups: FacetGroups<D>,
+    element_groups: ElementGroups,
+}
+
+impl<const D: usize, const N: usize> Parts<D, N> {
+    fn of(mesh: &Mesh<D, N>) -> Self {
+        let facet_groups = mesh.facet_groups().iter().map(|(name, facets)| {
+            (name.clone(), facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index())).collect())
+        });
+        let element_groups = mesh
+            .element_groups()
+            .iter()
+            .map(|(name, elements)| (name.clone(), elements.iter().map(|e| e.index()).collect()));
+        Self {
+            points: mesh.points().to_vec(),
+            cells: mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect(),
+            facet_groups: facet_groups.collect(),
+            element_groups: element_groups.collect(),
+        }
+    }
+
+    fn mesh(self) -> Result<Mesh<D, N>, MeshError> {
+        Mesh::new(self.points, &self.cells, &self.facet_groups, &self.element_groups)
+    }
+}
+
+/// The mesh turned about the origin by `angle` (rad); numbers and groups are kept.
+///
+/// # Errors
+/// None that the mesh did not have.
+pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshError> {
+    let (sin, cos) = angle.sin_cos();
+    let mut parts = Parts::of(mesh);
+    parts.points.iter_mut().for_each(|p| *p = [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]]);
+    parts.mesh()
+}
+
+/// The mesh seen in a mirror, x → −x; numbers and groups are kept.
+///
+/// # Errors
+/// None that the mesh did not have.
+pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    let mut parts = Parts::of(mesh);
+    parts.points.iter_mut().for_each(|p| p[0] = -p[0]);
+    // The mirror turns the elements round; the core would mend and count them.
+    parts.cells.iter_mut().for_each(|cell| cell.swap(1, 2));
+    parts.mesh()
+}
+
+/// The mesh moved by `by` (m); numbers and groups are kept.
+///
+/// # Errors
+/// None that the mesh did not have, unless `by` is not finite.
+pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D]) -> Result<Mesh<D, N>, MeshError> {
+    let mut parts = Parts::of(mesh);
+    parts.points.iter_mut().for_each(|p| (0..D).for_each(|c| p[c] += by[c]));
+    parts.mesh()
+}
+
+/// Which number each node and element has got.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Renumbering {
+    /// New number of each node, by its old one.
+    pub node: Vec<usize>,
+    /// New number of each element, by its old one.
+    pub element: Vec<usize>,
+}
+
+impl Renumbering {
+    /// A nodal field in the new order.
+    #[must_use]
+    pub fn nodal<T: Copy>(&self, field: &[T]) -> Vec<T> {
+        permuted(&self.node, field)
+    }
+}
+
+/// `values` with entry i at place `new[i]`.
+fn permuted<T: Copy>(new: &[usize], values: &[T]) -> Vec<T> {
+    let mut order: Vec<usize> = (0..new.len()).collect();
+    order.sort_unstable_by_key(|&i| new[i]);
+    order.into_iter().map(|i| values[i]).collect()
+}
+
+/// The mesh with its nodes and elements in random order; groups name the same facets and
+/// elements as before. Each element also starts at another of its nodes.
+///
+/// # Errors
+/// None that the mesh did not have.
+pub fn renumbered<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    seed: u64,
+) -> Result<(Mesh<D, N>, Renumbering), MeshError> {
+    let mut random = Random::new(seed);
+    let node = random.permutation(mesh.node_count());
+    let element = random.permutation(mesh.element_count());
+    let mut parts = Parts::of(mesh);
+    for cell in &mut parts.cells {
+        *cell = cell.map(|n| node[n]);
+        if D > 1 {
+            // Turning a triangle keeps its orientation, turning a bar would not.
+            cell.rotate_left((random.bits() % N as u64) as usize);
+        }
+    }
+    parts.cells = permuted(&element, &parts.cells);
+    parts.points = permuted(&node, &parts.points);
+    parts.facet_groups.values_mut().flatten().for_each(|facet| *facet = facet.map(|n| node[n]));
+    parts.element_groups.values_mut().flatten().for_each(|e| *e = element[*e]);
+    Ok((parts.mesh()?, Renumbering { node, element }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{disc, random_rectangle};
+    use percute_core::ids::{ElementId, NodeId};
+    use percute_core::mesh::BarMesh;
+
+    /// A mesh with both kinds of groups.
+    fn grouped() -> TriangleMesh {
+        let mut parts = Parts::of(&random_rectangle(2.0, 1.0, 5, 9).unwrap());
+        parts.element_groups.insert("some".to_string(), vec![0, 3, 7]);
+        parts.mesh().unwrap()
+    }
+
+    /// Total of a function of the outward normals over a group, weighted with lengths.
+    fn normals(mesh: &TriangleMesh, group: &str) -> [f64; 2] {
+        mesh.facet_groups()[group]
+            .iter()
+            .map(|&f| mesh.facet_normal(f))
+            .fold([0.0; 2], |sum, (n, length)| [sum[0] + n[0] * length, sum[1] + n[1] * length])
+    }
+
+    /// Lengths are of order 1, so that 1e-13 is rounding of a few operations.
+    fn close(a: [f64; 2], b: [f64; 2]) -> bool {
+        (a[0] - b[0]).abs() < 1e-13 && (a[1] - b[1]).abs() < 1e-13
+    }
+
+    /// The bottom of the rectangle, with −2 e_y for its normals, turns to +2 e_x by a quarter.
+    #[test]
+    fn a_quarter_turn() {
+        let mesh = grouped();
+        let image = rotated(&mesh, std::f64::consts::FRAC_PI_2).unwrap();
+        for (p, q) in mesh.points().iter().zip(image.points()) {
+            assert!(close(*q, [-p[1], p[0]]));
+        }
+        assert!(close(normals(&mesh, "bottom"), [0.0, -2.0]));
+        assert!(close(normals(&image, "bottom"), [2.0, 0.0]));
+        assert_eq!((image.mended_elements(), image.cells()), (0, mesh.cells()));
+        assert_eq!(image.element_groups(), mesh.element_groups());
+    }
+
+    #[test]
+    fn a_mirror_image_needs_no_mending() {
+        let mesh = grouped();
+        let image = mirrored(&mesh).unwrap();
+        assert_eq!(image.mended_elements(), 0);
+        assert!(close(normals(&mesh, "left"), [-1.0, 0.0]));
+        assert!(close(normals(&image, "left"), [1.0, 0.0]));
+        assert_eq!(mirrored(&image).unwrap().points(), mesh.points());
+    }
+
+    #[test]
+    fn a_translation() {
+        let mesh = disc(1.0, 0.4).unwrap();
+        let image = translated(&mesh, [3.0, -2.0]).unwrap();
+        for (p, q) in mesh.points().iter().zip(image.points()) {
+            assert!(close(*q, [p[0] + 3.0, p[1] - 2.0]));
+        }
+        assert_eq!(image.facet_groups(), mesh.facet_groups());
+    }
+
+    /// Under its new number each node is where it was, each element has the same corners, and
+    /// groups hold the same facets and elements.
+    #[test]
+    fn renumbering_moves_nothing() {
+        let mesh = grouped();
+        let (image, new) = renumbered(&mesh, 4).unwrap();
+        assert_ne!(new.node, (0..mesh.node_count()).collect::<Vec<_>>());
+        assert_eq!(new.nodal(mesh.points()), image.points());
+        assert_eq!(image.mended_elements(), 0);
+        for old in 0..mesh.element_count() {
+            let mut expected: Vec<usize> = mesh.cells()[old].iter().map(|n| new.node[n.index()]).collect();
+            let mut found: Vec<usize> = image.cells()[new.element[old]].iter().map(|n| n.index()).collect();
+            expected.sort_unstable();
+            found.sort_unstable();
+            assert_eq!(expected, found);
+        }
+        for group in ["left", "right", "bottom", "top"] {
+            assert!(close(normals(&mesh, group), normals(&image, group)), "{group}");
+        }
+        let centre =
+            |mesh: &TriangleMesh, e: &ElementId| mesh.cell_points(*e).iter().map(|p| p[0] + 10.0 * p[1]).sum::<f64>();
+        let total = |mesh: &TriangleMesh| mesh.element_groups()["some"].iter().map(|e| centre(mesh, e)).sum::<f64>();
+        // Sums of nine coordinates of order 10, in another order.
+        assert!((total(&mesh) - total(&image)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bars_can_be_renumbered() {
+        let mesh = BarMesh::uniform_bar(1.0, 7).unwrap();
+        let (image, new) = renumbered(&mesh, 1).unwrap();
+        assert_eq!(image.mended_elements(), 0);
+        let end = image.facets()[image.facet_groups()["end"][0].index()].nodes[0];
+        assert_eq!((end, image.points()[end.index()]), (NodeId::new(new.node[7]), [1.0]));
+    }
+}
