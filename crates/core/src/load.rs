@@ -118,7 +118,7 @@ impl<const C: usize> Table<C> {
     }
 }
 
-/// Components of the motion prescribed on a group of facets, ∂₁Ω (eq. [4]).
+/// Components of the motion prescribed on a group of facets, ∂₁Ω (eq. \[4\]).
 #[derive(Clone, Debug)]
 pub struct Support<const D: usize> {
     /// Group of facets.

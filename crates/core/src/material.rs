@@ -1,4 +1,4 @@
-//! Isotropic linear elasticity in 1D and 2D, eq. [9].
+//! Isotropic linear elasticity in 1D and 2D, eq. \[9\].
 
 use thiserror::Error;
 
@@ -22,6 +22,7 @@ pub struct MaterialError {
 /// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
+    young: f64,
     lambda: f64,
     shear: f64,
     density: f64,
@@ -47,7 +48,7 @@ impl Elastic {
     pub fn bar(young: f64, density: f64, section: f64) -> Result<Self, MaterialError> {
         require(section > 0.0, "section", section, "m²", "positive")?;
         Self::checked(young, 0.0, density)?;
-        Ok(Self { lambda: 0.0, shear: young / 2.0, density, extent: section })
+        Ok(Self { young, lambda: 0.0, shear: young / 2.0, density, extent: section })
     }
 
     /// Plane stress: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
@@ -70,13 +71,19 @@ impl Elastic {
     fn plane(young: f64, poisson: f64, density: f64, thickness: f64, lambda: f64) -> Result<Self, MaterialError> {
         Self::checked(young, poisson, density)?;
         require(thickness > 0.0, "thickness", thickness, "m", "positive")?;
-        Ok(Self { lambda, shear: young / (2.0 * (1.0 + poisson)), density, extent: thickness })
+        Ok(Self { young, lambda, shear: young / (2.0 * (1.0 + poisson)), density, extent: thickness })
     }
 
     fn checked(young: f64, poisson: f64, density: f64) -> Result<(), MaterialError> {
         require(young > 0.0, "young", young, "Pa", "positive")?;
         require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "(no unit)", "above -1 and below 0.5")?;
         require(density > 0.0, "density", density, "kg/m³", "positive")
+    }
+
+    /// Young's modulus E (Pa).
+    #[must_use]
+    pub fn young(&self) -> f64 {
+        self.young
     }
 
     /// Density ρ (kg/m³).

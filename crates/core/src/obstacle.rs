@@ -31,7 +31,7 @@ pub enum PlaneError {
     },
 }
 
-/// A rigid plane that the body may touch, eq. [2] and [3].
+/// A rigid plane that the body may touch, eq. \[2\] and \[3\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane<const D: usize> {
     point: [f64; D],
@@ -63,6 +63,12 @@ impl<const D: usize> Plane<D> {
         Ok(Self { point, normal: normal.map(|n| n / length), friction, group })
     }
 
+    /// The point it goes through (m).
+    #[must_use]
+    pub fn point(&self) -> &[f64; D] {
+        &self.point
+    }
+
     /// Outward unit normal n.
     #[inline]
     #[must_use]
@@ -90,7 +96,7 @@ impl<const D: usize> Plane<D> {
         (0..D).map(|c| (x[c] - self.point[c]) * self.normal[c]).sum()
     }
 
-    /// Splits a vector into its normal component and its tangential part, eq. [1].
+    /// Splits a vector into its normal component and its tangential part, eq. \[1\].
     ///
     /// In 2D the tangential part is built from the tangent, not by subtraction: it is orthogonal to
     /// the normal to rounding of itself, however large the normal component is.
@@ -106,7 +112,7 @@ impl<const D: usize> Plane<D> {
         (dot(v, &self.normal), tangential)
     }
 
-    /// Projects a force into Coulomb's cone: F_n ← max(0, F_n), ‖F_t‖ ≤ μF_n, eq. [49], [50].
+    /// Projects a force into Coulomb's cone: F_n ← max(0, F_n), ‖F_t‖ ≤ μF_n, eq. \[49\], \[50\].
     #[inline]
     #[must_use]
     pub fn project_into_cone(&self, force: &[f64; D]) -> [f64; D] {

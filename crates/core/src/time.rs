@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// Runs longer than this many steps are taken for a mistake of unit.
-const MOST_STEPS: f64 = 1e9;
+const MOST_STEPS: f64 = 1e8;
 
 /// Why a time grid was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
@@ -19,8 +19,18 @@ pub enum TimeError {
     /// No steps at all.
     #[error("`steps` is empty; give at least one time step in seconds")]
     Empty,
+    /// A step that is lost in the sum, or a sum that is infinite.
+    #[error("`steps[{index}]` is {step:e} s, which cannot be added to the {time:e} s before it")]
+    Lost {
+        /// Position in the list.
+        index: usize,
+        /// Its value (s).
+        step: f64,
+        /// Time before it (s).
+        time: f64,
+    },
     /// More steps than any run can have.
-    #[error("an end at {end} s with steps of {step} s makes {count:.3e} steps; at most 1e9 are possible")]
+    #[error("an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps; at most 1e8 are possible")]
     TooMany {
         /// End of the run (s).
         end: f64,
@@ -46,6 +56,9 @@ impl TimeGrid {
         positive("end", end)?;
         if count == 0 {
             return Err(TimeError::Empty);
+        }
+        if count as f64 > MOST_STEPS {
+            return Err(TimeError::TooMany { end, step: end / count as f64, count: count as f64 });
         }
         Ok(Self { instants: (0..=count).map(|n| end * (n as f64 / count as f64)).collect() })
     }
@@ -77,7 +90,11 @@ impl TimeGrid {
         let mut time = 0.0;
         for (i, &step) in steps.iter().enumerate() {
             positive(&format!("steps[{i}]"), step)?;
-            time += step;
+            let later = time + step;
+            if later <= time || !later.is_finite() {
+                return Err(TimeError::Lost { index: i, step, time });
+            }
+            time = later;
             instants.push(time);
         }
         Ok(Self { instants })
@@ -116,7 +133,7 @@ impl TimeGrid {
     }
 
     /// The factor h_n of a_n in v_{n+½} = v_{n−½} + h_n a_n: ½(Δt_{n−1} + Δt_n), at the start ½Δt_0
-    /// (eq. [29], [31]).
+    /// (eq. \[29\], \[31\]).
     #[must_use]
     pub fn velocity_step(&self, n: usize) -> f64 {
         if n == 0 { 0.5 * self.step(0) } else { 0.5 * (self.step(n - 1) + self.step(n)) }

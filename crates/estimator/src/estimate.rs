@@ -3,7 +3,7 @@
 use crate::residual::Residuals;
 use percute_core::ids::ElementId;
 
-/// The three parts of η (J), eq. [14].
+/// The three parts of η (J), eq. \[14\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Parts {
     /// ½∫ρ(u̇_DA − u̇_CA)².
@@ -28,24 +28,24 @@ impl Parts {
 pub struct Sample {
     /// t (s).
     pub time: f64,
-    /// η(t) (J), eq. [14].
+    /// η(t) (J), eq. \[14\].
     pub parts: Parts,
-    /// d(t) (J), eq. [24].
+    /// d(t) (J), eq. \[24\].
     pub reference: f64,
 }
 
 /// The error measures. Absolute values are in J^½, per metre of thickness where that is 1 m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorMeasures {
-    /// √sup η, eq. [15].
+    /// √sup η, eq. \[15\].
     pub sup: f64,
-    /// √((1/T)∫η dt), eq. [16].
+    /// √((1/T)∫η dt), eq. \[16\].
     pub mean: f64,
-    /// sup over `reference_sup`, eq. [22].
+    /// sup over `reference_sup`, eq. \[22\].
     pub relative_sup: f64,
     /// mean over `reference_mean`.
     pub relative_mean: f64,
-    /// D = √sup d, eq. [23].
+    /// D = √sup d, eq. \[23\].
     pub reference_sup: f64,
     /// √((1/T)∫d dt).
     pub reference_mean: f64,
@@ -62,7 +62,7 @@ pub struct Estimate {
     pub parts: Parts,
     /// η and d at all samples, in order of time.
     pub over_time: Vec<Sample>,
-    /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. [20].
+    /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. \[20\].
     pub by_element: Vec<f64>,
     /// How far each field is from exactly admissible.
     pub residuals: Residuals,

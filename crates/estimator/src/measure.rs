@@ -53,7 +53,7 @@ struct NodalForce<const D: usize> {
 }
 
 impl<const D: usize, const N: usize> Balanced<D, N> {
-    /// Half way between two instants, [57]–[58].
+    /// Half way between two instants, \[57\]–\[58\].
     pub(crate) fn middle(a: &Self, b: &Self) -> Self {
         let mut middle = *a;
         for k in 0..N {

@@ -12,7 +12,7 @@ pub enum ContactForce {
     #[default]
     Sharp,
     /// The paper's: reaction over tributary length, from one step after impact to one step before
-    /// release and away from the border of the contact zone (eq. [45]–[50]).
+    /// release and away from the border of the contact zone (eq. \[45\]–\[50\]).
     Paper,
 }
 

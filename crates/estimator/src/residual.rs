@@ -10,19 +10,19 @@
 /// in its turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residuals {
-    /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. [6], [7].
+    /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].
     pub initial_conditions: f64,
-    /// u_CA = u_d on supports, eq. [4].
+    /// u_CA = u_d on supports, eq. \[4\].
     pub supports: f64,
     /// u_CA on the plane when a contact phase begins (problem P_CA).
     pub rendezvous: f64,
-    /// Normal velocity during contact, eq. [42].
+    /// Normal velocity during contact, eq. \[42\].
     pub normal_velocity: f64,
-    /// Penetration at the knots, eq. [3].
+    /// Penetration at the knots, eq. \[3\].
     pub penetration_at_knots: f64,
     /// Penetration between the knots.
     pub penetration_between_knots: f64,
-    /// F_DA in Coulomb's cone, eq. [18].
+    /// F_DA in Coulomb's cone, eq. \[18\].
     pub cone: f64,
     /// F_DA where or when a node does not touch.
     pub force_off_contact: f64,

@@ -4,7 +4,7 @@ use super::source::CaseError;
 use super::spelling::hint;
 use super::table::Table;
 use percute_estimator::Options;
-use percute_estimator::options::UnknownName;
+use percute_estimator::UnknownName;
 use std::str::FromStr;
 
 /// Reads the options; all have a default.

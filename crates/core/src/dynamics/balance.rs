@@ -3,6 +3,7 @@
 use super::Dynamics;
 use crate::ids::NodeId;
 use crate::obstacle::dot;
+use crate::problem::PrescribedComponent;
 
 /// Energies and works at t_n (J), and the drift of the two balances so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,6 +82,10 @@ pub(super) struct BalanceKeeper<const D: usize> {
     impulse: [f64; D],
     /// Sum of the sizes of all works put in by loads and supports (J).
     energy_put_in: f64,
+    /// Largest kinetic energy that the loads or supports of one instant give by themselves (J).
+    kick: f64,
+    /// Kinetic energy that rounding alone may reach (J).
+    rounding: f64,
 }
 
 /// What the integrator knows at t_n.
@@ -107,6 +112,8 @@ impl<const D: usize> BalanceKeeper<D> {
             initial_momentum: [0.0; D],
             impulse: [0.0; D],
             energy_put_in: 0.0,
+            kick: 0.0,
+            rounding: rounding_energy(dynamics),
         }
     }
 
@@ -115,7 +122,8 @@ impl<const D: usize> BalanceKeeper<D> {
     }
 
     /// Takes in one instant; whether the energy is still plausible: below ten times what was
-    /// there or put in, which only an instability exceeds.
+    /// there or put in, which only an instability exceeds. What a load gives before it has done
+    /// any work, when it starts on a body at rest, and rounding do not count.
     pub(super) fn record<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, now: &Instant<'_, D>) -> bool {
         let total_force = self.advance_works(dynamics, now);
         let times = dynamics.times;
@@ -140,7 +148,7 @@ impl<const D: usize> BalanceKeeper<D> {
         b.largest_energy = works.iter().fold(b.largest_energy.max(energy), |m, w| m.max(w.abs()));
         b.energy_drift = ratio(b.largest_energy_gap, b.largest_energy);
         b.impulse_drift = ratio(b.largest_impulse_gap, b.largest_impulse);
-        energy.is_finite() && energy <= 10.0 * (b.initial + self.energy_put_in)
+        energy.is_finite() && energy <= 10.0 * (b.initial + self.energy_put_in + self.kick) + self.rounding
     }
 
     /// Adds the works of the step that ends at this instant; returns the sum of all external
@@ -156,6 +164,9 @@ impl<const D: usize> BalanceKeeper<D> {
         if !self.external.is_empty() {
             dynamics.external_forces(now.n, &mut self.external);
             self.external.iter().for_each(&mut add);
+            let h = dynamics.times.velocity_step(now.n);
+            let given = self.external.iter().zip(dynamics.inverse_mass()).map(|(f, m)| dot(f, f) * m).sum::<f64>();
+            self.kick = self.kick.max(0.5 * h * h * given);
             let (mut work, external) = (0.0, &self.external);
             self.loads.advance(now.displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
             if !first {
@@ -170,6 +181,13 @@ impl<const D: usize> BalanceKeeper<D> {
             force
         };
         (0..self.support_reaction.len()).for_each(|i| add(&along(i)));
+        let moving = |p: &PrescribedComponent| {
+            // a_n already prepares the next velocity.
+            let next = (now.n + 1).min(dynamics.times.step_count());
+            let v = [now.n, next].map(|n| problem.prescribed_velocity(p, dynamics.times.instants()[n]));
+            0.5 * problem.mass()[p.node.index()] * v[0].abs().max(v[1].abs()).powi(2)
+        };
+        self.kick = self.kick.max(problem.prescribed().iter().map(moving).sum());
         let mut work = 0.0;
         self.supports.advance(now.displacement, along, |_, mean, path| work += dot(&mean, &path));
         if !first {
@@ -192,6 +210,16 @@ impl<const D: usize> BalanceKeeper<D> {
         );
         total
     }
+}
+
+/// Rounding of the displacements, some 1e-16 of their size, moves nodes by as much in a step; the
+/// factor covers its growth over any number of steps.
+fn rounding_energy<const D: usize, const N: usize>(dynamics: &Dynamics<'_, D, N>) -> f64 {
+    let problem = dynamics.problem;
+    let largest = problem.initial_displacement().iter().flatten().fold(0.0_f64, |m, u| m.max(u.abs()));
+    let step = (0..dynamics.times.step_count()).map(|n| dynamics.times.step(n)).fold(f64::INFINITY, f64::min);
+    let speed = 1e-10 * largest / step;
+    problem.mass().iter().sum::<f64>() * speed * speed
 }
 
 fn ratio(part: f64, whole: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! The loop over the steps, eq. [28]–[32].
+//! The loop over the steps, eq. \[28\]–\[32\].
 
 use super::balance::{BalanceKeeper, Instant};
 use super::contact::Contact;
@@ -16,7 +16,8 @@ pub enum SimulationError {
     /// Energy out of nothing.
     #[error(
         "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the energy is \
-         ten times what was there or put in; take smaller time steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s)"
+         ten times what was there or put in; take smaller time steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), \
+         or steps that do not jump from one to the next"
     )]
     Unstable {
         /// The step.
@@ -40,6 +41,8 @@ pub enum SimulationError {
     StartsTooNear {
         /// The node.
         node: usize,
+        /// Which plane, from 0.
+        obstacle: usize,
         /// Its gap (m).
         gap: f64,
         /// Its speed towards the plane (m/s).
@@ -74,8 +77,7 @@ pub struct Simulation {
 
 /// Runs a problem over a time grid and hands every step n = 0 … N to `sink`.
 ///
-/// The observer is asked before each step; if it breaks, the run ends cleanly after the last
-/// whole step.
+/// The observer is asked after each step; if it breaks, the run ends cleanly there.
 ///
 /// # Errors
 /// [`SimulationError`]: an unstable run, a start too near to a plane, a sink that fails.
@@ -95,11 +97,6 @@ pub fn simulate<const D: usize, const N: usize>(
     let mut interrupted = false;
 
     for n in 0..=times.step_count() {
-        let progress = Progress { stage: "simulating", done: n, total: times.step_count() };
-        if n > 0 && observer.observe(progress) == ControlFlow::Break(()) {
-            interrupted = true;
-            break;
-        }
         let strain = dynamics.forces(n, &displacement, &mut force);
         dynamics.apply_supports(n, &mut force, |i, reaction| balance.support_reaction[i] = reaction);
         contact.react(&dynamics, n, &displacement, &velocity, &mut force);
@@ -123,6 +120,11 @@ pub fn simulate<const D: usize, const N: usize>(
         };
         sink.push(&step).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         done = n;
+        let progress = Progress { stage: "simulating", done, total: times.step_count() };
+        if observer.observe(progress) == ControlFlow::Break(()) && n < times.step_count() {
+            interrupted = true;
+            break;
+        }
         advance(&dynamics, n, &force, &mut velocity, &mut displacement);
     }
     Ok(Simulation { balance: *balance.balance(), steps: done, interrupted })
@@ -184,7 +186,16 @@ fn refuse_a_start_too_near<const D: usize, const N: usize>(
         let smallest_gap = 0.25 * speed * step;
         if gap < smallest_gap {
             let largest_step = 4.0 * gap / speed;
-            return Err(SimulationError::StartsTooNear { node: i, gap, speed, step, smallest_gap, largest_step });
+            let obstacle = node.obstacle;
+            return Err(SimulationError::StartsTooNear {
+                node: i,
+                obstacle,
+                gap,
+                speed,
+                step,
+                smallest_gap,
+                largest_step,
+            });
         }
     }
     Ok(())

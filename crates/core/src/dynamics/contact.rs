@@ -75,7 +75,9 @@ impl<const D: usize> Contact<D> {
             let node = contact.node.index();
             let gap = problem.surface().gap(at, &problem.initial_displacement()[node], problem.obstacles());
             let (normal, _) = problem.obstacles()[contact.obstacle].split(&problem.initial_velocity()[node]);
-            self.touching[at] = self.touching_next[at] && gap <= problem.contact_tolerance() && normal == 0.0;
+            self.touching[at] = self.touching_next[at]
+                && gap <= problem.contact_tolerance()
+                && normal.abs() <= problem.speed_tolerance();
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The critical time step Δt_c = 2/ω_max, eq. [34].
+//! The critical time step Δt_c = 2/ω_max, eq. \[34\].
 
 use super::Stiffness;
 use crate::problem::Problem;

@@ -14,7 +14,7 @@ pub use internal_force::Stiffness;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
-/// The discrete equilibrium M a_n = F_n − K u_n + R_n (eq. [30]) of a problem on a time grid.
+/// The discrete equilibrium M a_n = F_n − K u_n + R_n (eq. \[30\]) of a problem on a time grid.
 ///
 /// The integrator and whoever derives velocities from stored displacements call the same
 /// functions in the same order, and so get the same bits.

@@ -12,10 +12,10 @@ fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
 
 /// A number of elements that must not be zero, nor exceed what memory can hold.
 fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
-    if (1..=100_000_000).contains(&value) {
+    if (1..=20_000_000).contains(&value) {
         return Ok(());
     }
-    Err(MeshError::Generator { name, value: value as f64, allowed: "a number of elements from 1 to 100 000 000" })
+    Err(MeshError::Generator { name, value: value as f64, allowed: "a number of elements from 1 to 20 000 000" })
 }
 
 impl BarMesh {

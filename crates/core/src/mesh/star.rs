@@ -98,9 +98,6 @@ impl Stars {
                 let Some(facet) = exit.filter(|_| exit != start) else { break };
                 let Facet { owner, neighbour, .. } = facets[facet.index()];
                 let Some(next) = neighbour.map(|n| if n == element { owner } else { n }) else { break };
-                if sides(next, node)[0] != exit {
-                    return Err(MeshError::Overlap { elements: [element.index(), next.index()] });
-                }
                 element = next;
             }
             if count != around.len() {

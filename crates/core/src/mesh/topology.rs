@@ -41,6 +41,13 @@ fn opposite<const D: usize, const N: usize>(cell: &[NodeId; N], k: usize) -> [No
     nodes
 }
 
+/// Whether a facet, seen from its element in counterclockwise order, runs from the lower to the
+/// higher node; in 1D, whether it is the right end. Two elements on either side differ.
+fn runs_up<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeId; D], ElementId, u8)) -> bool {
+    let (cell, k) = (&cells[side.1.index()], usize::from(side.2));
+    if D == 1 { k == 0 } else { cell[(k + 1) % N] < cell[(k + 2) % N] }
+}
+
 /// All facets in the order of their nodes, and those of each element.
 #[allow(clippy::type_complexity)]
 pub(super) fn facets<const D: usize, const N: usize>(
@@ -62,6 +69,11 @@ pub(super) fn facets<const D: usize, const N: usize>(
                 nodes: shared[0].0.iter().map(|n| n.index()).collect(),
                 elements: shared.iter().map(|s| s.1.index()).collect(),
             });
+        }
+        if let [one, other] = shared
+            && runs_up(cells, one) == runs_up(cells, other)
+        {
+            return Err(MeshError::Overlap { elements: [one.1.index(), other.1.index()] });
         }
         let id = FacetId::new(facets.len());
         facets.push(Facet { nodes: shared[0].0, owner: shared[0].1, neighbour: shared.get(1).map(|s| s.1) });

@@ -123,6 +123,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
         let Supports { facets: supported, prescribed, motions } = boundary::supports(mesh, &self.supports)?;
+        if prescribed.len() == D * mesh.node_count() {
+            return Err(Cause::NoFreedom.at("support", None, ""));
+        }
         let facet_loads = boundary::tractions(mesh, &self.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.body_forces, volume)?;
 
@@ -232,7 +235,7 @@ fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N
             return Err(fail(Cause::Penetrates { node, depth: -gap }, "point"));
         }
         let (normal, _) = problem.obstacles[contact.obstacle].split(&problem.initial_velocity[node]);
-        if gap <= tolerance && normal < 0.0 && contact.free {
+        if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
             return Err(fail(Cause::StrikesAtStart { node, gap, speed: -normal }, "point"));
         }
     }

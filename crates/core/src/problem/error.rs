@@ -107,6 +107,9 @@ pub enum Cause {
     /// A support of nothing.
     #[error("no component is named; give at least one, as in components = [\"x\"]")]
     NoComponent,
+    /// Nothing is left to move.
+    #[error("the supports prescribe every component of every node; nothing is left to simulate")]
+    NoFreedom,
     /// Two supports that disagree.
     #[error("component {component} of node {node} is already prescribed by support {first} with another motion")]
     ConflictingSupports {

@@ -1,4 +1,4 @@
-//! The reference problem, eq. [3]–[11], stated and checked.
+//! The reference problem, eq. \[3\]–\[11\], stated and checked.
 
 mod boundary;
 mod builder;
@@ -104,19 +104,19 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         &self.element_material
     }
 
-    /// Lumped mass of each node (kg), eq. [35]: each element gives ρ|E|/(D+1) to each of its nodes.
+    /// Lumped mass of each node (kg), eq. \[35\]: each element gives ρ|E|/(D+1) to each of its nodes.
     #[must_use]
     pub fn mass(&self) -> &[f64] {
         &self.mass
     }
 
-    /// u₀ at the nodes (m), eq. [6].
+    /// u₀ at the nodes (m), eq. \[6\].
     #[must_use]
     pub fn initial_displacement(&self) -> &[[f64; D]] {
         &self.initial_displacement
     }
 
-    /// v₀ at the nodes (m/s), eq. [7].
+    /// v₀ at the nodes (m/s), eq. \[7\].
     #[must_use]
     pub fn initial_velocity(&self) -> &[[f64; D]] {
         &self.initial_velocity
@@ -129,7 +129,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.supported[facet.index()]
     }
 
-    /// All prescribed components of nodes, eq. [4], by node.
+    /// All prescribed components of nodes, eq. \[4\], by node.
     #[must_use]
     pub fn prescribed(&self) -> &[PrescribedComponent] {
         &self.prescribed
@@ -217,6 +217,13 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn contact_tolerance(&self) -> f64 {
         1e-12 * self.mesh.size()
+    }
+
+    /// Normal speeds below this count as zero at the start (m/s): 1e-12 of the largest speed, so that
+    /// sliding along a tilted plane does not hang on rounding.
+    #[must_use]
+    pub fn speed_tolerance(&self) -> f64 {
+        1e-12 * self.initial_velocity.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()))
     }
 
     /// Moments ∫ F φ_i (N) on a facet of area `area` of a density that is linear with these nodal

@@ -56,7 +56,7 @@ impl<const D: usize> ContactSurface<D> {
         &self.facets
     }
 
-    /// The gap of a node with this displacement (m), eq. [3].
+    /// The gap of a node with this displacement (m), eq. \[3\].
     #[inline]
     #[must_use]
     pub fn gap(&self, at: usize, displacement: &[f64; D], planes: &[Plane<D>]) -> f64 {

@@ -46,7 +46,7 @@ fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, what: &str) {
 }
 
 /// A uniform chain with half masses at its free ends has the modes cos(jπi/n) and, with fixed ends,
-/// sines; ω_j = (2c/h) sin(j'π/2n) with j' = n, n − ½, n − 1 for the highest of the three [33].
+/// sines; ω_j = (2c/h) sin(j'π/2n) with j' = n, n − ½, n − 1 for the highest of the three \[33\].
 #[test]
 fn uniform_bars_have_the_steps_of_their_modes() {
     for elements in [1, 2, 3, 10, 57, 400] {

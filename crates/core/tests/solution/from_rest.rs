@@ -27,7 +27,6 @@ fn moves(problem: &TriangleProblem) -> bool {
 
 /// At the first step with a load u is still zero, hence the work, but v_n = ½Δt a_n is not.
 #[test]
-#[ignore = "Unstable at the first step with a load: (Δt²/8) a·M a above ten times zero"]
 fn a_load_that_grows_from_zero_is_no_instability() {
     let ramp = Table::new(vec![0.0, 1e-5], vec![[0.0, 0.0], [1e7, 0.0]]).unwrap();
     for value in [ramp, late([1e7, 0.0])] {
@@ -37,13 +36,11 @@ fn a_load_that_grows_from_zero_is_no_instability() {
 }
 
 #[test]
-#[ignore = "Unstable at the first step with a load: (Δt²/8) a·M a above ten times zero"]
 fn a_body_force_that_grows_from_zero_is_no_instability() {
     assert!(moves(&block().body_force(BodyForce { group: None, value: late([0.0, -1e9]) }).build().unwrap()));
 }
 
 #[test]
-#[ignore = "Unstable at the first step that moves: (Δt²/8) a·M a above ten times zero"]
 fn a_support_that_starts_late_is_no_instability() {
     let support = Support { group: "left".to_string(), components: [true, false], velocity: Some(late([10.0, 0.0])) };
     assert!(moves(&block().support(support).build().unwrap()));
@@ -52,7 +49,6 @@ fn a_support_that_starts_late_is_no_instability() {
 /// A linearised rotation has no strain: all energy there is, 1e-31 of what such displacements
 /// could hold, is rounding, and may grow by any factor.
 #[test]
-#[ignore = "Unstable at step 7: rounding above ten times the rounding of the start"]
 fn a_body_turned_at_rest_stays_at_rest() {
     let mesh = random_rectangle(0.05, 0.04, 6, 1).unwrap();
     let turned: Vec<_> = mesh.points().iter().map(|p| [-1e-3 * p[1], 1e-3 * p[0]]).collect();

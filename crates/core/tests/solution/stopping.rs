@@ -58,7 +58,7 @@ fn a_start_too_near_names_what_will_do() {
     let grid = |step: f64| TimeGrid::uniform(10.0 * step, 10).unwrap();
     let dt = 1e-6;
     let simulate_at = |gap: f64, step: f64| simulate(&near_bar(gap), &grid(step), &mut Discard, &mut Unobserved);
-    let Err(SimulationError::StartsTooNear { node, gap, speed, step, smallest_gap, largest_step }) =
+    let Err(SimulationError::StartsTooNear { node, gap, speed, step, smallest_gap, largest_step, .. }) =
         simulate_at(0.6e-4, dt)
     else {
         panic!("a gap of 0.15 |v|Δt was accepted");

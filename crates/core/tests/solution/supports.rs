@@ -1,4 +1,4 @@
-//! Prescribed motion [4].
+//! Prescribed motion \[4\].
 
 use crate::run::{aluminium, fixed, nodes_of, run};
 use percute_core::dynamics::critical_time_step;

@@ -1,4 +1,4 @@
-//! The paper's densities, eq. [45]–[50].
+//! The paper's densities, eq. \[45\]–\[50\].
 
 use super::{Densities, SurfaceStep, none};
 use percute_core::problem::{ContactFacet, Problem};

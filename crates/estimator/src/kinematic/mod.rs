@@ -1,6 +1,6 @@
 //! Kinematically admissible fields u_CA, w_CA (§6.1).
 //!
-//! [`FreeMotion`] carries the nodal values [39], [40], [43] of all nodes along the steps;
+//! [`FreeMotion`] carries the nodal values \[39\], \[40\], \[43\] of all nodes along the steps;
 //! [`ContactTrack`] replaces the normal component of a node that may touch by the solution of
 //! problem P_CA. Both end in an [`ElementMotion`], which only this module can make: the measure
 //! cannot be fed a raw finite-element field.

@@ -283,7 +283,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.impulse.1 += self.times.velocity_step(n) * normal(&self.levels[first].surface.reaction);
     }
 
-    /// ã after t_n at the beginning of the step, before t_{n+1} at its end [55].
+    /// ã after t_n at the beginning of the step, before t_{n+1} at its end \[55\].
     fn set_accelerations(&mut self, first: usize, interval: Interval<D>) {
         let surface = self.problem.surface().nodes();
         let inverse_mass = self.dynamics.inverse_mass();
