@@ -114,11 +114,10 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     /// which are not the input's.
     #[must_use]
     pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
-        let SimulationError::StartsTooNear { node, .. } = error else { return None };
-        let contact = self.problem.surface().nodes().iter().find(|contact| contact.node.index() == *node)?;
+        let SimulationError::StartsTooNear { obstacle, .. } = error else { return None };
         let document = DeTable::parse(self.source.text()).ok()?;
         let root = Table::root(&self.source, document.get_ref());
-        let place = percute_core::problem::Place { table: "obstacle", index: Some(contact.obstacle), key: "point" };
+        let place = percute_core::problem::Place { table: "obstacle", index: Some(*obstacle), key: "point" };
         Some(self.source.error(&place::find(&root, place), error.to_string()))
     }
 }

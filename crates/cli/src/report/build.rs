@@ -72,6 +72,7 @@ fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Probl
     let extreme =
         |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
     let obstacle = |plane: &percute_core::obstacle::Plane<D>| ObstacleSummary {
+        point: plane.point().to_vec(),
         normal: plane.normal().to_vec(),
         friction: plane.friction(),
         group: plane.group().map(str::to_string),
@@ -95,9 +96,9 @@ fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Probl
     }
 }
 
-/// The smallest ρc² of all materials (Pa), of the order of Young's modulus.
+/// The smallest Young's modulus of all materials (Pa).
 fn softest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    problem.materials().iter().map(|m| m.density() * m.wave_speed().powi(2)).fold(f64::INFINITY, f64::min)
+    problem.materials().iter().map(|m| m.young()).fold(f64::INFINITY, f64::min)
 }
 
 fn measures(error: &ErrorMeasures) -> Measures {

@@ -81,6 +81,7 @@ pub struct ProblemSummary {
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct ObstacleSummary {
+    pub point: Vec<f64>,
     pub normal: Vec<f64>,
     pub friction: f64,
     pub group: Option<String>,

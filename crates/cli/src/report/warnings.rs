@@ -105,7 +105,7 @@ fn units(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let message = format!(
-        "a stiffness of {} Pa with a body of {} m: did you mix units? percute takes metres, pascals, kilograms and seconds",
+        "a Young's modulus of {} Pa with a body of {} m: did you mix units? percute takes metres, pascals, kilograms and seconds",
         short(facts.softest, 3),
         short(facts.size, 3)
     );

@@ -135,6 +135,9 @@ fn loads_that_are_not_finite() {
 fn supports_that_hold_nothing_or_disagree() {
     let none = solid().support(support("left", [false, false], None));
     assert_eq!(refused(none), (place("support", Some(0), "components"), Cause::NoComponent));
+    let held = ["left", "right", "bottom", "top"];
+    let all = held.iter().fold(solid(), |solid, side| solid.support(support(side, [true, true], None)));
+    assert_eq!(refused(all), (place("support", None, ""), Cause::NoFreedom));
     let moving = |group, speed| support(group, [true, false], Some([speed, 0.0]));
     let disagree = solid().support(moving("bottom", 1.0)).support(moving("right", 2.0));
     let cause = Cause::ConflictingSupports { node: 1, component: 'x', first: 1 };

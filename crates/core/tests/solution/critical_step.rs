@@ -105,14 +105,3 @@ fn mixed_materials_match_the_dense_solver() {
         .unwrap();
     check(&problem, "two materials");
 }
-
-/// Everything held: no mode is left, and the element-wise step, which is finite, stands in.
-#[test]
-fn a_body_that_cannot_move_has_the_element_step() {
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
-    let held = ["left", "right"].into_iter().map(|side| fixed(side, [true, true]));
-    let builder = TriangleProblem::builder(mesh).material(aluminium());
-    let problem = held.fold(builder, |builder, support| builder.support(support)).build().unwrap();
-    assert_eq!(critical_time_step(&problem), element_time_step(&problem));
-    assert!(element_time_step(&problem) > 0.0);
-}

@@ -28,8 +28,10 @@ const BLOCK: usize = 256;
 const CHECK: usize = 16;
 /// Memory that a window may take unless told otherwise (bytes).
 const MODEST_MEMORY: usize = 1 << 30;
-/// More levels than this gain nothing.
-const MOST_LEVELS: usize = 64;
+/// More levels than this gain nothing; fewer make the maps of the elements too often.
+const LEVELS: std::ops::RangeInclusive<usize> = 8..=64;
+/// Elements times levels that are worked on between two looks at whether to stop: about a second.
+const WORK: usize = 2_000_000;
 
 /// Levels in work, and what has been summed so far.
 #[derive(Debug)]
@@ -58,13 +60,14 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         near.iter().for_each(|n| is_near[n.element.index()] = true);
         let mesh = problem.mesh();
         let numbers = D * (8 * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count());
-        let fitting = MODEST_MEMORY / (8 * numbers);
+        let wanted = (WORK / mesh.element_count()).clamp(*LEVELS.start(), *LEVELS.end());
+        let fitting = wanted.min(MODEST_MEMORY / (8 * numbers)).max(1);
         Self {
             problem,
             times,
             equilibration: Equilibration::new(problem),
             choice: options.acceleration,
-            size: options.window.unwrap_or(fitting.clamp(1, MOST_LEVELS)),
+            size: options.window.unwrap_or(fitting),
             levels: Vec::new(),
             carried: false,
             near,

@@ -39,7 +39,7 @@ impl BarStress {
         floor: f64,
     ) -> StressResiduals {
         let [a, m, b] = self.stress(loading);
-        let scale = a.abs().max(b.abs()).max(m.abs()).max(floor);
+        let scale = a.abs().max(b.abs()).max(m.abs()).max(floor).max(f64::MIN_POSITIVE);
         // Slopes of the quadratic at both ends against Γ_DA − f_d.
         let slopes = [(4.0 * m - 3.0 * a - b) / self.length, (3.0 * b + a - 4.0 * m) / self.length];
         let slope_scale = loading.volume.iter().map(|g| g[0].abs()).fold(scale / self.length, f64::max);
@@ -65,6 +65,14 @@ mod tests {
         assert!((map.energy(&loading) - exact).abs() < 1e-13 * exact);
         let r = map.residuals(&loading, 0.0);
         assert!(r.divergence < 1e-14 && r.edges < 1e-14);
+    }
+
+    /// Nothing at all is in balance.
+    #[test]
+    fn an_element_at_rest_has_no_residual() {
+        let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
+        let r = map.residuals(&Loading { traction: [[[0.0]], [[0.0]]], volume: [[0.0], [0.0]] }, 0.0);
+        assert_eq!((r.divergence, r.edges, r.inner), (0.0, 0.0, 0.0));
     }
 
     /// Tractions that do not balance leave a residual.
