@@ -1,5 +1,8 @@
 //! Effectivity in 2D: the estimated error over the true one, against a finer run.
 
+// A failure is a failed test, in helpers too.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::{MESHES, assert_close, block};

@@ -38,7 +38,7 @@ type Knot = (Vec<f64>, Vec<f64>);
 
 /// What comes out: e_sup, e_mean, D_sup, √mean d, and e_E.
 #[derive(Clone, Debug)]
-pub(crate) struct Result {
+pub(crate) struct HandEstimate {
     pub(crate) sup: f64,
     pub(crate) mean: f64,
     pub(crate) reference_sup: f64,
@@ -188,7 +188,7 @@ impl Bar {
     }
 
     /// The whole estimate.
-    pub(crate) fn estimate(&self, reading: ContactForce, choice: Acceleration, every: usize) -> Result {
+    pub(crate) fn estimate(&self, reading: ContactForce, choice: Acceleration, every: usize) -> HandEstimate {
         let (n, dt) = (self.elements, self.step());
         let history = self.simulate();
         let knots = self.kinematic(&history);
@@ -201,9 +201,6 @@ impl Bar {
             let (mut start, mut end) = (from.free.clone(), to.free.clone());
             start[0] += start_push / self.mass(0);
             end[0] += end_push / self.mass(0);
-            let mix = |a: &[f64], b: &[f64], x: f64, y: f64| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| x * a + y * b).collect()
-            };
             let elements = |knot: usize, acceleration: &[f64], gained: &[f64], force: &[f64], push: f64| {
                 let state = State { acceleration, gained, force, push, knot: &knots[knot] };
                 (0..n).map(|e| self.measure(e, &state, choice)).collect::<Vec<_>>()
@@ -224,16 +221,14 @@ impl Bar {
                 totals.add((k + 1 - first) as f64 * dt, &opened, middle.as_deref(), &closed);
             }
         }
-        let end = self.steps as f64 * dt;
-        Result {
-            sup: totals.sup[0].sqrt(),
-            mean: (totals.integral[0] / end).sqrt(),
-            reference_sup: totals.sup[1].sqrt(),
-            reference_mean: (totals.integral[1] / end).sqrt(),
-            by_element: totals.elements.iter().map(|i| (i / end).sqrt()).collect(),
-            admissible: knots.iter().all(|(u, _)| self.gap + u[0] >= -1e-13 * self.length),
-        }
+        let admissible = knots.iter().all(|(u, _)| self.gap + u[0] >= -1e-13 * self.length);
+        totals.finish(self.steps as f64 * dt, admissible)
     }
+}
+
+/// x a + y b.
+fn mix(a: &[f64], b: &[f64], x: f64, y: f64) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| x * a + y * b).collect()
 }
 
 /// Everything [`Bar::measure`] needs at one instant.
@@ -272,6 +267,17 @@ impl Totals {
                 self.integral[which] += share * total;
             }
             values.iter().zip(&mut self.elements).for_each(|(v, sum)| *sum += share * v[0]);
+        }
+    }
+
+    fn finish(self, end: f64, admissible: bool) -> HandEstimate {
+        HandEstimate {
+            sup: self.sup[0].sqrt(),
+            mean: (self.integral[0] / end).sqrt(),
+            reference_sup: self.sup[1].sqrt(),
+            reference_mean: (self.integral[1] / end).sqrt(),
+            by_element: self.elements.iter().map(|i| (i / end).sqrt()).collect(),
+            admissible,
         }
     }
 }

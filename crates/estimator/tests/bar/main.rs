@@ -1,5 +1,8 @@
 //! The impact of a bar: against a computation by hand, and against the exact solution.
 
+// A failure is a failed test, in helpers too.
+#![allow(clippy::unwrap_used)]
+
 mod hand;
 mod strip;
 
