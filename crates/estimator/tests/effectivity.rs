@@ -1,6 +1,6 @@
 //! Effectivity in 2D: the estimated error over the true one, against a finer run.
 
-// A failure is a failed test, in helpers too.
+// Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
 mod common;

@@ -1,6 +1,6 @@
 //! The absolute errors of the paper's table 1, under the assumptions that it leaves open.
 
-// A failure is a failed test, in helpers too.
+// Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
 mod common;

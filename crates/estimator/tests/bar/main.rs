@@ -1,6 +1,6 @@
 //! The impact of a bar: against a computation by hand, and against the exact solution.
 
-// A failure is a failed test, in helpers too.
+// Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
 mod hand;

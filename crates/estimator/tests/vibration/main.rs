@@ -1,6 +1,6 @@
 //! Free vibration in one mode, and motions without any error.
 
-// A failure is a failed test, in helpers too.
+// Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
 mod bar;
