@@ -17,6 +17,7 @@ mod level;
 mod measure;
 mod options;
 mod pipeline;
+pub mod reference;
 mod residual;
 mod stress;
 mod traction;

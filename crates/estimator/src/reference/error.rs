@@ -1,0 +1,63 @@
+//! What can keep a true error from being computed.
+
+use thiserror::Error;
+
+/// Why a simulation could not be compared with its reference.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ReferenceError {
+    /// Steps that do not follow each other.
+    #[error("step {given} came where step {expected} was expected; steps must come in order, from 0 to {last}")]
+    Order {
+        /// The step given.
+        given: usize,
+        /// The step expected.
+        expected: usize,
+        /// The last step of the time grid.
+        last: usize,
+    },
+    /// Fields of another problem.
+    #[error("{field} has {given} values, but the problem needs {needed}")]
+    Length {
+        /// Which field.
+        field: &'static str,
+        /// Its length.
+        given: usize,
+        /// The right one.
+        needed: usize,
+    },
+    /// Meshes that are not nested.
+    #[error(
+        "element {fine} of the reference mesh does not lie in one element of the mesh that is compared; \
+         the reference must be made by cutting each element into smaller ones"
+    )]
+    NotNested {
+        /// The element of the reference.
+        fine: usize,
+    },
+    /// Nested, but another body.
+    #[error("the reference mesh covers {fine:.6e}, the mesh that is compared {coarse:.6e} (m in 1D, m² in 2D)")]
+    DifferentBodies {
+        /// Length or area of the reference.
+        fine: f64,
+        /// Length or area of the mesh that is compared.
+        coarse: f64,
+    },
+    /// A reference that stops too early.
+    #[error("the reference ends at {reference:.6e} s, before the end of the simulation at {end:.6e} s")]
+    EndsEarly {
+        /// Last instant of the reference (s).
+        reference: f64,
+        /// Last instant compared (s).
+        end: f64,
+    },
+    /// A simulation that is not the one the exact solution is for.
+    #[error("`{name}` is {given:.9e} in the simulation and {exact:.9e} in the exact solution")]
+    AnotherBar {
+        /// The quantity.
+        name: &'static str,
+        /// Its value in the simulation.
+        given: f64,
+        /// Its value in the exact solution.
+        exact: f64,
+    },
+}

@@ -1,0 +1,33 @@
+//! Impacts that several tests share.
+
+#![allow(dead_code)]
+
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem, TriangleProblem};
+
+/// The block of §7.2 of the paper: aluminium, 50 × 40 mm, μ = 0.2, plane stress, v = (400, −400)
+/// m/s, at `gap` (m) from a plane below it.
+pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
+    Problem::builder(TriangleMesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .initial_velocity(Initial::Uniform([400.0, -400.0]))
+        .obstacle(Plane::new([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
+        .build()
+        .unwrap()
+}
+
+/// The four meshes of the paper's table 1.
+pub(crate) const MESHES: [[usize; 2]; 4] = [[5, 4], [10, 8], [20, 16], [40, 32]];
+
+/// Asserts a ≈ b within a relative tolerance.
+#[track_caller]
+pub(crate) fn assert_close(value: f64, expected: f64, tolerance: f64, what: &str) {
+    let miss = (value - expected).abs();
+    assert!(
+        miss <= tolerance * expected.abs(),
+        "{what}: {value} instead of {expected}, off by {:.2e}",
+        miss / expected
+    );
+}

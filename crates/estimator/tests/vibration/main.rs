@@ -1,0 +1,8 @@
+//! Free vibration in one mode, and motions without any error.
+
+// Clippy allows this in test functions only; what they share is a test as well.
+#![allow(clippy::unwrap_used)]
+
+mod bar;
+mod block;
+mod nothing;
