@@ -57,7 +57,8 @@ impl<const D: usize> Contact<D> {
             let normal_force = -mass * gap / (dt * h);
             let stop = mass / h;
             let wanted = stop * dot(&tangential, &tangential).sqrt();
-            let limit = plane.friction() * normal_force;
+            // Where the support takes the tangential reaction, there is no friction.
+            let limit = if contact.guided { 0.0 } else { plane.friction() * normal_force };
             let scale = if wanted > limit { stop * limit / wanted } else { stop };
             for c in 0..D {
                 self.reaction[at][c] = normal_force * plane.normal()[c] - scale * tangential[c];

@@ -131,8 +131,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let mut loaded = vec![false; mesh.facets().len()];
         facet_loads.iter().for_each(|load| loaded[load.facet.index()] = true);
-        let mut fixed = vec![false; mesh.node_count()];
-        prescribed.iter().for_each(|p| fixed[p.node.index()] = true);
+        let mut fixed = vec![[false; D]; mesh.node_count()];
+        prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
         let free = |f: FacetId| !loaded[f.index()] && supported[f.index()] == [false; D];
         let mut surface = ContactSurface::default();
         for (index, plane) in self.obstacles.iter().enumerate() {

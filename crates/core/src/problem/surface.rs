@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 /// A facet faces a plane if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
+/// A prescribed component of which the normal has no more than this is tangential.
+const ALIGNED: f64 = 1e-12;
 
 /// A node of the candidate facets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +20,11 @@ pub struct ContactNode {
     pub obstacle: usize,
     /// Distance to the plane of its place in the undeformed mesh (m).
     pub undeformed_gap: f64,
-    /// Whether it is a candidate: none of its components is prescribed.
+    /// Whether it is a candidate: its normal motion is not prescribed.
     pub free: bool,
+    /// Whether its tangential motion is prescribed, as on a plane of symmetry: its tangential
+    /// reaction is then the support's.
+    pub guided: bool,
 }
 
 /// A facet that may touch a plane.
@@ -71,7 +76,7 @@ impl<const D: usize> ContactSurface<D> {
         index: usize,
         plane: &Plane<D>,
         free: impl Fn(FacetId) -> bool,
-        prescribed: impl Fn(NodeId) -> bool,
+        prescribed: impl Fn(NodeId) -> [bool; D],
         area: impl Fn(FacetId) -> f64,
     ) -> Result<(), InputError> {
         let facing = facing(mesh, index, plane, free)?;
@@ -82,7 +87,10 @@ impl<const D: usize> ContactSurface<D> {
                 return Err(cause.at("obstacle", Some(index), "group"));
             }
             let undeformed_gap = plane.gap(&mesh.points()[node.index()]);
-            self.nodes.push(ContactNode { node, obstacle: index, undeformed_gap, free: !prescribed(node) });
+            let held = prescribed(node);
+            let free = (0..D).all(|c| !held[c] || plane.normal()[c].abs() <= ALIGNED);
+            let guided = free && held != [false; D];
+            self.nodes.push(ContactNode { node, obstacle: index, undeformed_gap, free, guided });
         }
         let position: BTreeMap<NodeId, usize> =
             self.nodes.iter().enumerate().skip(start).map(|(i, c)| (c.node, i)).collect();

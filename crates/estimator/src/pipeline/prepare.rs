@@ -291,6 +291,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             let forces = contact_force::nodal_forces(self.problem, densities);
             let each = surface.iter().zip(forces).map(|(contact, force)| {
                 let i = contact.node.index();
+                let plane = &self.problem.obstacles()[contact.obstacle];
+                // A guided node's tangential motion is prescribed, whatever pulls at it.
+                let force = if contact.guided { plane.normal().map(|n| n * plane.split(&force).0) } else { force };
                 std::array::from_fn(|c| (level.force[i][c] + force[c]) * inverse_mass[i])
             });
             each.collect()
