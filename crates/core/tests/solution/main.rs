@@ -14,4 +14,5 @@ mod loads;
 mod run;
 mod stopping;
 mod supports;
+mod symmetry_plane;
 mod variable_steps;
