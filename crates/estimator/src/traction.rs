@@ -9,6 +9,7 @@
 use crate::contact_force::Densities;
 use crate::element::Element;
 use crate::level::{Level, Side};
+use crate::residual::worse;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::problem::Problem;
 use std::collections::BTreeMap;
@@ -139,9 +140,9 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
                 _ => 0.0,
             };
             if closed {
-                miss = miss.max((flux[last][c] - flux[0][c]).abs());
+                miss = worse(miss, (flux[last][c] - flux[0][c]).abs());
             } else if !open_start && !open_end {
-                miss = miss.max((flux[last][c] - last_known[c]).abs());
+                miss = worse(miss, (flux[last][c] - last_known[c]).abs());
             }
             if shift != 0.0 {
                 flux.iter_mut().for_each(|f| f[c] += shift);

@@ -1,6 +1,7 @@
 //! The stress of a bar element: the quadratic that its loading determines.
 
 use super::{Loading, StressResiduals};
+use crate::residual::worse;
 use percute_core::material::Elastic;
 
 /// A bar element of given length.
@@ -39,14 +40,14 @@ impl BarStress {
         floor: f64,
     ) -> StressResiduals {
         let [a, m, b] = self.stress(loading);
-        let scale = a.abs().max(b.abs()).max(m.abs()).max(floor);
+        let scale = a.abs().max(b.abs()).max(m.abs()).max(floor).max(f64::MIN_POSITIVE);
         // Slopes of the quadratic at both ends against Γ_DA − f_d.
         let slopes = [(4.0 * m - 3.0 * a - b) / self.length, (3.0 * b + a - 4.0 * m) / self.length];
         let slope_scale = loading.volume.iter().map(|g| g[0].abs()).fold(scale / self.length, f64::max);
         let misses = slopes.iter().zip(&loading.volume).map(|(s, g)| (s - g[0]).abs() / slope_scale);
         StressResiduals {
-            divergence: misses.fold(0.0, f64::max),
-            edges: (a + loading.traction[1][0][0]).abs().max((b - loading.traction[0][0][0]).abs()) / scale,
+            divergence: misses.fold(0.0, worse),
+            edges: worse((a + loading.traction[1][0][0]).abs(), (b - loading.traction[0][0][0]).abs()) / scale,
             inner: 0.0,
         }
     }
