@@ -222,7 +222,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
     fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
         let (mut resultant, mut moment) = ([0.0; D], 0.0);
-        let mut scale = floor;
+        // Tractions one by one: at a node between a fixed edge and elements at rest two of them cancel.
+        let mut scale = balanced.loading.traction.iter().flatten().flatten().fold(0.0_f64, |m, t| m.max(t.abs()));
+        scale = floor.max(scale / (D * (D + 1)) as f64);
         for (force, arm) in balanced.forces.iter().zip(&self.arms) {
             for c in 0..D {
                 resultant[c] += force.outer[c] - force.inner[c];

@@ -112,8 +112,8 @@ fn two_planes() {
         .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([50.0, -250.0]))
         .obstacle(plane([0.0, -2e-4], [0.0, 1.0], 0.1, "bottom"))
-        // Leans over the body, and clears its corner (0, 0.04) by 1e-4.
-        .obstacle(plane([0.0, 0.0401], [-0.02, -1.0], 0.4, "top"))
+        // Leans over the body, and clears its corner (0.05, 0.04) by 2e-4.
+        .obstacle(plane([0.0, 0.0412], [-0.02, -1.0], 0.4, "top"))
         .build()
         .unwrap();
     let times = steps(&problem, 0.9, 81);

@@ -1,8 +1,9 @@
 //! Admissible fields whatever the mesh, the plane's angle and the body's shape.
 
-use crate::bodies::{plane_below, steps, swinging, thrown};
+use crate::bodies::{aluminium, plane_below, steps, swinging, thrown};
 use crate::estimating::check;
 use percute_core::mesh::TriangleMesh;
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::{Random, disc, random_rectangle, rotated};
 
 /// Distance from the plane at the start (m). At 400 m/s it is more than a quarter of any step here,
@@ -71,5 +72,32 @@ fn steps_that_change_all_the_time() {
         let problem = thrown(mesh, [100.0, -400.0], plane).build().unwrap();
         let what = format!("{waves} waves of steps");
         assert!(check(&what, &problem, &swinging(&problem, 71, waves)) > 3, "{what}");
+    }
+}
+
+/// Initial velocities that turn the body, stretch it or follow no rule, and a prestrained body: the
+/// rotation is free of strain to rounding only, as long as nothing touches.
+#[test]
+fn initial_fields() {
+    let mesh = random_rectangle(0.05, 0.04, 6, 11).unwrap();
+    let field = |f: &mut dyn FnMut(&[f64; 2]) -> [f64; 2]| Initial::Nodal(mesh.points().iter().map(f).collect());
+    let mut random = Random::new(5);
+    let fields = [
+        ("turning", field(&mut |p| [-8e3 * (p[1] - 0.02), 8e3 * (p[0] - 0.025) - 200.0])),
+        ("stretching", field(&mut |p| [3e3 * p[0], -2e3 * p[1] - 100.0])),
+        ("random", field(&mut |_| [random.between(-100.0, 100.0), random.between(-300.0, -100.0)])),
+    ];
+    for (what, velocity) in fields {
+        for prestrain in [0.0, 1e-3] {
+            let problem = Problem::builder(mesh.clone())
+                .material(aluminium())
+                .initial_velocity(velocity.clone())
+                .initial_displacement(field(&mut |p| [prestrain * p[0] * p[1] / 0.05, -prestrain * p[0]]))
+                .obstacle(plane_below(&mesh, 0.1, GAP, 0.3, None))
+                .build()
+                .unwrap();
+            let what = format!("{what}, prestrain {prestrain}");
+            assert!(check(&what, &problem, &steps(&problem, 0.9, 91)) > 3, "{what}");
+        }
     }
 }
