@@ -39,6 +39,9 @@ impl ElementError {
 pub(crate) struct Balanced<const D: usize, const N: usize> {
     /// Tractions and Γ_DA − f_d.
     pub(crate) loading: Loading<D, N>,
+    /// Largest component of f_d (N/m³). Where it all but equals Γ_DA, as in a fall, their difference
+    /// says nothing about how large the terms of the balance are.
+    body: f64,
     /// Their work on the shape function of each node.
     forces: [NodalForce<D>; N],
 }
@@ -144,7 +147,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
         }
         let loading = Loading { traction, volume };
-        Balanced { forces: self.nodal_forces(&loading), loading }
+        let body = body.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        Balanced { forces: self.nodal_forces(&loading), body, loading }
     }
 
     /// The error at one sample; `increment` is ∫ã dt at the nodes.
@@ -197,7 +201,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// Residuals of the pointwise equilibrium of σ_DA; `scale` is the largest nodal force in the
     /// mesh (N).
     pub(crate) fn check_stress(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
-        let stress = self.stress.residuals(&balanced.loading, 1e-12 * scale / self.law.extent());
+        let stress = self.stress.residuals(&balanced.loading, self.floor(balanced, scale));
         residuals.divergence = worse(residuals.divergence, stress.divergence);
         residuals.edge_tractions = worse(residuals.edge_tractions, stress.edges);
         residuals.inner_tractions = worse(residuals.inner_tractions, stress.inner);
@@ -205,14 +209,22 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// Residual of the balance of the element as a whole.
     pub(crate) fn check_resultants(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
-        let resultant = self.resultant_residual(balanced, 1e-12 * scale / self.law.extent());
+        let resultant = self.resultant_residual(balanced, self.floor(balanced, scale));
         residuals.element_resultants = worse(residuals.element_resultants, resultant);
+    }
+
+    /// The smallest force that counts, per unit of section or thickness: 1e-12 of the largest in
+    /// the mesh, or what f_d does at a node.
+    fn floor(&self, balanced: &Balanced<D, N>, scale: f64) -> f64 {
+        (1e-12 * scale).max(balanced.body * self.element.volume / N as f64) / self.law.extent()
     }
 
     /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
     fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
         let (mut resultant, mut moment) = ([0.0; D], 0.0);
-        let mut scale = floor;
+        // Tractions one by one: at a node between a fixed edge and elements at rest two of them cancel.
+        let mut scale = balanced.loading.traction.iter().flatten().flatten().fold(0.0_f64, |m, t| m.max(t.abs()));
+        scale = floor.max(scale / (D * (D + 1)) as f64);
         for (force, arm) in balanced.forces.iter().zip(&self.arms) {
             for c in 0..D {
                 resultant[c] += force.outer[c] - force.inner[c];
@@ -224,7 +236,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             }
         }
         let reach = self.arms.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
-        let miss = resultant.iter().fold(moment.abs() / reach, |m, f| m.max(f.abs()));
+        let miss = resultant.iter().fold(moment.abs() / reach, |m, f| worse(m, f.abs()));
         miss / scale.max(f64::MIN_POSITIVE)
     }
 

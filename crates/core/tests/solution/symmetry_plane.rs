@@ -41,7 +41,7 @@ fn dropped(mesh: TriangleMesh, guide: bool) -> TriangleProblem {
 
 #[test]
 fn half_a_body_moves_as_the_whole() {
-    let half_mesh = random_rectangle(0.02, 0.03, 6, 11);
+    let half_mesh = random_rectangle(0.02, 0.03, 6, 11).unwrap();
     let (whole, half) = (dropped(doubled(&half_mesh), false), dropped(half_mesh, true));
     assert_eq!(half.surface().nodes().iter().filter(|c| c.guided).count(), 1);
     assert!(half.surface().nodes().iter().all(|c| c.free));
@@ -62,7 +62,7 @@ fn half_a_body_moves_as_the_whole() {
 /// A component along the normal takes the node out of contact.
 #[test]
 fn a_node_held_along_the_normal_is_no_candidate() {
-    let mesh = random_rectangle(0.02, 0.03, 6, 11);
+    let mesh = random_rectangle(0.02, 0.03, 6, 11).unwrap();
     let held = Support { group: "left".to_string(), components: [true, true], velocity: None };
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())

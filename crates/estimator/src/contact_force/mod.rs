@@ -135,7 +135,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
 ) {
     for densities in [&interval.start, &interval.end] {
         let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let largest = densities.iter().flatten().map(size).fold(0.0, f64::max);
+        let largest = densities.iter().flatten().map(size).fold(0.0, worse);
         if largest == 0.0 {
             continue;
         }
@@ -145,7 +145,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
             for f in density {
                 let scale = size(f).max(1e-12 * largest);
                 let (normal, tangential) = plane.split(f);
-                let outside = (size(&tangential) - plane.friction() * normal).max(-normal).max(0.0);
+                let outside = worse(size(&tangential) - plane.friction() * normal, -normal);
                 residuals.cone = worse(residuals.cone, outside / scale);
                 let off = if touches { 0.0 } else { size(f) / scale };
                 residuals.force_off_contact = worse(residuals.force_off_contact, off);

@@ -88,8 +88,8 @@ impl ContactTrack {
         let mut before = (velocity, gap);
         for (m, &after) in path.iter().enumerate() {
             let (_, least) = least_of_parabola(before, after, self.lengths[m], m);
-            self.at_knots = worse(self.at_knots, (-after.1 / self.size).max(0.0));
-            self.between_knots = worse(self.between_knots, (-least / self.size).max(0.0));
+            self.at_knots = worse(self.at_knots, -after.1 / self.size);
+            self.between_knots = worse(self.between_knots, -least / self.size);
             before = after;
         }
         self.known.extend(path);

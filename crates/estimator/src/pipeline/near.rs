@@ -208,7 +208,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
                 self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);
             }
             let gap = problem.surface().gap(at, displacement, problem.obstacles());
-            let depth = (-gap / problem.mesh().size()).max(0.0);
+            let depth = worse(0.0, -gap / problem.mesh().size());
             self.residuals.penetration_at_knots = worse(self.residuals.penetration_at_knots, depth);
         }
     }

@@ -157,7 +157,7 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
                     block = others;
                     let acceleration = &here.acceleration[node.index()];
                     let star = equilibration.solve_star(here, node, acceleration, &here.density_after, flux);
-                    worst = worse(worst, ratio(star.miss, star.scale.max(1e-12 * here.force_scale)));
+                    worst = worse(worst, equilibration.star_residual(star, here, node));
                 }
                 worst
             };
@@ -292,12 +292,8 @@ fn contact_stars<const D: usize, const N: usize>(
         let links = equilibration.contact_links[at]..equilibration.contact_links[at + 1];
         let acceleration = &level.acceleration_before[at];
         let star = equilibration.solve_star(level, contact.node, acceleration, &level.density_before, &mut flux[links]);
-        worst = worse(worst, ratio(star.miss, star.scale.max(1e-12 * level.force_scale)));
+        worst = worse(worst, equilibration.star_residual(star, level, contact.node));
     }
     level.flux_before = flux;
     worst
-}
-
-fn ratio(miss: f64, scale: f64) -> f64 {
-    if miss == 0.0 { 0.0 } else { miss / scale }
 }

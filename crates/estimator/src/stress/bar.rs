@@ -1,6 +1,7 @@
 //! The stress of a bar element: the quadratic that its loading determines.
 
 use super::{Loading, StressResiduals};
+use crate::residual::worse;
 use percute_core::material::Elastic;
 
 /// A bar element of given length.
@@ -45,8 +46,8 @@ impl BarStress {
         let slope_scale = loading.volume.iter().map(|g| g[0].abs()).fold(scale / self.length, f64::max);
         let misses = slopes.iter().zip(&loading.volume).map(|(s, g)| (s - g[0]).abs() / slope_scale);
         StressResiduals {
-            divergence: misses.fold(0.0, f64::max),
-            edges: (a + loading.traction[1][0][0]).abs().max((b - loading.traction[0][0][0]).abs()) / scale,
+            divergence: misses.fold(0.0, worse),
+            edges: worse((a + loading.traction[1][0][0]).abs(), (b - loading.traction[0][0][0]).abs()) / scale,
             inner: 0.0,
         }
     }

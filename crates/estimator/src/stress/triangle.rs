@@ -5,6 +5,7 @@ use super::reference::{
     inner_edge, load_share, quadratic_gradients,
 };
 use super::{Loading, StressResiduals};
+use crate::residual::worse;
 use percute_core::material::Elastic;
 
 /// The map of one triangle.
@@ -122,7 +123,7 @@ impl TriangleStress {
         loading: &Loading<D, N>,
         floor: f64,
     ) -> f64 {
-        let (mut worst, mut scale) = (0.0_f64, 0.0_f64);
+        let (mut miss, mut scale) = (0.0_f64, 0.0_f64);
         for sub in 0..3 {
             let barycentric = barycentric_gradients(&corners(sub, &self.points, self.centroid()));
             let steepest = barycentric.iter().flatten().fold(0.0_f64, |m, g| m.max(g.abs()));
@@ -139,11 +140,11 @@ impl TriangleStress {
                         *balance -= load_share(sub, corner, i) * volume[c];
                         scale = scale.max(volume[c].abs());
                     }
-                    worst = worst.max(balance.abs());
+                    miss = worse(miss, balance.abs());
                 }
             }
         }
-        worst / scale.max(f64::MIN_POSITIVE)
+        miss / scale.max(f64::MIN_POSITIVE)
     }
 
     /// |e|(σn − F̂) at both ends and the middle of each edge.
@@ -154,7 +155,7 @@ impl TriangleStress {
         loading: &Loading<D, N>,
         floor: f64,
     ) -> f64 {
-        let (mut worst, mut scale) = (0.0_f64, floor);
+        let (mut miss, mut scale) = (0.0_f64, floor);
         for sub in 0..3 {
             let [a, b, _] = corners(sub, &self.points, self.centroid());
             let normal = edge_normal(a, b);
@@ -164,17 +165,17 @@ impl TriangleStress {
                 let found = traction_at(stress, sub, node, normal);
                 for c in 0..2 {
                     let wanted = (1.0 - weight) * traction[0][c] + weight * traction[D - 1][c];
-                    worst = worst.max((found[c] - wanted).abs());
+                    miss = worse(miss, (found[c] - wanted).abs());
                     scale = scale.max(wanted.abs());
                 }
             }
         }
-        worst / scale.max(f64::MIN_POSITIVE)
+        miss / scale.max(f64::MIN_POSITIVE)
     }
 
     /// Jumps of |e|σn at the nodes of the inner edges.
     fn inner_residual(&self, stress: &[f64; COEFFICIENTS], largest: f64, floor: f64) -> f64 {
-        let (mut worst, mut scale) = (0.0_f64, floor);
+        let (mut miss, mut scale) = (0.0_f64, floor);
         for k in 0..3 {
             let normal = edge_normal(self.points[k], self.centroid());
             scale = scale.max(largest * normal[0].abs().max(normal[1].abs()));
@@ -182,10 +183,10 @@ impl TriangleStress {
             for (node, opposite) in nodes.into_iter().zip(others) {
                 let here = traction_at(stress, one, node, normal);
                 let there = traction_at(stress, other, opposite, normal);
-                worst = worst.max((here[0] - there[0]).abs()).max((here[1] - there[1]).abs());
+                miss = worse(worse(miss, (here[0] - there[0]).abs()), (here[1] - there[1]).abs());
             }
         }
-        worst / scale.max(f64::MIN_POSITIVE)
+        miss / scale.max(f64::MIN_POSITIVE)
     }
 }
 

@@ -1,0 +1,76 @@
+//! Bodies and what acts on them.
+
+use percute_core::dynamics::critical_time_step;
+use percute_core::load::{BodyForce, Support, Table};
+use percute_core::material::Elastic;
+use percute_core::mesh::{Mesh, TriangleMesh};
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Builder, Initial, Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
+use std::f64::consts::TAU;
+
+/// The aluminium of the paper's block (§7.2) in plane stress, 1 m thick.
+pub(crate) fn aluminium() -> Elastic {
+    Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap()
+}
+
+/// The plane with the normal turned by `tilt` (rad) from e_y, `gap` (m) from the nearest node.
+pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f64, group: Option<&str>) -> Plane<2> {
+    let normal = [-tilt.sin(), tilt.cos()];
+    let height = |p: &[f64; 2]| p[0] * normal[0] + p[1] * normal[1];
+    let lowest = mesh.points().iter().map(height).fold(f64::INFINITY, f64::min);
+    Plane::new(normal.map(|n| (lowest - gap) * n), normal, friction, group.map(String::from)).unwrap()
+}
+
+/// A body of aluminium with a velocity and a plane.
+pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Plane<2>) -> Builder<2, 3> {
+    TriangleProblem::builder(mesh)
+        .material(aluminium())
+        .initial_velocity(Initial::Uniform(velocity))
+        .obstacle(plane)
+}
+
+/// `count` equal steps of a fraction of the critical one.
+pub(crate) fn steps<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    courant: f64,
+    count: usize,
+) -> TimeGrid {
+    TimeGrid::uniform(courant * critical_time_step(problem) * count as f64, count).unwrap()
+}
+
+/// Steps that swing `waves` times between 0.5 and 0.9 of the critical one.
+pub(crate) fn swinging<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    count: usize,
+    waves: f64,
+) -> TimeGrid {
+    let critical = critical_time_step(problem);
+    let step = |n: usize| critical * (0.7 + 0.2 * (TAU * waves * n as f64 / count as f64).sin());
+    TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()
+}
+
+/// A fixed support of some components.
+pub(crate) fn fixed<const D: usize>(group: &str, components: [bool; D]) -> Support<D> {
+    Support { group: group.to_string(), components, velocity: None }
+}
+
+/// A uniform body force that gives aluminium the acceleration `g` (m/s²).
+pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce<D> {
+    BodyForce { group: None, value: Table::constant(g.map(|g| 2700.0 * g)) }
+}
+
+/// The same mesh with the elements whose centroid satisfies a condition in the group `first`, the
+/// others in `second`.
+pub(crate) fn in_two_groups<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    first: impl Fn([f64; D]) -> bool,
+) -> Mesh<D, N> {
+    let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
+    let nodes = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
+    let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(nodes).collect())).collect();
+    let centroid = |c: &[usize; N]| std::array::from_fn(|d| c.map(|n| mesh.points()[n][d]).iter().sum::<f64>() / N as f64);
+    let (one, other) = (0..cells.len()).partition(|&e| first(centroid(&cells[e])));
+    let groups = [("first".to_string(), one), ("second".to_string(), other)].into();
+    Mesh::new(mesh.points().to_vec(), &cells, &facets, &groups).unwrap()
+}

@@ -1,0 +1,69 @@
+//! Estimates of histories under all choices.
+
+use percute_core::dynamics::simulate;
+use percute_core::history::{History, StepSource};
+use percute_core::observer::Unobserved;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+
+/// Both readings of the contact force under each of the three Γ_DA.
+pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
+    let readings = [ContactForce::Sharp, ContactForce::Paper];
+    readings.into_iter().flat_map(|contact_force| {
+        [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak]
+            .into_iter()
+            .map(move |acceleration| Options { contact_force, acceleration, threads: Some(1), ..Options::default() })
+    })
+}
+
+/// The steps of a problem that must run to its end.
+pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> History<D> {
+    let mut history = History::new(times);
+    simulate(problem, times, &mut history, &mut Unobserved).unwrap();
+    history
+}
+
+/// The estimate of a stored history.
+pub(crate) fn estimate<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    history: &History<D>,
+    options: Options,
+) -> Estimate {
+    let mut estimator = Estimator::new(problem, history.times(), options).unwrap();
+    history.replay(&mut estimator).unwrap();
+    estimator.finish().unwrap()
+}
+
+/// Every residual is a number and at most 1e-10, the bound of the method: rounding of the longest
+/// sums here leaves some 1e-13.
+pub(crate) fn assert_admissible(what: &str, estimate: &Estimate) {
+    for (name, value) in estimate.residuals.entries() {
+        assert!(value <= 1e-10, "{what}: the residual of {name} is {value:e}");
+    }
+    assert!(estimate.error.sup.is_finite() && estimate.error.mean.is_finite(), "{what}: {:?}", estimate.error);
+}
+
+/// Runs a problem and checks the residuals of its estimate under all choices and with samples at
+/// every, every second and every fifth step. Returns the number of reactions, so that a case in
+/// which nothing happens can be seen.
+pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) -> usize {
+    let history = history(problem, times);
+    for (k, options) in all_choices().enumerate() {
+        // Each `every` meets each reading; all 18 combinations would cost three times as much.
+        for every in if k % 3 == 0 { vec![1, 2, 5] } else { vec![1] } {
+            let options = Options { every, ..options };
+            let what = format!("{what}, {}, {}, every {every}", options.contact_force, options.acceleration);
+            let estimate = estimate(problem, &history, options);
+            if std::env::var("SHOW").is_ok() { for (n, v) in estimate.residuals.entries() { eprintln!("RES|{what}|{n}|{v:e}|{:e}|{:?}", estimate.error.sup, estimate.kept_impulse); } }
+            else { assert_admissible(&what, &estimate); }
+        }
+    }
+    reactions(&history)
+}
+
+/// Number of reactions, over all steps and nodes.
+pub(crate) fn reactions<const D: usize>(history: &History<D>) -> usize {
+    let count = |n: usize| history.step(n).unwrap().reaction.iter().filter(|r| **r != [0.0; D]).count();
+    (0..history.len()).map(count).sum()
+}
