@@ -1,4 +1,4 @@
-//! The reference error of an impacting bar, eq. [60].
+//! The reference error of an impacting bar, eq. \[60\].
 
 use super::{Motion, ReferenceError, TrueError, TrueErrorSample};
 use percute_core::ids::ElementId;
@@ -10,7 +10,7 @@ const SAME: f64 = 1e-9;
 
 /// The error of a simulated bar impact against the exact solution, at each t_n:
 ///
-/// e² = 1/(2ES) ∫(N_ex − N_h)² + ρS/2 ∫(u̇_ex − u̇_h)²  (J), eq. [60],
+/// e² = 1/(2ES) ∫(N_ex − N_h)² + ρS/2 ∫(u̇_ex − u̇_h)²  (J), eq. \[60\],
 ///
 /// with N_h constant and u̇_h linear on each element; an element that holds the wave front is split
 /// there, so that the integrals are exact.
@@ -60,7 +60,7 @@ fn check(problem: &BarProblem, exact: &BarImpact) -> Result<(), ReferenceError> 
     }
 }
 
-/// Adds one element's share of [60], piece by piece if the front cuts it.
+/// Adds one element's share of \[60\], piece by piece if the front cuts it.
 fn add_element(
     problem: &BarProblem,
     exact: &BarImpact,

@@ -8,7 +8,7 @@
 //!
 //! A [`Recorder`] keeps the fields of the simulation whose error is wanted. [`Comparison`] takes
 //! the steps of a finer simulation as they come and compares; [`bar_impact_error`] evaluates
-//! eq. [60] for the exact impact of a bar.
+//! eq. \[60\] for the exact impact of a bar.
 
 mod bar;
 mod compare;
@@ -43,9 +43,9 @@ impl TrueErrorSample {
 /// The true error of a simulation (J^½).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrueError {
-    /// √max e² over the t_n, as [15] for the estimate.
+    /// √max e² over the t_n, as \[15\] for the estimate.
     pub sup: f64,
-    /// √((1/T)∫e² dt) by the trapezoidal rule over the t_n, as [16].
+    /// √((1/T)∫e² dt) by the trapezoidal rule over the t_n, as \[16\].
     pub mean: f64,
     /// e² at the t_n.
     pub over_time: Vec<TrueErrorSample>,

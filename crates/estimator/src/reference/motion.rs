@@ -48,7 +48,7 @@ impl<const D: usize, const N: usize> StepSink<D> for Recorder<'_, D, N> {
     }
 }
 
-/// Derives v_n from the steps by the scheme, method of eq. [28]–[32].
+/// Derives v_n from the steps by the scheme, method of eq. \[28\]–\[32\].
 #[derive(Debug)]
 pub(super) struct Kinematics<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

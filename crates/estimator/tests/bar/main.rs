@@ -55,7 +55,7 @@ fn estimate(bar: &Bar, options: Options) -> Estimate {
     percute_estimator::run(&problem(bar), &grid(bar), options, &mut Unobserved).unwrap().1
 }
 
-/// Estimates with both readings, and the true error [60].
+/// Estimates with both readings, and the true error \[60\].
 fn effectivity(bar: &Bar) -> ([Estimate; 2], TrueError) {
     let (problem, times) = (problem(bar), grid(bar));
     let estimator = |contact_force| {
