@@ -35,7 +35,8 @@ pub struct Options {
     pub contact_force: ContactForce,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
-    /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, …
+    /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, … and at the end, so that the
+    /// mean covers the whole run.
     pub every: usize,
     /// How many steps are worked on at once; by default as many as fit into a modest memory. The
     /// result does not depend on it.

@@ -1,7 +1,7 @@
 //! Admissible fields under supports and loads.
 
 use crate::bodies::{aluminium, fixed, gravity, in_two_groups, plane_below, steps, swinging, thrown};
-use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
+use crate::estimating::{check, history};
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, ElementGroups, TriangleMesh};
