@@ -87,7 +87,11 @@ impl ContactTrack {
     fn record(&mut self, path: Path, arrives: bool) {
         let (velocity, gap) = self.last();
         if arrives {
-            let travelled: f64 = self.lengths.iter().zip(&path).map(|(h, (v, _))| h * v.abs()).sum();
+            // Also the way that the simulation would go: where nothing but rest is admissible, the
+            // motion itself is its rounding.
+            let way = |h: &f64, v: f64| h * v.abs();
+            let wanted = self.lengths.iter().zip(&self.wanted).map(|(h, v)| way(h, *v)).sum::<f64>();
+            let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(wanted);
             let (_, end) = path[path.len() - 1];
             self.rendezvous = worse(self.rendezvous, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
