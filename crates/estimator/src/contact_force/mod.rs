@@ -153,3 +153,6 @@ pub(crate) fn check<const D: usize, const N: usize>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

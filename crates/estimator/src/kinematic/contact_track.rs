@@ -1,7 +1,7 @@
 //! The normal motion of a candidate node over the whole run: contact phases and the windows
 //! between them.
 
-use super::window::{Window, least_of_parabola};
+use super::window::{Path, Window, least_of_parabola};
 use crate::residual::{Residuals, worse};
 
 /// Normal velocity (m/s) and gap (m) of a candidate node at the knots known so far.
@@ -80,8 +80,18 @@ impl ContactTrack {
         let window = Window { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
         // A prescribed node cannot be moved out of the way.
         let path = if self.free { window.solve(tolerance) } else { window.integrate(&self.wanted) };
+        self.record(path, arrives);
+    }
+
+    /// Takes the motion over the window as known and checks it.
+    fn record(&mut self, path: Path, arrives: bool) {
+        let (velocity, gap) = self.last();
         if arrives {
-            let travelled: f64 = self.lengths.iter().zip(&path).map(|(h, (v, _))| h * v.abs()).sum();
+            // Also the way that the simulation would go: where nothing but rest is admissible, the
+            // motion itself is its rounding.
+            let way = |h: &f64, v: f64| h * v.abs();
+            let wanted = self.lengths.iter().zip(&self.wanted).map(|(h, v)| way(h, *v)).sum::<f64>();
+            let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(wanted);
             let (_, end) = path[path.len() - 1];
             self.rendezvous = worse(self.rendezvous, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
@@ -126,3 +136,6 @@ impl ContactTrack {
         residuals.penetration_between_knots = worse(residuals.penetration_between_knots, self.between_knots);
     }
 }
+
+#[cfg(test)]
+mod tests;

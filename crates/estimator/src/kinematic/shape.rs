@@ -2,13 +2,18 @@
 //!
 //! The gap is linear in the knot velocities at every point of the window, so each point gives a
 //! linear constraint. Only a few matter: the points where the gap is least are added as they are
-//! found (an exchange method), each half step keeping one, until nothing penetrates.
+//! found (an exchange method) and dropped when they no longer press, until nothing penetrates. The
+//! distance from the wanted velocities grows with every exchange, so that none comes back.
 
 use super::window::Window;
 use nalgebra::{DMatrix, DVector};
 
 /// Exchanges after which the search ends; what still penetrates shows in the residuals.
 const MOST_EXCHANGES: usize = 200;
+
+/// Cuts nearer to each other than this fraction of a half step are one. The parabola between two
+/// such cuts is deeper than at them by 1e-13 of its height, and their rows differ by enough digits.
+const SAME_CUT: f64 = 1e-6;
 
 /// A point of a window at which the gap must not be negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +30,17 @@ struct Condition {
     bound: f64,
 }
 
+#[cfg(test)]
+thread_local! {
+    /// How many windows this thread has solved here, so that tests can tell whether any were.
+    static SHAPED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
 /// The velocities nearest to the wanted ones under the rendezvous and a non-negative gap.
 /// `start` is the solution without the gap condition.
 pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
+    #[cfg(test)]
+    SHAPED.set(SHAPED.get() + 1);
     let free = window.free_knots();
     let mut velocity = start.to_vec();
     let mut cuts: Vec<Cut> = Vec::new();
@@ -41,7 +54,7 @@ pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f
                 || (window.arrives && m + 1 == window.lengths.len() && cut.offset == window.lengths[m]);
             if gap < -tolerance && !given {
                 found = true;
-                exchange(&mut cuts, canonical(window, cut));
+                add(&mut cuts, canonical(window, cut), SAME_CUT * window.lengths[m]);
             }
         }
         if !found {
@@ -52,7 +65,10 @@ pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f
             let last = window.lengths.len() - 1;
             condition(window, &Cut { half_step: last, offset: window.lengths[last] })
         });
-        velocity[..free].copy_from_slice(&nearest(window, end, conditions));
+        let (found, pressing) = nearest(window, end, conditions);
+        velocity[..free].copy_from_slice(&found);
+        let mut pressing = pressing.into_iter();
+        cuts.retain(|_| pressing.next() == Some(true));
     }
     velocity
 }
@@ -67,10 +83,14 @@ fn canonical(window: &Window<'_>, cut: Cut) -> Cut {
     }
 }
 
-/// Keeps one cut strictly inside each half step and one at each knot: nearly equal ones would make
-/// the system singular.
-fn exchange(cuts: &mut Vec<Cut>, new: Cut) {
-    let same = |old: &Cut| old.half_step == new.half_step && (old.offset == 0.0) == (new.offset == 0.0);
+/// Adds a cut, or moves one that is nearly the same: rows that are nearly equal would make the system
+/// singular.
+fn add(cuts: &mut Vec<Cut>, new: Cut, apart: f64) {
+    let same = |old: &Cut| {
+        old.half_step == new.half_step
+            && (old.offset == 0.0) == (new.offset == 0.0)
+            && (old.offset - new.offset).abs() < apart
+    };
     match cuts.iter_mut().find(|old| same(old)) {
         Some(old) => *old = new,
         None => cuts.push(new),
@@ -99,66 +119,93 @@ fn condition(window: &Window<'_>, cut: &Cut) -> Condition {
     Condition { row, bound: -given }
 }
 
-/// Minimises ½Σω(x − wanted)² under one equality and several inequalities.
+/// Minimises ½Σω(x − wanted)² under one equality and several inequalities; tells which of these press.
 ///
-/// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows
-/// from them by the diagonal weights, and the system is as small as the number of conditions.
-fn nearest(window: &Window<'_>, equality: Option<Condition>, inequalities: Vec<Condition>) -> Vec<f64> {
+/// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows from
+/// them by the diagonal weights, and the system is as small as the number of conditions.
+fn nearest(window: &Window<'_>, equality: Option<Condition>, inequalities: Vec<Condition>) -> (Vec<f64>, Vec<bool>) {
     let free = window.free_knots();
     let equal = usize::from(equality.is_some());
     let conditions: Vec<Condition> = equality.into_iter().chain(inequalities).collect();
     let count = conditions.len();
-    let inverse: Vec<f64> = (0..free).map(|k| 1.0 / window.weight(k)).collect();
-    let product = |a: &[f64], b: &[f64]| (0..free).map(|k| a[k] * b[k] * inverse[k]).sum::<f64>();
-    let gram = DMatrix::from_fn(count, count, |i, j| product(&conditions[i].row, &conditions[j].row));
+    // In y = √ω (x − wanted) the norm is that of Euclid. Each condition is scaled to a unit row:
+    // they differ by orders of magnitude in time.
+    let root: Vec<f64> = (0..free).map(|k| window.weight(k).sqrt()).collect();
+    let mut columns = DMatrix::from_fn(free, count, |k, i| conditions[i].row[k] / root[k]);
     let lacking = |c: &Condition| c.bound - c.row.iter().zip(window.wanted).map(|(a, v)| a * v).sum::<f64>();
-    let lack = DVector::from_iterator(count, conditions.iter().map(lacking));
-
-    let multipliers = non_negative(&gram, &lack, equal);
-    let correction = |k: usize| (0..count).map(|i| multipliers[i] * conditions[i].row[k]).sum::<f64>() * inverse[k];
-    (0..free).map(|k| window.wanted[k] + correction(k)).collect()
+    let mut lack = DVector::from_iterator(count, conditions.iter().map(lacking));
+    for i in 0..count {
+        let norm = columns.column(i).norm().max(f64::MIN_POSITIVE);
+        columns.column_mut(i).unscale_mut(norm);
+        lack[i] /= norm;
+    }
+    let multipliers = non_negative(&columns, &lack, equal);
+    let y = &columns * &multipliers;
+    let found = (0..free).map(|k| window.wanted[k] + y[k] / root[k]).collect();
+    (found, multipliers.iter().skip(equal).map(|m| *m > 0.0).collect())
 }
 
-/// Multipliers λ with gram λ = lack on the active conditions, λ ≥ 0 but for the first `equal`.
-fn non_negative(gram: &DMatrix<f64>, lack: &DVector<f64>, equal: usize) -> DVector<f64> {
+/// Multipliers λ with Cᵀ C λ = lack on the active conditions, the columns of C, and λ ≥ 0 but for the
+/// first `equal`.
+fn non_negative(columns: &DMatrix<f64>, lack: &DVector<f64>, equal: usize) -> DVector<f64> {
     let count = lack.len();
     let mut active: Vec<usize> = (0..equal).collect();
-    let mut current = DVector::zeros(count);
+    let mut current = solve_active(columns, lack, &active);
+    // Conditions that rounding alone calls missing.
+    let mut refused: Vec<usize> = Vec::new();
     // Each condition enters and leaves a few times at most.
     for _ in 0..10 * (count + 1) {
-        loop {
-            let solution = solve_active(gram, lack, &active);
-            let blocking = active.iter().filter(|&&i| i >= equal && solution[i] <= 0.0);
-            let step = blocking.map(|&i| current[i] / (current[i] - solution[i])).fold(1.0_f64, f64::min);
-            if step >= 1.0 {
-                current = solution;
-                break;
-            }
-            current += step * (solution - &current);
-            let least = current.amax() * 1e-14;
-            active.retain(|&i| i < equal || current[i] > least);
-            (equal..count).filter(|i| !active.contains(i)).for_each(|i| current[i] = 0.0);
-        }
-        let missing = lack - gram * &current;
-        let scale = 1e-13 * lack.amax();
-        let next = (equal..count).filter(|i| !active.contains(i) && missing[*i] > scale);
-        let Some(next) = next.max_by(|&a, &b| missing[a].total_cmp(&missing[b])) else { break };
+        let missing = lack - columns.tr_mul(&(columns * &current));
+        let scale = 1e-15 * lack.amax();
+        let candidates = (equal..count).filter(|i| !active.contains(i) && !refused.contains(i) && missing[*i] > scale);
+        let Some(next) = candidates.max_by(|&a, &b| missing[a].total_cmp(&missing[b])) else { break };
         active.push(next);
+        if solve_active(columns, lack, &active)[next] <= 0.0 {
+            active.pop();
+            refused.push(next);
+            continue;
+        }
+        refused.clear();
+        current = descend(columns, lack, &mut active, current, equal);
     }
     current
 }
 
-/// Solves the system of the active conditions; the others' multipliers are zero.
-fn solve_active(gram: &DMatrix<f64>, lack: &DVector<f64>, active: &[usize]) -> DVector<f64> {
+/// Goes from the multipliers `current` towards those of the active conditions and drops the ones that
+/// turn negative on the way.
+fn descend(
+    columns: &DMatrix<f64>,
+    lack: &DVector<f64>,
+    active: &mut Vec<usize>,
+    mut current: DVector<f64>,
+    equal: usize,
+) -> DVector<f64> {
+    loop {
+        let solution = solve_active(columns, lack, active);
+        let crossing = |i: usize| current[i] / (current[i] - solution[i]);
+        let blocking = active.iter().copied().filter(|&i| i >= equal && solution[i] <= 0.0);
+        let Some(first) = blocking.min_by(|&a, &b| crossing(a).total_cmp(&crossing(b))) else { return solution };
+        current += crossing(first) * (&solution - &current);
+        current[first] = 0.0;
+        active.retain(|&i| i < equal || current[i] > 0.0);
+    }
+}
+
+/// The multipliers of the active conditions; the others' are zero. By orthogonal factors, for cuts of
+/// one half step may have nearly parallel columns.
+fn solve_active(columns: &DMatrix<f64>, lack: &DVector<f64>, active: &[usize]) -> DVector<f64> {
     let mut all = DVector::zeros(lack.len());
-    let size = active.len();
-    // Scaled to a unit diagonal: rows differ by orders of magnitude in time.
-    let scale = |i: usize| 1.0 / gram[(i, i)].sqrt();
-    let matrix =
-        DMatrix::from_fn(size, size, |i, j| gram[(active[i], active[j])] * scale(active[i]) * scale(active[j]));
-    let right = DVector::from_fn(size, |i, _| lack[active[i]] * scale(active[i]));
-    if let Some(solution) = matrix.full_piv_lu().solve(&right) {
-        active.iter().zip(solution.iter()).for_each(|(&i, x)| all[i] = x * scale(i));
+    if active.is_empty() || active.len() > columns.nrows() {
+        return all;
+    }
+    let triangle = columns.select_columns(active).qr().unpack_r();
+    let right = lack.select_rows(active);
+    let solution = triangle.tr_solve_upper_triangular(&right).and_then(|z| triangle.solve_upper_triangular(&z));
+    if let Some(solution) = solution {
+        active.iter().zip(solution.iter()).for_each(|(&i, x)| all[i] = *x);
     }
     all
 }
+
+#[cfg(test)]
+mod tests;

@@ -52,7 +52,7 @@ impl Window<'_> {
 
     /// The solution of the equality problem: weights and trapezoidal lengths of free knots agree,
     /// so that the rendezvous shifts all of them by the same amount.
-    fn shifted(&self) -> Vec<f64> {
+    pub(super) fn shifted(&self) -> Vec<f64> {
         let mut velocity = self.wanted.to_vec();
         if !self.arrives {
             return velocity;

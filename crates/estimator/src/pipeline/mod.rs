@@ -1,6 +1,8 @@
 //! From steps to an estimate: steps are prepared one after the other ([`prepare`]), gathered in
 //! windows, worked on in parallel ([`window`]), and summed in a fixed order ([`totals`]).
 
+#[cfg(test)]
+mod fixture;
 mod near;
 mod prepare;
 mod totals;

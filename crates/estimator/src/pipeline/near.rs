@@ -213,3 +213,6 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

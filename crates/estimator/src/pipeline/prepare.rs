@@ -360,3 +360,6 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.levels[first + 1].contact = contact;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -297,3 +297,6 @@ fn contact_stars<const D: usize, const N: usize>(
     level.flux_before = flux;
     worst
 }
+
+#[cfg(test)]
+mod tests;

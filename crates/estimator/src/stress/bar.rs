@@ -39,7 +39,15 @@ impl BarStress {
         loading: &Loading<D, N>,
         floor: f64,
     ) -> StressResiduals {
-        let [a, m, b] = self.stress(loading);
+        self.residuals_of(self.stress(loading), loading, floor)
+    }
+
+    fn residuals_of<const D: usize, const N: usize>(
+        &self,
+        [a, m, b]: [f64; 3],
+        loading: &Loading<D, N>,
+        floor: f64,
+    ) -> StressResiduals {
         let scale = a.abs().max(b.abs()).max(m.abs()).max(floor).max(f64::MIN_POSITIVE);
         // Slopes of the quadratic at both ends against Γ_DA − f_d.
         let slopes = [(4.0 * m - 3.0 * a - b) / self.length, (3.0 * b + a - 4.0 * m) / self.length];
@@ -68,19 +76,37 @@ mod tests {
         assert!(r.divergence < 1e-14 && r.edges < 1e-14);
     }
 
-    /// Nothing at all is in balance.
-    #[test]
-    fn an_element_at_rest_has_no_residual() {
+    fn balanced() -> (BarStress, Loading<1, 2>) {
         let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
-        let r = map.residuals(&Loading { traction: [[[0.0]], [[0.0]]], volume: [[0.0], [0.0]] }, 0.0);
-        assert_eq!((r.divergence, r.edges, r.inner), (0.0, 0.0, 0.0));
+        (map, Loading { traction: [[[17.0]], [[-1.0]]], volume: [[2.0], [14.0]] })
     }
 
-    /// Tractions that do not balance leave a residual.
+    /// Tractions that do not balance leave a residual there, and none elsewhere.
     #[test]
-    fn imbalance_shows() {
-        let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
-        let loading = Loading { traction: [[[17.1]], [[-1.0]]], volume: [[2.0], [14.0]] };
-        assert!(map.residuals(&loading, 0.0).edges > 1e-3);
+    fn wrong_tractions_show() {
+        let (map, mut loading) = balanced();
+        loading.traction[0] = [[17.17]];
+        let found = map.residuals(&loading, 0.0);
+        assert!(found.edges > 1e-3 && found.divergence < 1e-14);
+    }
+
+    /// 1 % on the stress in the middle is 1 % on the slopes; the ends stay.
+    #[test]
+    fn a_wrong_stress_shows_in_its_slope() {
+        let (map, loading) = balanced();
+        let [a, m, b] = map.stress(&loading);
+        let found = map.residuals_of([a, 1.01 * m, b], &loading, 0.0);
+        assert!(found.divergence > 1e-3 && found.edges < 1e-14);
+    }
+
+    #[test]
+    fn nothing_in_a_bar_at_rest_and_nan_shows() {
+        let (map, _) = balanced();
+        let mut loading = Loading { traction: [[[0.0]], [[0.0]]], volume: [[0.0], [0.0]] };
+        let rest = map.residuals(&loading, 0.0);
+        assert_eq!((rest.divergence, rest.edges), (0.0, 0.0));
+        loading.volume[0] = [f64::NAN];
+        let found = map.residuals(&loading, 0.0);
+        assert!(found.divergence.is_nan() && found.edges.is_nan());
     }
 }

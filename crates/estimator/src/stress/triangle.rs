@@ -101,12 +101,20 @@ impl TriangleStress {
         loading: &Loading<D, N>,
         floor: f64,
     ) -> StressResiduals {
-        let stress = self.stress(loading);
+        self.residuals_of(&self.stress(loading), loading, floor)
+    }
+
+    fn residuals_of<const D: usize, const N: usize>(
+        &self,
+        stress: &[f64; COEFFICIENTS],
+        loading: &Loading<D, N>,
+        floor: f64,
+    ) -> StressResiduals {
         let largest = stress.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
         StressResiduals {
-            divergence: self.divergence_residual(&stress, largest, loading, floor),
-            edges: self.edge_residual(&stress, largest, loading, floor),
-            inner: self.inner_residual(&stress, largest, floor),
+            divergence: self.divergence_residual(stress, largest, loading, floor),
+            edges: self.edge_residual(stress, largest, loading, floor),
+            inner: self.inner_residual(stress, largest, floor),
         }
     }
 
@@ -235,3 +243,6 @@ fn eliminate(all: &[[f64; ALL]; ALL]) -> ([[f64; LOADS]; LOADS], [[f64; LOADS]; 
     }
     (energy, free)
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,7 @@
 // What helpers unwrap makes a test fail too; the general allowance covers test functions only.
 #![allow(clippy::unwrap_used)]
 
+mod anything;
 mod bodies;
 mod chatter;
 mod estimating;

@@ -1,0 +1,121 @@
+//! The cone and the contact zone: densities that break them show.
+
+use super::*;
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::obstacle::Plane;
+use percute_core::problem::TriangleProblem;
+
+/// Four edges along the bottom of a block, μ = 0.2.
+fn problem() -> TriangleProblem {
+    Problem::builder(TriangleMesh::rectangle(0.04, 0.02, 4, 2).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .obstacle(Plane::new([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .build()
+        .unwrap()
+}
+
+/// Nodes 0 to 3 of five touch, pressed and pulled along the plane up to the cone.
+fn surface() -> SurfaceStep<2> {
+    let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
+    SurfaceStep { reaction, touching: vec![true, true, true, true, false] }
+}
+
+fn residuals(interval: &Interval<2>) -> Residuals {
+    let mut residuals = Residuals::default();
+    check(&problem(), &surface(), &surface(), interval, &mut residuals);
+    residuals
+}
+
+fn readings() -> [Interval<2>; 2] {
+    let problem = problem();
+    let step = surface();
+    [ContactForce::Sharp, ContactForce::Paper]
+        .map(|choice| Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step)))
+}
+
+#[test]
+fn both_readings_are_admissible() {
+    for interval in readings() {
+        assert!(interval.start[0][0][1] > 0.0);
+        // Rounding of the projection.
+        assert!(residuals(&interval).largest() < 1e-15);
+    }
+}
+
+/// 1 % more friction than the cone allows, or a pull; off contact nothing changes.
+#[test]
+fn forces_outside_the_cone_show() {
+    for interval in readings() {
+        for end in 0..2 {
+            for push in [[0.202e6, 1e6], [0.0, -1.0]] {
+                let mut wrong = interval.clone();
+                [&mut wrong.start, &mut wrong.end][end][0][0] = push;
+                let found = residuals(&wrong);
+                assert!(found.cone > 1e-6, "{found:?}");
+                assert_eq!(found.force_off_contact, 0.0);
+            }
+        }
+    }
+}
+
+/// A force on the last edge, of which one node does not touch, within the cone.
+#[test]
+fn forces_off_contact_show() {
+    for interval in readings() {
+        for end in 0..2 {
+            let mut wrong = interval.clone();
+            [&mut wrong.start, &mut wrong.end][end][3][0] = [0.0, 1.0];
+            let found = residuals(&wrong);
+            assert!(found.force_off_contact > 1e-6, "{found:?}");
+            assert!(found.cone < 1e-15);
+        }
+    }
+}
+
+/// Touching now but not at the end of the step is not contact throughout.
+#[test]
+fn forces_beside_a_release_show() {
+    let [sharp, _] = readings();
+    let mut released = surface();
+    released.touching[3] = false;
+    let mut found = Residuals::default();
+    check(&problem(), &surface(), &released, &sharp, &mut found);
+    assert!(found.force_off_contact > 1e-6);
+}
+
+#[test]
+fn nan_shows() {
+    let mut interval = Interval { start: none(&problem()), end: none(&problem()) };
+    interval.start[0][0] = [f64::NAN, f64::NAN];
+    assert!(residuals(&interval).largest().is_nan());
+}
+
+/// A node that touches alone has no edge that touches: no force in either reading (method, §4).
+#[test]
+fn a_node_that_touches_alone_gets_no_force() {
+    let problem = problem();
+    let mut step = surface();
+    step.touching = vec![false, true, false, false, false];
+    for choice in [ContactForce::Sharp, ContactForce::Paper] {
+        let interval = Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step));
+        for density in interval.start.iter().chain(&interval.end).flatten() {
+            assert_eq!(*density, [0.0; 2]);
+        }
+    }
+}
+
+/// A phase of one step, off before and after: no force in either reading.
+#[test]
+fn a_phase_of_one_step_gets_no_force() {
+    let problem = problem();
+    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let steps = [&off, &surface(), &off];
+    for choice in [ContactForce::Sharp, ContactForce::Paper] {
+        let reading = Reading::new(choice, &problem);
+        for (before, now, next, after) in [(None, 0, 1, Some(steps[2])), (Some(steps[0]), 1, 2, None)] {
+            let interval = reading.interval(&problem, before, steps[now], steps[next], after);
+            assert!(interval.start.iter().chain(&interval.end).flatten().all(|f| *f == [0.0; 2]));
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Contact phases of one node, at their shortest too, and residuals that rise when the motion is changed.
+
+use super::*;
+
+/// Half steps of 1 s.
+const HALF: f64 = 1.0;
+const TOLERANCE: f64 = 1e-12;
+
+/// A track of a body of size 1 that starts at this gap with this velocity, not touching.
+fn track(gap: f64, velocity: f64) -> ContactTrack {
+    ContactTrack::new(gap, 1.0, true, (gap, velocity), false)
+}
+
+fn step(velocity: [f64; 2], touching: bool) -> NormalStep {
+    NormalStep { half: HALF, velocity, touching }
+}
+
+fn residuals(track: &ContactTrack) -> Residuals {
+    let mut residuals = Residuals::default();
+    track.report(&mut residuals);
+    residuals
+}
+
+/// From gap 4 at −1 to the plane at step 2. The wanted velocities −1 at all knots cover 3.5 m, half a
+/// half step less than 4 because the last is 0: the three free ones become −1 − ½/3.
+fn arriving() -> ContactTrack {
+    let mut track = track(4.0, -1.0);
+    track.push(&step([-1.0, -1.0], false), TOLERANCE);
+    track.push(&step([-1.0, -1.0], true), TOLERANCE);
+    track
+}
+
+#[test]
+fn an_arrival_shifts_the_free_knots() {
+    let track = arriving();
+    assert_eq!((track.known(), track.at(4).0), (5, 0.0));
+    for knot in 1..=3 {
+        assert!((track.at(knot).0 + 7.0 / 6.0).abs() < 1e-15);
+    }
+    assert!(residuals(&track).largest() < 1e-15);
+}
+
+/// A phase of one step: at rest at its one instant, and free again from there on.
+#[test]
+fn a_phase_of_one_step() {
+    let mut track = arriving();
+    track.push(&step([2.0, 3.0], false), TOLERANCE);
+    track.finish(TOLERANCE);
+    assert_eq!([track.at(4).0, track.at(5).0, track.at(6).0], [0.0, 2.0, 3.0]);
+    assert!((track.at(6).1 - 3.5).abs() < 1e-15);
+    assert!(residuals(&track).largest() < 1e-15);
+}
+
+/// The shortest way between two phases: off at one instant, back at the next. Three knots are free,
+/// and what goes up comes down: 2 and 1 and −4 become 7/3, 4/3 and −11/3, which would go through the
+/// plane were the last not followed by rest — the sum is zero.
+#[test]
+fn two_phases_with_one_instant_between() {
+    let mut track = arriving();
+    track.push(&step([2.0, 1.0], false), TOLERANCE);
+    track.push(&step([-4.0, 0.0], true), TOLERANCE);
+    for (knot, expected) in [(5, 7.0 / 3.0), (6, 4.0 / 3.0), (7, -11.0 / 3.0), (8, 0.0)] {
+        assert!((track.at(knot).0 - expected).abs() < 1e-14, "{:?}", track.at(knot));
+    }
+    assert!(track.at(8).1.abs() < 1e-15);
+    assert!(residuals(&track).largest() < 1e-15);
+}
+
+/// The same with a way that leads through the plane first: no velocity but zero is left.
+#[test]
+fn two_phases_between_which_nothing_can_move() {
+    let mut track = arriving();
+    track.push(&step([-2.0, -1.0], false), TOLERANCE);
+    track.push(&step([3.0, 0.0], true), TOLERANCE);
+    for knot in 5..=8 {
+        // The tolerance allows a gap of −1e-13 at each knot.
+        assert!(track.at(knot).0.abs() < 1e-12 && track.at(knot).1.abs() < 1e-12, "{:?}", track.at(knot));
+    }
+    assert!(residuals(&track).largest() < 1e-12);
+}
+
+/// A window with a single free knot, the shortest there can be: touching at step 1. Gap 1 at −1 is
+/// covered with −½ at t_½. Nearer than |v|Δt/4 = ½ nothing admissible exists, and it shows.
+#[test]
+fn touching_at_step_one() {
+    let mut near = track(1.0, -1.0);
+    near.push(&step([-5.0, 0.0], true), TOLERANCE);
+    assert!((near.at(1).0 + 0.5).abs() < 1e-15 && residuals(&near).largest() < 1e-15);
+    let mut too_near = track(0.4, -1.0);
+    too_near.push(&step([-5.0, 0.0], true), TOLERANCE);
+    assert!(residuals(&too_near).largest() > 1e-3);
+}
+
+/// Touching from the start: at rest at once, without a window.
+#[test]
+fn touching_at_the_start() {
+    let mut track = ContactTrack::new(0.0, 1.0, true, (0.0, 0.0), true);
+    track.push(&step([-1e-3, 1e-3], true), TOLERANCE);
+    track.finish(TOLERANCE);
+    assert_eq!((track.known(), track.at(1), track.at(2)), (3, (0.0, 0.0), (0.0, 0.0)));
+}
+
+/// A phase that is open at the end leaves no window behind.
+#[test]
+fn open_at_the_end() {
+    let mut track = arriving();
+    track.push(&step([0.1, 0.1], true), TOLERANCE);
+    track.finish(TOLERANCE);
+    assert_eq!((track.known(), track.at(6).0), (7, 0.0));
+}
+
+/// 1 % on one velocity of the arrival misses the plane by that much, and nothing else is wrong: the
+/// motion stays outside.
+#[test]
+fn a_missed_rendezvous_shows() {
+    let mut track = track(4.0, -1.0);
+    track.lengths = vec![HALF; 4];
+    // 3.5 + 0.49 m instead of 4.
+    track.record(vec![(-1.0, 2.5 + 0.5), (-1.0, 2.0), (-1.49, 0.755), (0.0, 0.01)], true);
+    let found = residuals(&track);
+    assert!(found.rendezvous > 1e-3);
+    assert_eq!(found, Residuals { rendezvous: found.rendezvous, ..Residuals::default() });
+}
+
+/// A knot 1 % of the body's size behind the plane.
+#[test]
+fn penetration_at_a_knot_shows() {
+    let mut track = track(1.0, -1.0);
+    track.lengths = vec![HALF; 2];
+    track.record(vec![(-1.0, -0.01), (1.0, -0.01)], false);
+    let found = residuals(&track);
+    assert_eq!(found.penetration_at_knots, 0.01);
+    // The parabola between the knots is deeper still, by v²h/(2·2) = ¼.
+    assert!((found.penetration_between_knots - 0.26).abs() < 1e-15);
+}
+
+/// Down to −¼ and back between two knots on the plane.
+#[test]
+fn penetration_between_knots_shows() {
+    let mut track = track(0.0, -1.0);
+    track.lengths = vec![HALF];
+    track.record(vec![(1.0, 0.0)], false);
+    let found = residuals(&track);
+    assert_eq!(found, Residuals { penetration_between_knots: 0.25, ..Residuals::default() });
+}
+
+/// What is no number must not pass as small.
+#[test]
+fn nan_shows() {
+    let mut track = track(1.0, 0.0);
+    track.lengths = vec![HALF];
+    track.record(vec![(f64::NAN, f64::NAN)], false);
+    assert!(residuals(&track).largest().is_nan());
+}

@@ -1,0 +1,87 @@
+//! Small problems for the tests of this module, and their steps prepared.
+
+use super::prepare::Preparation;
+use crate::level::Level;
+use crate::options::{ContactForce, Options};
+use percute_core::dynamics::{critical_time_step, simulate};
+use percute_core::history::{History, StepSource};
+use percute_core::load::{Support, Table};
+use percute_core::material::Elastic;
+use percute_core::observer::Unobserved;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
+use percute_testkit::random_rectangle;
+
+/// Above any rounding, and far below what a change of 1 % does.
+pub(super) const SHOWS: f64 = 1e-6;
+
+fn steps(problem: &TriangleProblem) -> TimeGrid {
+    TimeGrid::uniform(20.0 * 0.9 * critical_time_step(problem), 20).unwrap()
+}
+
+/// A block that strikes and slides.
+pub(super) fn impact() -> (TriangleProblem, TimeGrid) {
+    let problem = Problem::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .initial_velocity(Initial::Uniform([400.0, -400.0]))
+        .obstacle(Plane::new([0.0, -6e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .build()
+        .unwrap();
+    let times = steps(&problem);
+    (problem, times)
+}
+
+/// A block whose top is driven; no plane.
+pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
+    let velocity = Table::new(vec![0.0, 5e-6], vec![[0.0, -100.0], [0.0, 30.0]]).unwrap();
+    let top = Support { group: "top".to_string(), components: [false, true], velocity: Some(velocity) };
+    let problem = Problem::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .initial_velocity(Initial::Uniform([0.0, -100.0]))
+        .support(top)
+        .build()
+        .unwrap();
+    let times = steps(&problem);
+    (problem, times)
+}
+
+/// All steps of a problem, prepared.
+pub(super) fn prepared<'p>(
+    problem: &'p TriangleProblem,
+    times: &'p TimeGrid,
+    contact_force: ContactForce,
+) -> Preparation<'p, 2, 3> {
+    let mut history = History::new(times);
+    simulate(problem, times, &mut history, &mut Unobserved).unwrap();
+    let mut preparation = Preparation::new(problem, times, &Options { contact_force, ..Options::default() });
+    for n in 0..history.len() {
+        let step = history.step(n).unwrap();
+        preparation.check(&step).unwrap();
+        preparation.push(&step);
+    }
+    preparation.finish();
+    let _ = history.times();
+    preparation
+}
+
+/// A level at which nothing acts.
+pub(super) fn level_at_rest(problem: &TriangleProblem) -> Level<2> {
+    let times = TimeGrid::uniform(1e-9, 1).unwrap();
+    let mut preparation = Preparation::new(problem, &times, &Options::default());
+    let surface = problem.surface().nodes().len();
+    for index in 0..2 {
+        preparation.push(&percute_core::history::Step {
+            index,
+            time: times.instants()[index],
+            displacement: problem.initial_displacement(),
+            reaction: &vec![[0.0; 2]; surface],
+            touching: &vec![false; surface],
+        });
+    }
+    preparation.finish();
+    let mut level = preparation.next_ready(false).unwrap();
+    let links = problem.mesh().stars().link_count();
+    (level.flux, level.flux_before) = (vec![[0.0; 2]; links], vec![[0.0; 2]; links]);
+    level
+}

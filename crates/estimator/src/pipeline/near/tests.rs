@@ -1,0 +1,64 @@
+//! Residuals of the motion at contact rise when it is changed.
+
+use super::*;
+use crate::kinematic::NormalStep;
+use crate::pipeline::fixture::{SHOWS, impact};
+use percute_core::time::TimeGrid;
+
+/// Runs one element at contact through a single step at whose end its nodes touch, with the normal
+/// motion in `track` for all of them.
+fn checked(track: &ContactTrack) -> Residuals {
+    let (problem, times) = impact();
+    let equilibration = Equilibration::new(&problem);
+    let tracks = vec![track.clone(); problem.surface().nodes().len()];
+    let context =
+        Context { problem: &problem, equilibration: &equilibration, choice: Acceleration::Closest, tracks: &tracks };
+    let mut near = near_elements(&problem).remove(0);
+    let element = &equilibration.elements[near.element.index()];
+    let knot = Knot {
+        displacement: problem.initial_displacement().to_vec(),
+        velocity: problem.initial_velocity().to_vec(),
+        increment: vec![[0.0; 2]; problem.mesh().node_count()],
+    };
+    let measure = ElementMeasure::new(&problem, element, near.element, Acceleration::Closest);
+    let level = crate::pipeline::fixture::level_at_rest(&problem);
+    let at_rest = measure.balanced(&equilibration, &level, &near.contact, Side::After);
+    let mut stop = near.provisional(element, &knot, 2, 0.0);
+    near.settle(&context, &mut stop);
+    let waiting =
+        Waiting { start: at_rest, end: at_rest, mid: None, stop, touching: near.contact.map(|at| at.is_some()) };
+    near.check_contact(&context, &waiting);
+    let _: &TimeGrid = &times;
+    near.residuals
+}
+
+fn track(velocity: f64, gap: f64) -> ContactTrack {
+    // The undeformed gap of the fixture's flat bottom.
+    let (problem, _) = impact();
+    let undeformed = problem.surface().nodes()[0].undeformed_gap;
+    let mut track = ContactTrack::new(undeformed, 1.0, false, (gap, 0.0), false);
+    // A prescribed node keeps what it is told: the gap stays to rounding.
+    track.push(&NormalStep { half: 1e-12, velocity: [0.0, velocity], touching: true }, 0.0);
+    track
+}
+
+#[test]
+fn at_rest_on_the_plane_nothing_shows() {
+    assert!(checked(&track(0.0, 0.0)).largest() < 1e-15);
+}
+
+/// 1 m/s through the plane while touching, where sliding is at 400 m/s.
+#[test]
+fn a_normal_velocity_in_contact_shows() {
+    let found = checked(&track(1.0, 0.0));
+    assert!(found.normal_velocity > SHOWS, "{found:?}");
+    assert!(Residuals { normal_velocity: 0.0, ..found }.largest() < 1e-10, "{found:?}");
+}
+
+/// 1 mm behind the plane.
+#[test]
+fn penetration_shows() {
+    let found = checked(&track(0.0, -1e-3));
+    assert!(found.penetration_at_knots > SHOWS, "{found:?}");
+    assert!(Residuals { penetration_at_knots: 0.0, ..found }.largest() < 1e-12, "{found:?}");
+}
