@@ -123,11 +123,7 @@ fn condition(window: &Window<'_>, cut: &Cut) -> Condition {
 ///
 /// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows from
 /// them by the diagonal weights, and the system is as small as the number of conditions.
-fn nearest(
-    window: &Window<'_>,
-    equality: Option<Condition>,
-    inequalities: Vec<Condition>,
-) -> (Vec<f64>, Vec<bool>) {
+fn nearest(window: &Window<'_>, equality: Option<Condition>, inequalities: Vec<Condition>) -> (Vec<f64>, Vec<bool>) {
     let free = window.free_knots();
     let equal = usize::from(equality.is_some());
     let conditions: Vec<Condition> = equality.into_iter().chain(inequalities).collect();

@@ -24,27 +24,16 @@ pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f6
 
 /// A body of aluminium with a velocity and a plane.
 pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Plane<2>) -> Builder<2, 3> {
-    TriangleProblem::builder(mesh)
-        .material(aluminium())
-        .initial_velocity(Initial::Uniform(velocity))
-        .obstacle(plane)
+    TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
 }
 
 /// `count` equal steps of a fraction of the critical one.
-pub(crate) fn steps<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    courant: f64,
-    count: usize,
-) -> TimeGrid {
+pub(crate) fn steps<const D: usize, const N: usize>(problem: &Problem<D, N>, courant: f64, count: usize) -> TimeGrid {
     TimeGrid::uniform(courant * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
 /// Steps that swing `waves` times between 0.5 and 0.9 of the critical one.
-pub(crate) fn swinging<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    count: usize,
-    waves: f64,
-) -> TimeGrid {
+pub(crate) fn swinging<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize, waves: f64) -> TimeGrid {
     let critical = critical_time_step(problem);
     let step = |n: usize| critical * (0.7 + 0.2 * (TAU * waves * n as f64 / count as f64).sin());
     TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()
@@ -69,7 +58,8 @@ pub(crate) fn in_two_groups<const D: usize, const N: usize>(
     let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
     let nodes = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
     let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(nodes).collect())).collect();
-    let centroid = |c: &[usize; N]| std::array::from_fn(|d| c.map(|n| mesh.points()[n][d]).iter().sum::<f64>() / N as f64);
+    let centroid =
+        |c: &[usize; N]| std::array::from_fn(|d| c.map(|n| mesh.points()[n][d]).iter().sum::<f64>() / N as f64);
     let (one, other) = (0..cells.len()).partition(|&e| first(centroid(&cells[e])));
     let groups = [("first".to_string(), one), ("second".to_string(), other)].into();
     Mesh::new(mesh.points().to_vec(), &cells, &facets, &groups).unwrap()

@@ -2,9 +2,9 @@
 use crate::bodies::{aluminium, gravity, plane_below, steps, thrown};
 use crate::estimating::check;
 use percute_core::material::Elastic;
-use percute_core::problem::{Initial, Problem};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::{disc, random_rectangle};
 
 /// Steps far below the critical one: nodes rebound and return many times while the body is down.
@@ -58,8 +58,12 @@ fn thin_strips() {
         let mesh = TriangleMesh::rectangle(0.05, 0.002, nx, 1).unwrap();
         let plane = plane_below(&mesh, 0.01, 1e-4, 0.5, None);
         let soft = Elastic::plane_stress(1e7, 0.45, 1200.0, 0.01).unwrap();
-        let problem = Problem::builder(mesh).material(soft).initial_velocity(Initial::Uniform([3.0, -5.0]))
-            .obstacle(plane).build().unwrap();
+        let problem = Problem::builder(mesh)
+            .material(soft)
+            .initial_velocity(Initial::Uniform([3.0, -5.0]))
+            .obstacle(plane)
+            .build()
+            .unwrap();
         assert!(check(&format!("strip of {nx}"), &problem, &steps(&problem, 0.6, 203)) > 3);
     }
 }

@@ -11,9 +11,12 @@ use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
     let readings = [ContactForce::Sharp, ContactForce::Paper];
     readings.into_iter().flat_map(|contact_force| {
-        [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak]
-            .into_iter()
-            .map(move |acceleration| Options { contact_force, acceleration, threads: Some(1), ..Options::default() })
+        [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak].into_iter().map(move |acceleration| Options {
+            contact_force,
+            acceleration,
+            threads: Some(1),
+            ..Options::default()
+        })
     })
 }
 
@@ -55,8 +58,7 @@ pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Proble
             let options = Options { every, ..options };
             let what = format!("{what}, {}, {}, every {every}", options.contact_force, options.acceleration);
             let estimate = estimate(problem, &history, options);
-            if std::env::var("SHOW").is_ok() { for (n, v) in estimate.residuals.entries() { eprintln!("RES|{what}|{n}|{v:e}|{:e}|{:?}", estimate.error.sup, estimate.kept_impulse); } }
-            else { assert_admissible(&what, &estimate); }
+            assert_admissible(&what, &estimate);
         }
     }
     reactions(&history)

@@ -47,7 +47,8 @@ fn boxes_on_rollers() {
     for sides in [vec!["left", "bottom"], vec!["left", "bottom", "right", "top"]] {
         let mut builder = Problem::builder(block(4)).material(aluminium());
         for side in &sides {
-            builder = builder.support(fixed(side, if ["left", "right"].contains(side) { [true, false] } else { [false, true] }));
+            builder = builder
+                .support(fixed(side, if ["left", "right"].contains(side) { [true, false] } else { [false, true] }));
         }
         let velocity = builder.body_force(BodyForce { group: None, value: pulse([4e9, -7e9]) });
         let problem = velocity.build().unwrap();
@@ -162,7 +163,8 @@ fn uneven_bars() {
             .material_of("second", Elastic::bar(210e9, 7800.0, 0.005).unwrap())
             .initial_velocity(Initial::Uniform([-30.0]))
             .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap());
-        let moved = Support { group: "end".to_string(), components: [true], velocity: Some(table([-30.0, 20.0, -5.0])) };
+        let moved =
+            Support { group: "end".to_string(), components: [true], velocity: Some(table([-30.0, 20.0, -5.0])) };
         let load = Traction { group: "end".to_string(), value: table([0.0, -4e8, 1e8]), profile: Profile::UNIFORM };
         let problem = match end {
             0 => builder.body_force(gravity([-1e5])),

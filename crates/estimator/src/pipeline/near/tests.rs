@@ -25,7 +25,8 @@ fn checked(track: &ContactTrack) -> Residuals {
     let at_rest = measure.balanced(&equilibration, &level, &near.contact, Side::After);
     let mut stop = near.provisional(element, &knot, 2, 0.0);
     near.settle(&context, &mut stop);
-    let waiting = Waiting { start: at_rest, end: at_rest, mid: None, stop, touching: near.contact.map(|at| at.is_some()) };
+    let waiting =
+        Waiting { start: at_rest, end: at_rest, mid: None, stop, touching: near.contact.map(|at| at.is_some()) };
     near.check_contact(&context, &waiting);
     let _: &TimeGrid = &times;
     near.residuals
