@@ -24,7 +24,7 @@ fn problem(mesh: TriangleMesh, tilt: f64, friction: f64, seed: u64) -> (Triangle
     let courant = random.between(0.05, 0.95);
     let step = steps(&free, courant, 1).end();
     let speed = 10.0_f64.powf(random.between(-3.0, 2.5));
-    let mut one_in = |n: u64| random.bits() % n == 0;
+    let mut one_in = |n: u64| random.bits().is_multiple_of(n);
     let (falls, is_held, is_pulled, is_wild, swings) = (one_in(2), one_in(4), one_in(3), one_in(3), one_in(3));
     // Two to four steps of the flight away.
     let gap = random.between(2.0, 4.0) * speed * step;

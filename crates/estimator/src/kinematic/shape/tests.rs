@@ -40,7 +40,7 @@ impl Drawn {
             // Even a velocity of −1 needs no more than 0.35 to turn round.
             _ => (random.between(0.35, 1.0), random.between(-1.0, 0.5)),
         };
-        Self { start, lengths, wanted, arrives: random.bits() % 2 == 0 }
+        Self { start, lengths, wanted, arrives: random.bits().is_multiple_of(2) }
     }
 
     fn window(&self) -> Window<'_> {
