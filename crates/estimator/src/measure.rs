@@ -39,9 +39,9 @@ impl ElementError {
 pub(crate) struct Balanced<const D: usize, const N: usize> {
     /// Tractions and Γ_DA − f_d.
     pub(crate) loading: Loading<D, N>,
-    /// Largest component of f_d (N/m³). Where it all but equals Γ_DA, as in a fall, their difference
-    /// says nothing about how large the terms of the balance are.
-    body: f64,
+    /// Largest component of f_d and of ρã at the nodes (N/m³). Γ_DA − f_d is made of them, and where
+    /// they cancel, as in a fall, says nothing about how large the terms of the balance are.
+    terms: f64,
     /// Their work on the shape function of each node.
     forces: [NodalForce<D>; N],
 }
@@ -142,13 +142,14 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             }
         }
         let body = level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
+        let terms = acceleration.iter().flatten().fold(0.0_f64, |m, a| m.max(self.law.density() * a.abs()));
+        let terms = body.iter().fold(terms, |m, f| m.max(f.abs()));
         let mut volume = self.inertia.apply(&acceleration);
         for value in &mut volume {
             (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
         }
         let loading = Loading { traction, volume };
-        let body = body.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        Balanced { forces: self.nodal_forces(&loading), body, loading }
+        Balanced { forces: self.nodal_forces(&loading), terms, loading }
     }
 
     /// The error at one sample; `increment` is ∫ã dt at the nodes.
@@ -214,9 +215,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// The smallest force that counts, per unit of section or thickness: 1e-12 of the largest in
-    /// the mesh, or what f_d does at a node.
+    /// the mesh, or what f_d or the lumped inertia does at a node.
     fn floor(&self, balanced: &Balanced<D, N>, scale: f64) -> f64 {
-        (1e-12 * scale).max(balanced.body * self.element.volume / N as f64) / self.law.extent()
+        (1e-12 * scale).max(balanced.terms * self.element.volume / N as f64) / self.law.extent()
     }
 
     /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.

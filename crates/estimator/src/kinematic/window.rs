@@ -112,3 +112,31 @@ pub(super) fn least_of_parabola(before: (f64, f64), after: (f64, f64), length: f
     }
     if g1 < g0 { (Cut { half_step: m, offset: length }, g1) } else { (Cut { half_step: m, offset: 0.0 }, g0) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> Window<'a> {
+        Window { start, lengths, wanted, arrives: true }
+    }
+
+    /// A step has two half steps, so that tracks never make a window without a free knot; should one
+    /// come, it is rest, and the way that is missing shows at its end.
+    #[test]
+    fn without_free_knots() {
+        assert_eq!(window((0.0, 0.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.0)]);
+        assert_eq!(window((2.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.5)]);
+        // One that cannot but penetrate is left as it is.
+        assert_eq!(window((0.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, -1.5)]);
+    }
+
+    /// Between two contacts with nothing between them but one knot, only rest is left.
+    #[test]
+    fn with_one_free_knot() {
+        for wanted in [-3.0, 0.0, 4.0] {
+            let path = window((0.0, 0.0), &[1.0, 1.0], &[wanted, 0.0]).solve(1e-12);
+            assert_eq!(path, [(0.0, 0.0), (0.0, 0.0)]);
+        }
+    }
+}

@@ -4,7 +4,7 @@ use super::prepare::Preparation;
 use crate::level::Level;
 use crate::options::{ContactForce, Options};
 use percute_core::dynamics::{critical_time_step, simulate};
-use percute_core::history::{History, StepSource};
+use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::observer::Unobserved;
@@ -61,7 +61,6 @@ pub(super) fn prepared<'p>(
         preparation.push(&step);
     }
     preparation.finish();
-    let _ = history.times();
     preparation
 }
 

@@ -7,6 +7,11 @@
 mod anything;
 mod bodies;
 mod chatter;
+mod consistency;
+mod determinism;
+mod edges;
 mod estimating;
 mod loads;
+mod malformed;
 mod shapes;
+mod symmetries;

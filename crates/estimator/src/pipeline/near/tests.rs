@@ -3,12 +3,11 @@
 use super::*;
 use crate::kinematic::NormalStep;
 use crate::pipeline::fixture::{SHOWS, impact};
-use percute_core::time::TimeGrid;
 
 /// Runs one element at contact through a single step at whose end its nodes touch, with the normal
 /// motion in `track` for all of them.
 fn checked(track: &ContactTrack) -> Residuals {
-    let (problem, times) = impact();
+    let (problem, _) = impact();
     let equilibration = Equilibration::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
     let context =
@@ -28,7 +27,6 @@ fn checked(track: &ContactTrack) -> Residuals {
     let waiting =
         Waiting { start: at_rest, end: at_rest, mid: None, stop, touching: near.contact.map(|at| at.is_some()) };
     near.check_contact(&context, &waiting);
-    let _: &TimeGrid = &times;
     near.residuals
 }
 

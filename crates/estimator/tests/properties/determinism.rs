@@ -1,0 +1,90 @@
+//! The same bits for all numbers of threads and window sizes, beside the run and from a history.
+
+use crate::bodies::{aluminium, gravity, plane_below, steps, thrown};
+use crate::estimating::{estimate, history, reactions};
+use percute_core::material::Elastic;
+use percute_core::mesh::BarMesh;
+use percute_core::observer::Unobserved;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem};
+use percute_core::time::TimeGrid;
+use percute_estimator::{ContactForce, Estimate, Options, run};
+use percute_testkit::{disc, random_rectangle};
+
+/// Every number of an estimate.
+fn bits(estimate: &Estimate) -> Vec<u64> {
+    let Estimate { error, time_of_sup, parts, over_time, by_element, residuals, kept_impulse, steps, end } = estimate;
+    let mut numbers = vec![
+        error.sup,
+        error.mean,
+        error.relative_sup,
+        error.relative_mean,
+        error.reference_sup,
+        error.reference_mean,
+        *time_of_sup,
+        parts.kinetic,
+        parts.elastic,
+        parts.contact,
+        kept_impulse.unwrap_or(-1.0),
+        *steps as f64,
+        *end,
+    ];
+    let sample =
+        |s: &percute_estimator::Sample| [s.time, s.parts.kinetic, s.parts.elastic, s.parts.contact, s.reference];
+    numbers.extend(over_time.iter().flat_map(sample));
+    numbers.extend(by_element);
+    numbers.extend(residuals.entries().map(|entry| entry.1));
+    numbers.into_iter().map(f64::to_bits).collect()
+}
+
+fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) {
+    let history = history(problem, times);
+    assert!(reactions(&history) > 3, "{what}");
+    for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
+        for every in [1, 3] {
+            let options =
+                Options { contact_force, every, window: Some(1_000_000), threads: Some(1), ..Options::default() };
+            let expected = bits(&estimate(problem, &history, options));
+            for threads in [1, 2, 3, 8] {
+                for window in [Some(1), Some(7), Some(64), Some(1_000_000), None] {
+                    let options = Options { threads: Some(threads), window, ..options };
+                    let replayed = bits(&estimate(problem, &history, options));
+                    assert!(replayed == expected, "{what}, replayed: {options:?}");
+                    let (_, beside) = run(problem, times, options, &mut Unobserved).unwrap();
+                    assert!(bits(&beside) == expected, "{what}, beside the run: {options:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bar() {
+    let problem = Problem::builder(BarMesh::uniform_bar(0.1, 40).unwrap())
+        .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
+        .initial_velocity(Initial::Uniform([-20.0]))
+        .body_force(gravity([-2e6]))
+        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .build()
+        .unwrap();
+    check("bar", &problem, &steps(&problem, 0.9, 200));
+}
+
+/// More elements and nodes than a block of 256, so that several threads have work.
+#[test]
+fn block() {
+    let mesh = random_rectangle(0.05, 0.04, 18, 3).unwrap();
+    assert!(mesh.element_count() > 256 && mesh.node_count() > 256);
+    let plane = plane_below(&mesh, 0.01, 2e-4, 0.2, None);
+    let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();
+    check("block", &problem, &steps(&problem, 0.9, 23));
+}
+
+#[test]
+fn chattering_disc() {
+    let mesh = disc(0.02, 0.005).unwrap();
+    let plane = plane_below(&mesh, 0.1, 1e-4, 0.3, None);
+    let builder = Problem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform([10.0, -100.0]));
+    let problem = builder.body_force(gravity([0.0, -1e7])).obstacle(plane).build().unwrap();
+    check("disc", &problem, &steps(&problem, 0.4, 130));
+}

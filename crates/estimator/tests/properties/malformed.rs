@@ -1,0 +1,169 @@
+//! Steps that do not fit: an error that says what is wrong, never a panic.
+
+use crate::bodies::{plane_below, steps, thrown};
+use crate::estimating::history;
+use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::problem::TriangleProblem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{EstimateError, Estimator, Options};
+use percute_testkit::random_rectangle;
+
+/// A step that can be spoilt.
+struct Raw {
+    index: usize,
+    displacement: Vec<[f64; 2]>,
+    reaction: Vec<[f64; 2]>,
+    touching: Vec<bool>,
+}
+
+impl Raw {
+    fn of(step: &Step<'_, 2>) -> Self {
+        let (displacement, reaction) = (step.displacement.to_vec(), step.reaction.to_vec());
+        Self { index: step.index, displacement, reaction, touching: step.touching.to_vec() }
+    }
+
+    fn step(&self) -> Step<'_, 2> {
+        let Self { index, displacement, reaction, touching } = self;
+        Step { index: *index, time: 0.0, displacement, reaction, touching }
+    }
+}
+
+fn impact() -> TriangleProblem {
+    let mesh = random_rectangle(0.05, 0.04, 5, 1).unwrap();
+    let plane = plane_below(&mesh, 0.0, 6e-4, 0.2, None);
+    thrown(mesh, [100.0, -300.0], plane).build().unwrap()
+}
+
+fn cause(error: SinkError) -> EstimateError {
+    *error.downcast().unwrap()
+}
+
+type Spoil = fn(&mut Raw);
+
+/// Feeds the steps of a run up to number `at`, which is spoilt.
+fn fed(at: usize, spoil: impl Fn(&mut Raw)) -> EstimateError {
+    let problem = impact();
+    let times = steps(&problem, 0.9, 10);
+    let history = history(&problem, &times);
+    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    for n in 0..at {
+        estimator.push(&history.step(n).unwrap()).unwrap();
+    }
+    let mut raw = Raw::of(&history.step(at.min(10)).unwrap());
+    spoil(&mut raw);
+    let error = cause(estimator.push(&raw.step()).unwrap_err());
+    // What was right before can still be summed up.
+    assert_eq!(estimator.finish().is_ok(), at >= 2);
+    error
+}
+
+#[test]
+fn wrong_lengths() {
+    for at in [0, 1, 5] {
+        let fields: [(&str, Spoil); 3] = [
+            ("displacement", |raw| raw.displacement.truncate(3)),
+            ("reaction", |raw| raw.reaction.push([0.0; 2])),
+            ("touching", |raw| raw.touching.clear()),
+        ];
+        for (name, spoil) in fields {
+            let error = fed(at, spoil);
+            assert!(
+                matches!(error, EstimateError::Length { step, field, .. } if step == at && field == name),
+                "{error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers() {
+    for value in [f64::NAN, f64::INFINITY] {
+        let error = fed(3, |raw| raw.displacement[7][1] = value);
+        assert_eq!(error, EstimateError::NotFinite { step: 3, field: "displacement", position: 7 });
+        let error = fed(0, |raw| raw.reaction[2][0] = value);
+        assert_eq!(error, EstimateError::NotFinite { step: 0, field: "reaction", position: 2 });
+    }
+}
+
+#[test]
+fn steps_out_of_order() {
+    assert_eq!(fed(3, |raw| raw.index = 5), EstimateError::Order { given: 5, expected: 3, last: 10 });
+    assert_eq!(fed(3, |raw| raw.index = 2), EstimateError::Order { given: 2, expected: 3, last: 10 });
+    assert_eq!(fed(0, |raw| raw.index = 1), EstimateError::Order { given: 1, expected: 0, last: 10 });
+    // One step too many.
+    assert_eq!(fed(11, |raw| raw.index = 11), EstimateError::Order { given: 11, expected: 11, last: 10 });
+}
+
+/// From another program may come what this integrator refuses: a node that touches at step 1 from a gap
+/// below |v_n|Δt₀/4, here 300 m/s · Δt/4.
+#[test]
+fn a_start_too_near() {
+    let problem = impact();
+    let (far, near) = (4.0 * 6e-4 / 300.0 * 0.999, 4.0 * 6e-4 / 300.0 * 1.001);
+    for (step, refused) in [(far, false), (near, true)] {
+        let times = TimeGrid::uniform(3.0 * step, 3).unwrap();
+        let surface = problem.surface().nodes().len();
+        let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+        let nodes = problem.mesh().node_count();
+        let mut raw = Raw {
+            index: 0,
+            displacement: vec![[0.0; 2]; nodes],
+            reaction: vec![[0.0; 2]; surface],
+            touching: vec![false; surface],
+        };
+        estimator.push(&raw.step()).unwrap();
+        raw.index = 1;
+        raw.touching[0] = true;
+        match estimator.push(&raw.step()) {
+            Ok(()) => assert!(!refused),
+            Err(error) => {
+                let node = problem.surface().nodes()[0].node.index();
+                let EstimateError::StartsTooNear { node: found, gap, smallest_gap } = cause(error) else { panic!() };
+                assert_eq!((found, refused), (node, true));
+                // The gap of a mesh of 0.05 m to rounding.
+                assert!((gap - 6e-4).abs() < 1e-15 && (smallest_gap - 6.006e-4).abs() < 1e-15);
+            }
+        }
+    }
+}
+
+#[test]
+fn too_few_steps_and_impossible_options() {
+    let problem = impact();
+    let times = steps(&problem, 0.9, 10);
+    let history = history(&problem, &times);
+    for count in 0..2 {
+        let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+        (0..count).for_each(|n| estimator.push(&history.step(n).unwrap()).unwrap());
+        assert_eq!(estimator.finish(), Err(EstimateError::TooFewSteps { count }));
+    }
+    for options in [
+        Options { every: 0, ..Options::default() },
+        Options { window: Some(0), ..Options::default() },
+        Options { threads: Some(0), ..Options::default() },
+    ] {
+        let made = Estimator::new(&problem, &times, options);
+        assert!(matches!(made.err(), Some(EstimateError::Zero { .. })), "{options:?}");
+    }
+}
+
+/// Finite, but too large for what is made of it: the estimate must not look sound.
+#[test]
+fn overflow_shows() {
+    let problem = impact();
+    let times = steps(&problem, 0.9, 10);
+    let history = history(&problem, &times);
+    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    for n in 0..history.len() {
+        let mut raw = Raw::of(&history.step(n).unwrap());
+        if n == 4 {
+            raw.displacement[7] = [1e305, -1e305];
+        }
+        estimator.push(&raw.step()).unwrap();
+    }
+    let estimate = estimator.finish().unwrap();
+    assert!(!estimate.error.sup.is_finite() || !estimate.error.mean.is_finite(), "{:?}", estimate.error);
+    // NaN is not small either.
+    let largest = estimate.residuals.largest();
+    assert!(largest.is_nan() || largest > 1e-10, "{:?}", estimate.residuals);
+}

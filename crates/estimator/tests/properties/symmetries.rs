@@ -1,0 +1,171 @@
+//! What must not depend on axes, mirrors, numbers and units, on meshes drawn at random.
+//!
+//! The steps are those of one problem and scaled exactly, so that their number and length are the same
+//! for the image. The gap is 2.4 steps of the flight: no node lands on the plane at an instant, where
+//! rounding would decide whether it touches.
+
+use crate::bodies::{aluminium, steps};
+use crate::estimating::{all_choices, estimate, history, reactions};
+use percute_core::load::{Profile, Table, Traction};
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
+use percute_testkit::strategy::{angle, rectangle};
+use percute_testkit::{mirrored, renumbered, rotated};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// Few cases of at most 50 elements, the same ones in every run.
+fn few() -> ProptestConfig {
+    ProptestConfig { cases: 16, failure_persistence: None, rng_seed: RngSeed::Fixed(8), ..ProptestConfig::default() }
+}
+
+/// A block above a rough plane, pulled on top.
+#[derive(Clone, Debug)]
+struct Throw {
+    mesh: TriangleMesh,
+    material: Elastic,
+    velocity: [f64; 2],
+    friction: f64,
+    gap: f64,
+    pull: f64,
+    times: TimeGrid,
+}
+
+impl Throw {
+    fn new(mesh: TriangleMesh, along: f64, speed: f64, friction: f64) -> Self {
+        let free = Problem::builder(mesh.clone()).material(aluminium()).build().unwrap();
+        let times = steps(&free, 0.85, 50);
+        let (velocity, gap) = ([along, -speed], 2.4 * speed * times.step(0));
+        // Some 1 % of the stress of the impact, ρ c v.
+        let pull = 2700.0 * 5000.0 * 0.01 * speed;
+        Self { mesh, material: aluminium(), velocity, friction, gap, pull, times }
+    }
+
+    /// The problem after `map` has moved all vectors and the plane's point; the bottom may touch.
+    fn problem(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+        let value = vec![map([self.pull, 1.5 * self.pull]), map([-self.pull, 0.5 * self.pull])];
+        let pull = Table::new(vec![0.0, self.times.end()], value).unwrap();
+        let bottom = Some("bottom".to_string());
+        Problem::builder(self.mesh.clone())
+            .material(self.material)
+            .initial_velocity(Initial::Uniform(map(self.velocity)))
+            .obstacle(Plane::new(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap())
+            .traction(Traction { group: "top".to_string(), value: pull, profile: Profile::UNIFORM })
+            .build()
+            .unwrap()
+    }
+}
+
+/// What must agree: measures that scale, and elements.
+struct Expected<'a> {
+    /// Factor of e.
+    scale: f64,
+    /// New number of each element.
+    element: &'a dyn Fn(usize) -> usize,
+    /// Whether D, which moves with the body, agrees too.
+    reference: bool,
+}
+
+const SAME: Expected<'static> = Expected { scale: 1.0, element: &|e| e, reference: true };
+
+/// Compares the estimates of two problems under all choices, to 1e-9.
+fn compare(
+    one: &TriangleProblem,
+    other: &TriangleProblem,
+    times: &TimeGrid,
+    expected: &Expected<'_>,
+) -> Result<(), TestCaseError> {
+    let (first, second) = (history(one, times), history(other, times));
+    prop_assert!(reactions(&first) > 0);
+    for options in all_choices() {
+        let (a, b) = (estimate(one, &first, options), estimate(other, &second, options));
+        let mut pairs = vec![(a.error.sup, b.error.sup), (a.error.mean, b.error.mean)];
+        if expected.reference {
+            pairs.extend([
+                (a.error.reference_sup, b.error.reference_sup),
+                (a.error.reference_mean, b.error.reference_mean),
+            ]);
+        }
+        for (x, y) in pairs {
+            let x = expected.scale * x;
+            prop_assert!((x - y).abs() <= 1e-9 * x, "{:?}: {:e} against {:e}, {:e}", options, x, y, (x - y).abs() / x);
+        }
+        for (e, x) in a.by_element.iter().enumerate() {
+            let (x, y) = (expected.scale * x, b.by_element[(expected.element)(e)]);
+            let largest = expected.scale * a.error.mean;
+            prop_assert!((x - y).abs() <= 1e-9 * largest, "{:?}, element {}: {:e} against {:e}", options, e, x, y);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(few())]
+
+    #[test]
+    fn turning_everything(
+        mesh in rectangle(5), turn in angle(), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction);
+        let (sin, cos) = turn.sin_cos();
+        let image = Throw { mesh: rotated(&throw.mesh, turn).unwrap(), ..throw.clone() };
+        let turned = image.problem(|v| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]);
+        compare(&throw.problem(|v| v), &turned, &throw.times, &SAME)?;
+    }
+
+    #[test]
+    fn in_a_mirror(
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction);
+        let image = Throw { mesh: mirrored(&throw.mesh).unwrap(), ..throw.clone() };
+        compare(&throw.problem(|v| v), &image.problem(|v| [-v[0], v[1]]), &throw.times, &SAME)?;
+    }
+
+    #[test]
+    fn faster_from_farther_away(
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        scale in 0.1..7.0_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction);
+        let velocity = throw.velocity.map(|v| scale * v);
+        let image = Throw { velocity, gap: scale * throw.gap, pull: scale * throw.pull, ..throw.clone() };
+        compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &Expected { scale, ..SAME })?;
+    }
+
+    #[test]
+    fn stiffer_and_heavier(
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        scale in 0.1..7.0_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction);
+        let material = Elastic::plane_stress(scale * 70e9, 0.3, scale * 2700.0, 1.0).unwrap();
+        let image = Throw { material, pull: scale * throw.pull, ..throw.clone() };
+        let expected = Expected { scale: scale.sqrt(), ..SAME };
+        compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &expected)?;
+    }
+
+    #[test]
+    fn under_other_numbers(
+        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction);
+        let (mesh, new) = renumbered(&throw.mesh, seed).unwrap();
+        let image = Throw { mesh, ..throw.clone() };
+        let expected = Expected { element: &|e| new.element[e], ..SAME };
+        compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &expected)?;
+    }
+
+    #[test]
+    fn without_friction_on_a_moving_belt(
+        mesh in rectangle(5), along in -300.0..300.0_f64, belt in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, 0.0);
+        let image = Throw { velocity: [along + belt, -speed], ..throw.clone() };
+        let expected = Expected { reference: false, ..SAME };
+        compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &expected)?;
+    }
+}
