@@ -54,7 +54,12 @@ fn clap_says(error: &clap::Error, console: &mut Console<'_>) -> u8 {
 
 /// `percute run`.
 fn run_command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    arguments.picture.as_deref().map_or(Ok(()), picture::check_path)?;
+    if let Some(file) = &arguments.picture {
+        picture::check_path(file)?;
+        if file.canonicalize().is_ok_and(|file| arguments.case.canonicalize().is_ok_and(|case| case == file)) {
+            return Err(Failure::Argument(format!("--picture {} is the case file itself", file.display())));
+        }
+    }
     let case = Case::parse(read(&arguments.case)?)?;
     let settings = Settings { threads: arguments.threads, window: arguments.window };
     let watch = &mut Watch::new(console.progress && !arguments.quiet, console.interrupted);
@@ -68,7 +73,7 @@ fn run_command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8
     };
     watch.clear();
     if !arguments.quiet {
-        warn(&report.warnings, console)?;
+        warn(&report.warnings, console);
     }
     print(&report, arguments.json, console)?;
     if let Some(file) = &arguments.picture {
@@ -77,11 +82,11 @@ fn run_command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8
     Ok(if report.interrupted { INTERRUPTED } else { DONE })
 }
 
-fn warn(warnings: &[Warning], console: &mut Console<'_>) -> Result<(), Failure> {
+/// Warnings that cannot be written must not cost the result.
+fn warn(warnings: &[Warning], console: &mut Console<'_>) {
     for warning in warnings {
-        writeln!(console.err, "warning: {}", warning.message)?;
+        let _ = writeln!(console.err, "warning: {}", warning.message);
     }
-    Ok(())
 }
 
 fn print(report: &Report, json: bool, console: &mut Console<'_>) -> Result<(), Failure> {

@@ -97,11 +97,14 @@ impl<const C: usize> Table<C> {
     }
 
     /// How far straight lines between the values at `instants` miss the table: the largest
-    /// difference over the largest value, both in any component.
+    /// difference over the largest value between the first and the last of them, in any component.
     #[must_use]
     pub fn resampling_error(&self, instants: &[f64]) -> f64 {
         let sampled: Vec<_> = instants.iter().map(|&t| self.at(t)).collect();
-        let largest = self.value.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let end = instants.last().copied().unwrap_or(0.0);
+        let within = self.time.iter().zip(&self.value).filter(|(t, _)| (0.0..=end).contains(*t)).map(|(_, v)| v);
+        let values = sampled.iter().chain(within).flatten();
+        let largest = values.fold(0.0_f64, |m, x| m.max(x.abs()));
         let mut error: f64 = 0.0;
         for (t, value) in self.time.iter().zip(&self.value) {
             let after = instants.partition_point(|x| x <= t);

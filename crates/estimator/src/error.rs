@@ -56,6 +56,39 @@ pub enum EstimateError {
         /// Where.
         position: usize,
     },
+    /// A step at another time than the grid's.
+    #[error("step {step} is at {given:e} s, but the time grid has {expected:e} s there")]
+    Time {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        given: f64,
+        /// The time of the grid (s).
+        expected: f64,
+    },
+    /// A first step that is not the initial state.
+    #[error("the displacement of node {node} at step 0 is not the initial displacement of the problem")]
+    Start {
+        /// The node.
+        node: usize,
+    },
+    /// A node that is said to touch at t = 0, but does not rest on its plane.
+    #[error(
+        "node {node} touches at step 0, but its gap is {gap:e} m and its normal velocity {speed:e} m/s; both must be zero"
+    )]
+    StartsTouching {
+        /// The node.
+        node: usize,
+        /// Its gap (m).
+        gap: f64,
+        /// Its normal velocity (m/s).
+        speed: f64,
+    },
+    /// Numbers too large to be squared and summed.
+    #[error(
+        "the error measure is not finite: some value of the problem (friction, load, stiffness) is out of all proportion"
+    )]
+    Overflow,
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
         "node {node} starts {gap:.6e} m from its plane and touches at step 1; no admissible motion exists \

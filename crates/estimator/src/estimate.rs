@@ -76,6 +76,14 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// Whether every number of it is one.
+    pub(crate) fn is_finite(&self) -> bool {
+        let e = &self.error;
+        let measures = [e.sup, e.mean, e.relative_sup, e.relative_mean, e.reference_sup, e.reference_mean];
+        let samples = self.over_time.iter().all(|s| s.parts.total().is_finite() && s.reference.is_finite());
+        samples && measures.iter().chain(&self.by_element).all(|x| x.is_finite())
+    }
+
     /// The `count` elements that contribute most, with e_E (J^½), largest first.
     #[must_use]
     pub fn worst_elements(&self, count: usize) -> Vec<(ElementId, f64)> {

@@ -21,7 +21,12 @@ pub fn check_path(file: &Path) -> Result<(), Failure> {
         )));
     }
     let fail = |cause: std::io::Error| Failure::Picture { file: file.to_path_buf(), cause: cause.to_string() };
-    let new = !file.exists();
+    // Not the target of a link: a link to nothing must not be taken for a new file and removed.
+    let new = match std::fs::symlink_metadata(file) {
+        Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
+        Ok(_) => return Err(fail(std::io::Error::other("it is no regular file"))),
+        Err(_) => true,
+    };
     // Appending nothing changes nothing.
     OpenOptions::new().append(true).create(true).open(file).map_err(fail)?;
     if new { std::fs::remove_file(file).map_err(fail) } else { Ok(()) }

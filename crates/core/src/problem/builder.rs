@@ -101,11 +101,23 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self
     }
 
+    /// Materials and body forces are counted in 16 bits.
+    fn check_counts(&self) -> Result<(), InputError> {
+        let most = usize::from(u16::MAX) - 1;
+        for (table, count) in [("material", self.materials.len()), ("body_force", self.body_forces.len())] {
+            if count > most {
+                return Err(Cause::TooMany { count, most }.at(table, Some(most), ""));
+            }
+        }
+        Ok(())
+    }
+
     /// Checks everything and builds the problem.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
     pub fn build(self) -> Result<Problem<D, N>, InputError> {
+        self.check_counts()?;
         let mesh = &self.mesh;
         let (materials, element_material) = materials(mesh, &self.materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();

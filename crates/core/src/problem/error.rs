@@ -67,6 +67,14 @@ pub enum Cause {
         /// The name.
         name: String,
     },
+    /// More materials or body forces than can be told apart.
+    #[error("there are {count} of them; at most {most} can be told apart")]
+    TooMany {
+        /// How many were given.
+        count: usize,
+        /// How many are allowed.
+        most: usize,
+    },
     /// No material at all, or not on all elements.
     #[error(
         "element {element} has no material ({count} such elements); give a material without a group, or one for each group"

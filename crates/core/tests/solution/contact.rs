@@ -3,7 +3,7 @@
 use crate::run::{Run, aluminium, gravity, run, swinging_steps};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
-use percute_core::load::Support;
+use percute_core::load::{Support, Table};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
@@ -252,14 +252,18 @@ fn a_block_may_start_sliding_on_a_slope() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A node with a prescribed component is no candidate (method: supports come first): it gets no
+/// A node whose normal motion is prescribed is no candidate (supports come first): it gets no
 /// reaction, whatever its gap, and its neighbours do.
 #[test]
 fn held_nodes_get_no_reaction() {
     let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
-        .support(Support { group: "left".to_string(), components: [true, false], velocity: None })
+        .support(Support {
+            group: "left".to_string(),
+            components: [false, true],
+            velocity: Some(Table::constant([0.0, -100.0])),
+        })
         .obstacle(Plane::new([0.0, -GAP], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
         .build()
         .unwrap();

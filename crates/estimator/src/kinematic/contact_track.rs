@@ -15,6 +15,8 @@ pub(crate) struct ContactTrack {
     lengths: Vec<f64>,
     wanted: Vec<f64>,
     touching: bool,
+    /// The first knot whose motion is not that of the simulation.
+    first_altered: usize,
     /// Whether contact is solved for; a prescribed node keeps its motion.
     free: bool,
     rendezvous: f64,
@@ -43,6 +45,7 @@ impl ContactTrack {
             lengths: Vec::new(),
             wanted: Vec::new(),
             touching,
+            first_altered: usize::MAX,
             free,
             rendezvous: 0.0,
             at_knots: 0.0,
@@ -56,6 +59,7 @@ impl ContactTrack {
         if step.touching && self.touching && self.free {
             // Within a phase: at rest on the plane.
             let (_, gap) = self.last();
+            self.first_altered = self.first_altered.min(self.known.len());
             self.known.extend([(0.0, gap); 2]);
         } else {
             self.lengths.extend([step.half; 2]);
@@ -95,6 +99,9 @@ impl ContactTrack {
             let (_, end) = path[path.len() - 1];
             self.rendezvous = worse(self.rendezvous, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
+        if arrives || !self.free || path.iter().zip(&self.wanted).any(|((v, _), wanted)| v != wanted) {
+            self.first_altered = self.first_altered.min(self.known.len());
+        }
         let mut before = (velocity, gap);
         for (m, &after) in path.iter().enumerate() {
             let (_, least) = least_of_parabola(before, after, self.lengths[m], m);
@@ -121,6 +128,12 @@ impl ContactTrack {
     #[inline]
     pub(crate) fn at(&self, knot: usize) -> (f64, f64) {
         self.known[knot]
+    }
+
+    /// Whether the motion at a known knot differs from that of the simulation.
+    #[inline]
+    pub(crate) fn is_altered(&self, knot: usize) -> bool {
+        knot >= self.first_altered
     }
 
     /// Gap of the node's place in the undeformed mesh (m).

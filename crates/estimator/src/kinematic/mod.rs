@@ -36,6 +36,10 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
 
     /// Puts the solution of P_CA in the place of the normal components at local node `i`.
     pub(crate) fn set_normal(&mut self, i: usize, plane: &Plane<D>, track: &ContactTrack, knot: usize) {
+        if !track.is_altered(knot) {
+            // Not rebuilt from the gap, in which a distant plane would drown the displacement.
+            return;
+        }
         let (velocity, gap) = track.at(knot);
         let (_, tangential) = plane.split(&self.displacement[i]);
         let (_, sliding) = plane.split(&self.velocity[i]);

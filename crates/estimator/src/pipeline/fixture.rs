@@ -63,24 +63,3 @@ pub(super) fn prepared<'p>(
     preparation.finish();
     preparation
 }
-
-/// A level at which nothing acts.
-pub(super) fn level_at_rest(problem: &TriangleProblem) -> Level<2> {
-    let times = TimeGrid::uniform(1e-9, 1).unwrap();
-    let mut preparation = Preparation::new(problem, &times, &Options::default());
-    let surface = problem.surface().nodes().len();
-    for index in 0..2 {
-        preparation.push(&percute_core::history::Step {
-            index,
-            time: times.instants()[index],
-            displacement: problem.initial_displacement(),
-            reaction: &vec![[0.0; 2]; surface],
-            touching: &vec![false; surface],
-        });
-    }
-    preparation.finish();
-    let mut level = preparation.next_ready(false).unwrap();
-    let links = problem.mesh().stars().link_count();
-    (level.flux, level.flux_before) = (vec![[0.0; 2]; links], vec![[0.0; 2]; links]);
-    level
-}

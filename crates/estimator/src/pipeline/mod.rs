@@ -54,14 +54,15 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     /// Ends with the steps taken so far and sums up.
     ///
     /// # Errors
-    /// Fewer than two steps.
+    /// Fewer than two steps, or numbers out of range.
     pub fn finish(mut self) -> Result<Estimate, EstimateError> {
         if self.preparation.count() < 2 {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
         }
         self.preparation.finish();
         self.pass_on(true);
-        Ok(self.window.finish(&self.pool, self.preparation))
+        let estimate = self.window.finish(&self.pool, self.preparation);
+        if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
     }
 
     /// Hands the levels that are ready to the window.

@@ -36,7 +36,8 @@ struct Waiting<const D: usize, const N: usize> {
     end: Balanced<D, N>,
     mid: Option<Provisional<D, N>>,
     stop: Provisional<D, N>,
-    touching: [bool; N],
+    /// Which nodes touch at the beginning and at the end.
+    touching: [[bool; N]; 2],
 }
 
 /// One such element.
@@ -126,7 +127,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let mid = to.mid.as_ref().filter(|_| single);
         let mid = mid.map(|knot| self.provisional(element, knot, 2 * to.index - 1, contact(0)));
         let stop = self.provisional(element, &to.knot, 2 * to.index, contact(1));
-        let touching = self.contact.map(|at| at.is_some_and(|at| to.surface.touching[at]));
+        let touching = [from, to].map(|l| self.contact.map(|at| at.is_some_and(|at| l.surface.touching[at])));
         self.queue.push_back(Waiting { start, end, mid, stop, touching });
     }
 
@@ -166,11 +167,13 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             interval.contact[0] = start.contact;
             if let Some(mid) = &mut waiting.mid {
                 self.settle(context, mid);
+                let [before, after] = waiting.touching;
+                self.check_contact(context, mid, &std::array::from_fn(|i| before[i] && after[i]));
                 interval.errors[1] = error(&Balanced::middle(&waiting.start, &waiting.end), mid);
                 interval.contact[1] = mid.contact;
             }
             self.settle(context, &mut waiting.stop);
-            self.check_contact(context, &waiting);
+            self.check_contact(context, &waiting.stop, &waiting.touching[1]);
             interval.errors[2] = error(&waiting.end, &waiting.stop);
             interval.contact[2] = waiting.stop.contact;
             self.intervals.push(interval);
@@ -194,15 +197,15 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         }
     }
 
-    /// Normal velocity of nodes that touch, and penetration of those that may.
-    fn check_contact(&mut self, context: &Context<'_, '_, D, N>, waiting: &Waiting<D, N>) {
+    /// Normal velocity of nodes that touch at a knot, and penetration of those that may.
+    fn check_contact(&mut self, context: &Context<'_, '_, D, N>, at_knot: &Provisional<D, N>, touching: &[bool; N]) {
         let problem = context.problem;
         let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         for (i, at) in self.contact.iter().enumerate() {
             let Some(at) = *at else { continue };
             let contact = &problem.surface().nodes()[at];
-            let (velocity, displacement) = (&waiting.stop.motion.velocity()[i], &waiting.stop.motion.displacement()[i]);
-            if waiting.touching[i] && contact.free {
+            let (velocity, displacement) = (&at_knot.motion.velocity()[i], &at_knot.motion.displacement()[i]);
+            if touching[i] && contact.free {
                 let normal = problem.obstacles()[contact.obstacle].split(velocity).0.abs();
                 let residual = if normal == 0.0 { 0.0 } else { normal / speed(velocity) };
                 self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);

@@ -94,7 +94,37 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 return Err(EstimateError::NotFinite { step: n, field, position });
             }
         }
-        if n == 1 { self.check_first_touch(step) } else { Ok(()) }
+        // Times are read or added up elsewhere: rounding of the run's length is all they may differ by.
+        let time = self.times.instants()[n];
+        let apart = (step.time - time).abs();
+        if apart.is_nan() || apart > 1e-12 * self.times.end() {
+            return Err(EstimateError::Time { step: n, given: step.time, expected: time });
+        }
+        match n {
+            0 => self.check_start(step),
+            1 => self.check_first_touch(step),
+            _ => Ok(()),
+        }
+    }
+
+    /// The first step is the initial state, and a node that touches in it rests on its plane.
+    fn check_start(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+        let problem = self.problem;
+        let tolerance = problem.contact_tolerance();
+        for (node, (u, u0)) in step.displacement.iter().zip(problem.initial_displacement()).enumerate() {
+            if u.iter().zip(u0).any(|(a, b)| (a - b).abs() > tolerance) {
+                return Err(EstimateError::Start { node });
+            }
+        }
+        for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
+            let node = contact.node.index();
+            let gap = problem.surface().gap(at, &step.displacement[node], problem.obstacles());
+            let speed = problem.obstacles()[contact.obstacle].split(&problem.initial_velocity()[node]).0;
+            if gap > tolerance || speed.abs() > problem.speed_tolerance() {
+                return Err(EstimateError::StartsTouching { node, gap, speed });
+            }
+        }
+        Ok(())
     }
 
     /// A node that touches at step 1 must start at least |v_n|Δt₀/4 away, or P_CA has no solution.
@@ -157,6 +187,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Takes in that no more steps come.
     pub(super) fn finish(&mut self) {
         self.complete_interval();
+        self.add_last_impulse();
         if let Some(last) = self.levels.back_mut() {
             // No step follows: both sides are one.
             last.density_after = last.density_before.clone();
@@ -281,6 +312,15 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let [start, end] = [&interval.start, &interval.end].map(|d| contact_force::nodal_forces(self.problem, d));
         self.impulse.0 += 0.5 * self.times.step(n) * (normal(&start) + normal(&end));
         self.impulse.1 += self.times.velocity_step(n) * normal(&self.levels[first].surface.reaction);
+    }
+
+    /// The simulation's impulse over the last half step, ½Δt_{N−1} R_N.
+    fn add_last_impulse(&mut self) {
+        if let Some(last) = self.levels.back() {
+            let forces = self.problem.surface().nodes().iter().zip(&last.surface.reaction);
+            let normal: f64 = forces.map(|(s, f)| self.problem.obstacles()[s.obstacle].split(f).0).sum();
+            self.impulse.1 += 0.5 * self.times.step(last.index - 1) * normal;
+        }
     }
 
     /// ã after t_n at the beginning of the step, before t_{n+1} at its end \[55\].

@@ -19,14 +19,10 @@ fn checked(track: &ContactTrack) -> Residuals {
         velocity: problem.initial_velocity().to_vec(),
         increment: vec![[0.0; 2]; problem.mesh().node_count()],
     };
-    let measure = ElementMeasure::new(&problem, element, near.element, Acceleration::Closest);
-    let level = crate::pipeline::fixture::level_at_rest(&problem);
-    let at_rest = measure.balanced(&equilibration, &level, &near.contact, Side::After);
     let mut stop = near.provisional(element, &knot, 2, 0.0);
     near.settle(&context, &mut stop);
-    let waiting =
-        Waiting { start: at_rest, end: at_rest, mid: None, stop, touching: near.contact.map(|at| at.is_some()) };
-    near.check_contact(&context, &waiting);
+    let touching = near.contact.map(|at| at.is_some());
+    near.check_contact(&context, &stop, &touching);
     near.residuals
 }
 
