@@ -1,7 +1,6 @@
 //! Small problems for the tests of this module, and their steps prepared.
 
 use super::prepare::Preparation;
-use crate::level::Level;
 use crate::options::{ContactForce, Options};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;

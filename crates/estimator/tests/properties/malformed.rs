@@ -11,6 +11,7 @@ use percute_testkit::random_rectangle;
 /// A step that can be spoilt.
 struct Raw {
     index: usize,
+    time: f64,
     displacement: Vec<[f64; 2]>,
     reaction: Vec<[f64; 2]>,
     touching: Vec<bool>,
@@ -19,12 +20,13 @@ struct Raw {
 impl Raw {
     fn of(step: &Step<'_, 2>) -> Self {
         let (displacement, reaction) = (step.displacement.to_vec(), step.reaction.to_vec());
-        Self { index: step.index, displacement, reaction, touching: step.touching.to_vec() }
+        let (index, time, touching) = (step.index, step.time, step.touching.to_vec());
+        Self { index, time, displacement, reaction, touching }
     }
 
     fn step(&self) -> Step<'_, 2> {
-        let Self { index, displacement, reaction, touching } = self;
-        Step { index: *index, time: 0.0, displacement, reaction, touching }
+        let Self { index, time, displacement, reaction, touching } = self;
+        Step { index: *index, time: *time, displacement, reaction, touching }
     }
 }
 
@@ -107,12 +109,13 @@ fn a_start_too_near() {
         let nodes = problem.mesh().node_count();
         let mut raw = Raw {
             index: 0,
+            time: 0.0,
             displacement: vec![[0.0; 2]; nodes],
             reaction: vec![[0.0; 2]; surface],
             touching: vec![false; surface],
         };
         estimator.push(&raw.step()).unwrap();
-        raw.index = 1;
+        (raw.index, raw.time) = (1, times.instants()[1]);
         raw.touching[0] = true;
         match estimator.push(&raw.step()) {
             Ok(()) => assert!(!refused),
@@ -161,9 +164,22 @@ fn overflow_shows() {
         }
         estimator.push(&raw.step()).unwrap();
     }
-    let estimate = estimator.finish().unwrap();
-    assert!(!estimate.error.sup.is_finite() || !estimate.error.mean.is_finite(), "{:?}", estimate.error);
-    // NaN is not small either.
-    let largest = estimate.residuals.largest();
-    assert!(largest.is_nan() || largest > 1e-10, "{:?}", estimate.residuals);
+    assert_eq!(estimator.finish(), Err(EstimateError::Overflow));
+}
+
+/// Times of another grid, a first step that is not the initial state, contact where there is none.
+#[test]
+fn steps_of_another_problem() {
+    let problem = impact();
+    let end = steps(&problem, 0.9, 10).end();
+    let found = fed(3, |raw| raw.time += 1e-3 * end);
+    assert!(matches!(found, EstimateError::Time { step: 3, given, expected } if given > expected), "{found:?}");
+    assert!(matches!(fed(3, |raw| raw.time = f64::NAN), EstimateError::Time { step: 3, .. }));
+    assert_eq!(fed(0, |raw| raw.displacement[4] = [1e-6, 0.0]), EstimateError::Start { node: 4 });
+    let found = fed(0, |raw| raw.touching[1] = true);
+    let node = problem.surface().nodes()[1].node.index();
+    assert!(
+        matches!(found, EstimateError::StartsTouching { node: n, gap, .. } if n == node && gap > 1e-4),
+        "{found:?}"
+    );
 }
