@@ -2,8 +2,8 @@
 
 use super::warnings::{Facts, warnings};
 use super::{
-    ADMISSIBLE, BalanceSummary, FORMAT, LargestResidual, Measures, ObstacleSummary, OptionsUsed, OverTime, Parts,
-    ProblemSummary, Report, Versions, WorstElement,
+    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, LargestResidual, Measures, ObstacleSummary, OptionsUsed,
+    OverTime, Parts, ProblemSummary, Report, Versions, WorstElement,
 };
 use crate::case::CaseOf;
 use percute_core::dynamics::{Balance, Simulation};
@@ -49,6 +49,7 @@ impl Report {
             residuals: estimate.residuals.entries().to_vec(),
             largest_residual,
             balance: balance_summary(&simulation.balance),
+            balance_over_time: balance_over_time(&simulation.balance_over_time, case.times.instants()),
             kept_impulse,
             over_time: over_time(&estimate.over_time),
             by_element: estimate.by_element,
@@ -146,6 +147,19 @@ fn largest_residual(estimate: &Estimate) -> LargestResidual {
     let (name, value) =
         entries.iter().fold(entries[0], |worst, &next| if rank(next.1) > rank(worst.1) { next } else { worst });
     LargestResidual { name, value, admissible: value <= ADMISSIBLE }
+}
+
+fn balance_over_time(balances: &[Balance], instants: &[f64]) -> BalanceOverTime {
+    let column = |of: fn(&Balance) -> f64| balances.iter().map(of).collect();
+    BalanceOverTime {
+        time: instants[..balances.len()].to_vec(),
+        kinetic: column(|b| b.kinetic),
+        strain: column(|b| b.strain),
+        work_of_loads: column(|b| b.work_of_loads),
+        work_of_supports: column(|b| b.work_of_supports),
+        work_of_contact: column(|b| b.work_of_contact),
+        friction: column(|b| b.friction),
+    }
 }
 
 fn over_time(samples: &[Sample]) -> OverTime {

@@ -40,6 +40,7 @@ pub struct Report {
     pub residuals: Vec<(&'static str, f64)>,
     pub largest_residual: LargestResidual,
     pub balance: BalanceSummary,
+    pub balance_over_time: BalanceOverTime,
     pub kept_impulse: Option<f64>,
     pub over_time: OverTime,
     pub by_element: Vec<f64>,
@@ -150,6 +151,19 @@ pub struct BalanceSummary {
     pub friction: f64,
     pub energy_drift: f64,
     pub impulse_drift: f64,
+}
+
+/// Energies and works at every step.
+#[derive(Clone, Debug, Default, Serialize)]
+#[allow(missing_docs)]
+pub struct BalanceOverTime {
+    pub time: Vec<f64>,
+    pub kinetic: Vec<f64>,
+    pub strain: Vec<f64>,
+    pub work_of_loads: Vec<f64>,
+    pub work_of_supports: Vec<f64>,
+    pub work_of_contact: Vec<f64>,
+    pub friction: Vec<f64>,
 }
 
 /// η, its parts and d at all samples.

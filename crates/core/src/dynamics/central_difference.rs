@@ -65,10 +65,12 @@ pub enum SimulationError {
 }
 
 /// How a simulation ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
     /// Energies, works and drifts at the last step.
     pub balance: Balance,
+    /// The same at every step, from 0 on.
+    pub balance_over_time: Vec<Balance>,
     /// Number of steps done, all of them unless it was interrupted.
     pub steps: usize,
     /// Whether the observer stopped it.
@@ -93,6 +95,7 @@ pub fn simulate<const D: usize, const N: usize>(
     let mut force = vec![[0.0; D]; problem.mesh().node_count()];
     let mut contact = Contact::new(problem.surface().nodes().len());
     let mut balance = BalanceKeeper::new(&dynamics);
+    let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let mut done = 0;
     let mut interrupted = false;
 
@@ -119,6 +122,7 @@ pub fn simulate<const D: usize, const N: usize>(
             touching: &contact.touching,
         };
         sink.push(&step).map_err(|cause| SimulationError::Sink { step: n, cause })?;
+        balance_over_time.push(*balance.balance());
         done = n;
         let progress = Progress { stage: "simulating", done, total: times.step_count() };
         if observer.observe(progress) == ControlFlow::Break(()) && n < times.step_count() {
@@ -127,7 +131,7 @@ pub fn simulate<const D: usize, const N: usize>(
         }
         advance(&dynamics, n, &force, &mut velocity, &mut displacement);
     }
-    Ok(Simulation { balance: *balance.balance(), steps: done, interrupted })
+    Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
 }
 
 /// v_{n+½} = v_{n−½} + h_n a_n and u_{n+1} = u_n + Δt_n v_{n+½}.
