@@ -119,3 +119,65 @@ fn a_phase_of_one_step_gets_no_force() {
         }
     }
 }
+
+/// All five nodes touch and are pressed.
+fn pressed() -> SurfaceStep<2> {
+    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
+}
+
+/// Whether there is force at any place, at the beginning and at the end of a step.
+fn acts(interval: &Interval<2>) -> [bool; 2] {
+    [&interval.start, &interval.end].map(|d| d.iter().flatten().any(|f| f[1] > 0.0))
+}
+
+/// Touching from t_1 to t_4, the paper's force is there at t_2 and t_3 only, [45]–[48]; with a phase
+/// that is still open at the last step it stays to the end. `sharp` has all of it.
+#[test]
+fn force_begins_and_ends_with_contact() {
+    let problem = problem();
+    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let steps = [off(), pressed(), pressed(), pressed(), pressed(), off()];
+    let interval = |choice, n: usize, last: usize| {
+        let before = n.checked_sub(1).map(|m| &steps[m]);
+        let after = steps[..=last].get(n + 2);
+        acts(&Reading::new(choice, &problem).interval(&problem, before, &steps[n], &steps[n + 1], after))
+    };
+    let all = |choice, last: usize| (0..last).map(|n| interval(choice, n, last)).collect::<Vec<_>>();
+    let (none, both) = ([false, false], [true, true]);
+    assert_eq!(all(ContactForce::Paper, 5), [none, [false, true], both, [true, false], none]);
+    assert_eq!(all(ContactForce::Paper, 4), [none, [false, true], both, both]);
+    assert_eq!(all(ContactForce::Paper, 2), [none, [false, true]]);
+    assert_eq!(all(ContactForce::Sharp, 5), [none, both, both, both, none]);
+}
+
+/// In the paper's reading a node beside one that arrives or leaves loses its force; the corner, which
+/// has a neighbour on one side only, keeps it.
+#[test]
+fn the_border_of_contact_has_no_force() {
+    let problem = problem();
+    let (now, mut before) = (pressed(), pressed());
+    before.touching[3] = false;
+    let reading = Reading::new(ContactForce::Paper, &problem);
+    let interval = reading.interval(&problem, Some(&before), &now, &now, Some(&now));
+    let forces = nodal_forces(&problem, &interval.start);
+    assert_eq!(
+        interval.start.iter().map(|e| e.map(|f| f[1] > 0.0)).collect::<Vec<_>>(),
+        [[true, true], [true, false], [false, false], [false, false]]
+    );
+    assert!(forces[0][1] > 0.0);
+    // A density is the reaction over the tributary length: half an edge of 10 mm at the corner.
+    assert!((interval.start[0][0][1] - 100.0 / 0.005).abs() < 1e-9);
+}
+
+/// Where the cone cuts nothing off, `sharp` has the nodal forces of the simulation.
+#[test]
+fn sharp_is_statically_equivalent() {
+    let problem = problem();
+    let mut step = pressed();
+    step.reaction = vec![[5.0, 60.0], [-9.0, 110.0], [3.0, 100.0], [8.0, 105.0], [1.0, 55.0]];
+    let interval = Reading::new(ContactForce::Sharp, &problem).interval(&problem, None, &step, &step, None);
+    for (made, given) in nodal_forces(&problem, &interval.start).iter().zip(&step.reaction) {
+        // Rounding of a tridiagonal solve with five unknowns of order 100.
+        assert!((0..2).all(|c| (made[c] - given[c]).abs() < 1e-12), "{made:?} against {given:?}");
+    }
+}

@@ -48,7 +48,7 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     near: Vec<NearElement<D, N>>,
     is_near: Vec<bool>,
     far: FarSums,
-    /// The time integral of η_E, and η_E at the last level, of far elements.
+    /// Time integral of η_E, and η_E at the last level, of far elements.
     progress: Vec<(f64, f64)>,
     residuals: Residuals,
 }

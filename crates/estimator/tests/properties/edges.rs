@@ -3,12 +3,13 @@
 use crate::bodies::{gravity, plane_below, steps, swinging, thrown};
 use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
 use percute_core::history::{History, StepSink};
+use percute_core::load::{Support, Table};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Progress;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, run};
+use percute_estimator::{Estimate, Options, run};
 use percute_testkit::{random_rectangle, rotated};
 use std::ops::ControlFlow;
 
@@ -114,6 +115,32 @@ fn an_early_end() {
                 assert_eq!(early, shorter, "{count} steps, {options:?}");
                 assert_admissible(&format!("{count} steps"), &early);
             }
+        }
+    }
+}
+
+/// Where a support is driven, a_n of its nodes looks ahead to v_d(t_{n+1}), which the last instant of a
+/// shorter grid does not have: the last step may differ, what was before may not.
+#[test]
+fn an_early_end_of_a_driven_body() {
+    let velocity = Table::new(vec![0.0, 6e-6, 2e-5], vec![[0.0, 0.0], [0.0, -50.0], [0.0, 90.0]]).unwrap();
+    let top = Support { group: "top".to_string(), components: [false, true], velocity: Some(velocity) };
+    let plane = plane_below(&block(), 0.0, 1e-5, 0.2, None);
+    let problem = thrown(block(), [0.0, 0.0], plane).support(top).build().unwrap();
+    let long = steps(&problem, 0.9, 40);
+    for count in [5, 11, 30] {
+        let [long, short] = grids(&long, count);
+        let whole = history(&problem, &long);
+        for options in all_choices() {
+            let early = estimate(&problem, &beginning(&whole, &long, count + 1), options);
+            let shorter = estimate(&problem, &beginning(&whole, &short, count + 1), options);
+            assert_admissible(&format!("{count} steps"), &early);
+            let before = |e: &Estimate| {
+                let start = long.instants()[count - 1];
+                e.over_time.iter().filter(|s| s.time < start).copied().collect::<Vec<_>>()
+            };
+            assert!(before(&early).len() >= 2 * (count - 1));
+            assert_eq!(before(&early), before(&shorter), "{count} steps, {options:?}");
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::bodies::{aluminium, steps};
 use crate::estimating::{all_choices, estimate, history, reactions};
-use percute_core::load::{Profile, Table, Traction};
+use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
@@ -22,7 +22,7 @@ fn few() -> ProptestConfig {
     ProptestConfig { cases: 16, failure_persistence: None, rng_seed: RngSeed::Fixed(8), ..ProptestConfig::default() }
 }
 
-/// A block above a rough plane, pulled on top.
+/// A block above a rough plane, pulled on top or driven there and pulled at its right.
 #[derive(Clone, Debug)]
 struct Throw {
     mesh: TriangleMesh,
@@ -31,29 +31,40 @@ struct Throw {
     friction: f64,
     gap: f64,
     pull: f64,
+    driven: bool,
     times: TimeGrid,
 }
 
 impl Throw {
-    fn new(mesh: TriangleMesh, along: f64, speed: f64, friction: f64) -> Self {
+    fn new(mesh: TriangleMesh, along: f64, speed: f64, friction: f64, driven: bool) -> Self {
         let free = Problem::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let times = steps(&free, 0.85, 50);
         let (velocity, gap) = ([along, -speed], 2.4 * speed * times.step(0));
         // Some 1 % of the stress of the impact, ρ c v.
         let pull = 2700.0 * 5000.0 * 0.01 * speed;
-        Self { mesh, material: aluminium(), velocity, friction, gap, pull, times }
+        Self { mesh, material: aluminium(), velocity, friction, gap, pull, driven, times }
     }
 
     /// The problem after `map` has moved all vectors and the plane's point; the bottom may touch.
     fn problem(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+        let [along, down] = self.velocity;
         let value = vec![map([self.pull, 1.5 * self.pull]), map([-self.pull, 0.5 * self.pull])];
-        let pull = Table::new(vec![0.0, self.times.end()], value).unwrap();
+        let value = Table::new(vec![0.0, self.times.end()], value).unwrap();
         let bottom = Some("bottom".to_string());
-        Problem::builder(self.mesh.clone())
+        let builder = Problem::builder(self.mesh.clone())
             .material(self.material)
             .initial_velocity(Initial::Uniform(map(self.velocity)))
-            .obstacle(Plane::new(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap())
-            .traction(Traction { group: "top".to_string(), value: pull, profile: Profile::UNIFORM })
+            .obstacle(Plane::new(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap());
+        if !self.driven {
+            let traction = Traction { group: "top".to_string(), value, profile: Profile::UNIFORM };
+            return builder.traction(traction).build().unwrap();
+        }
+        // Slowed down in the end, and turned aside.
+        let velocity = vec![map(self.velocity), map([along + 0.1 * down, 0.5 * down])];
+        let velocity = Some(Table::new(vec![0.0, self.times.end()], velocity).unwrap());
+        builder
+            .support(Support { group: "top".to_string(), components: [true; 2], velocity })
+            .traction(Traction { group: "right".to_string(), value, profile: Profile::UNIFORM })
             .build()
             .unwrap()
     }
@@ -107,9 +118,9 @@ proptest! {
 
     #[test]
     fn turning_everything(
-        mesh in rectangle(5), turn in angle(), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        mesh in rectangle(5), turn in angle(), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
-        let throw = Throw::new(mesh, along, speed, friction);
+        let throw = Throw::new(mesh, along, speed, friction, driven);
         let (sin, cos) = turn.sin_cos();
         let image = Throw { mesh: rotated(&throw.mesh, turn).unwrap(), ..throw.clone() };
         let turned = image.problem(|v| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]]);
@@ -118,19 +129,19 @@ proptest! {
 
     #[test]
     fn in_a_mirror(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
-        let throw = Throw::new(mesh, along, speed, friction);
+        let throw = Throw::new(mesh, along, speed, friction, driven);
         let image = Throw { mesh: mirrored(&throw.mesh).unwrap(), ..throw.clone() };
         compare(&throw.problem(|v| v), &image.problem(|v| [-v[0], v[1]]), &throw.times, &SAME)?;
     }
 
     #[test]
     fn faster_from_farther_away(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
         scale in 0.1..7.0_f64,
     ) {
-        let throw = Throw::new(mesh, along, speed, friction);
+        let throw = Throw::new(mesh, along, speed, friction, driven);
         let velocity = throw.velocity.map(|v| scale * v);
         let image = Throw { velocity, gap: scale * throw.gap, pull: scale * throw.pull, ..throw.clone() };
         compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &Expected { scale, ..SAME })?;
@@ -138,10 +149,10 @@ proptest! {
 
     #[test]
     fn stiffer_and_heavier(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
         scale in 0.1..7.0_f64,
     ) {
-        let throw = Throw::new(mesh, along, speed, friction);
+        let throw = Throw::new(mesh, along, speed, friction, driven);
         let material = Elastic::plane_stress(scale * 70e9, 0.3, scale * 2700.0, 1.0).unwrap();
         let image = Throw { material, pull: scale * throw.pull, ..throw.clone() };
         let expected = Expected { scale: scale.sqrt(), ..SAME };
@@ -150,9 +161,9 @@ proptest! {
 
     #[test]
     fn under_other_numbers(
-        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, friction in 0.0..0.6_f64,
+        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
-        let throw = Throw::new(mesh, along, speed, friction);
+        let throw = Throw::new(mesh, along, speed, friction, driven);
         let (mesh, new) = renumbered(&throw.mesh, seed).unwrap();
         let image = Throw { mesh, ..throw.clone() };
         let expected = Expected { element: &|e| new.element[e], ..SAME };
@@ -161,9 +172,9 @@ proptest! {
 
     #[test]
     fn without_friction_on_a_moving_belt(
-        mesh in rectangle(5), along in -300.0..300.0_f64, belt in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, belt in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(),
     ) {
-        let throw = Throw::new(mesh, along, speed, 0.0);
+        let throw = Throw::new(mesh, along, speed, 0.0, driven);
         let image = Throw { velocity: [along + belt, -speed], ..throw.clone() };
         let expected = Expected { reference: false, ..SAME };
         compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &expected)?;
