@@ -33,7 +33,7 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
     }
 
     /// Γ_DA/ρ at the nodes (m/s²), or its time integral.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn apply(&self, nodal: &[[f64; D]; N]) -> [[f64; D]; N] {
         let mut mean = [0.0; D];
         let mut turning = 0.0;
@@ -62,7 +62,7 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 }
 
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.
-#[inline]
+#[inline(always)]
 pub(crate) fn mass_product<const D: usize, const N: usize>(mass: f64, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> f64 {
     let mut product = 0.0;
     for c in 0..D {

@@ -83,6 +83,8 @@ pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
     law: &'a Elastic,
     /// Places of the nodes from the centroid (m).
     arms: [[f64; D]; N],
+    /// 1 over the largest of them (1/m).
+    inverse_reach: f64,
     inertia: Inertia<D, N>,
     stress: StressMap,
     start: [[f64; D]; N],
@@ -97,11 +99,15 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     ) -> Self {
         let points = problem.mesh().cell_points(id);
         let law = problem.material(id);
+        let arms: [[f64; D]; N] =
+            points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64));
+        let reach = arms.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
         Self {
             element,
             id,
             law,
-            arms: points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64)),
+            arms,
+            inverse_reach: 1.0 / reach,
             inertia: Inertia::new(choice, &points),
             stress: StressMap::new(&points, &problem.mesh().cell_geometry(id), law),
             start: element.gather(problem.initial_velocity()),
@@ -236,8 +242,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 moment += arm[0] * net(D - 1) - arm[D - 1] * net(0);
             }
         }
-        let reach = self.arms.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
-        let miss = resultant.iter().fold(moment.abs() / reach, |m, f| worse(m, f.abs()));
+        let miss = resultant.iter().fold(moment.abs() * self.inverse_reach, |m, f| worse(m, f.abs()));
         miss / scale.max(f64::MIN_POSITIVE)
     }
 

@@ -5,11 +5,10 @@
 /// Each is relative to the largest term of its own equation at that node or element, floored at
 /// 1e-12 of that term's largest value in the mesh at that instant. Terms count before they cancel: f_d
 /// and the nodes' inertia apart, the tractions of each edge apart, displacement gradients that turn a
-/// body rather than strain it. Rounding leaves some 1e-13;
-/// anything above 1e-10 means that a field is not admissible. All are taken at every sampled
-/// instant; the last three, of stresses that are a constant linear map of tractions and Γ_DA, at
-/// every sampled instant in elements at contact, elsewhere at one instant of sixteen, each element
-/// in its turn.
+/// body rather than strain it. Rounding leaves some 1e-13; anything above 1e-10 means that a field is
+/// not admissible. All are taken at every sampled instant, but for the last three: of stresses that are
+/// a constant linear map of tractions and Γ_DA, each element is checked in its turn, at one instant of 4
+/// at contact and of 64 elsewhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residuals {
     /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].

@@ -25,7 +25,7 @@ const BLOCK: usize = 256;
 /// Away from contact the pointwise equilibrium of σ_DA is checked at every instant of so many, each
 /// element in its turn: the map that makes it is linear and the same at all instants, while a check
 /// costs more than the measure itself.
-const CHECK: usize = 16;
+const CHECK: usize = 64;
 /// Memory that a window may take unless told otherwise (bytes).
 const MODEST_MEMORY: usize = 1 << 30;
 /// More levels than this gain nothing; fewer make the maps of the elements too often.

@@ -44,7 +44,7 @@ impl TriangleStress {
     }
 
     /// The loads on the reference triangle.
-    #[inline]
+    #[inline(always)]
     fn pull_back<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; LOADS] {
         let mut loads = [0.0; LOADS];
         let mut put = |slot: usize, v: &[f64; D], factor: f64| {
