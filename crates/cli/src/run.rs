@@ -38,7 +38,7 @@ fn run_one<const D: usize, const N: usize>(
     let ended = percute_estimator::run(&case.problem, &case.times, options, observer);
     let (simulation, estimate) = ended.map_err(|error| match &error {
         RunError::Simulation(cause) => case.refused_start(cause).map_or(Failure::Run(error), Failure::Case),
-        RunError::Estimate(_) => Failure::Run(error),
+        RunError::Estimate(_) | RunError::Source(_) => Failure::Run(error),
     })?;
     Ok(Report::new(case, options, &simulation, estimate, start.elapsed().as_secs_f64()))
 }

@@ -62,6 +62,18 @@ impl<const C: usize> Table<C> {
         Self { time: vec![0.0], value: vec![value] }
     }
 
+    /// Its instants (s).
+    #[must_use]
+    pub fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// Its values at them.
+    #[must_use]
+    pub fn value(&self) -> &[[f64; C]] {
+        &self.value
+    }
+
     /// The value at an instant.
     #[must_use]
     pub fn at(&self, t: f64) -> [f64; C] {

@@ -16,13 +16,26 @@ pub struct MaterialError {
     pub allowed: &'static str,
 }
 
+/// What the dimensions that the mesh leaves out do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hypothesis {
+    /// One dimension: stress along the bar only.
+    Bar,
+    /// Two dimensions, no stress across them.
+    PlaneStress,
+    /// Two dimensions, no strain across them.
+    PlaneStrain,
+}
+
 /// A Hooke law σ = λ tr ε 1 + 2G ε in the dimension of the mesh, with density and the extent of
 /// the body across the mesh.
 ///
 /// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
+    hypothesis: Hypothesis,
     young: f64,
+    poisson: f64,
     lambda: f64,
     shear: f64,
     density: f64,
@@ -48,7 +61,8 @@ impl Elastic {
     pub fn bar(young: f64, density: f64, section: f64) -> Result<Self, MaterialError> {
         require(section > 0.0, "section", section, "m²", "positive")?;
         Self::checked(young, 0.0, density)?;
-        Ok(Self { young, lambda: 0.0, shear: young / 2.0, density, extent: section })
+        let (hypothesis, shear) = (Hypothesis::Bar, young / 2.0);
+        Ok(Self { hypothesis, young, poisson: 0.0, lambda: 0.0, shear, density, extent: section })
     }
 
     /// Plane stress: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
@@ -56,7 +70,8 @@ impl Elastic {
     /// # Errors
     /// A value out of range: ν must lie between −1 and 0.5.
     pub fn plane_stress(young: f64, poisson: f64, density: f64, thickness: f64) -> Result<Self, MaterialError> {
-        Self::plane(young, poisson, density, thickness, young * poisson / (1.0 - poisson * poisson))
+        let lambda = young * poisson / (1.0 - poisson * poisson);
+        Self::plane(Hypothesis::PlaneStress, [young, poisson, density, thickness], lambda)
     }
 
     /// Plane strain: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
@@ -65,19 +80,33 @@ impl Elastic {
     /// A value out of range: ν must lie between −1 and 0.5.
     pub fn plane_strain(young: f64, poisson: f64, density: f64, thickness: f64) -> Result<Self, MaterialError> {
         let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-        Self::plane(young, poisson, density, thickness, lambda)
+        Self::plane(Hypothesis::PlaneStrain, [young, poisson, density, thickness], lambda)
     }
 
-    fn plane(young: f64, poisson: f64, density: f64, thickness: f64, lambda: f64) -> Result<Self, MaterialError> {
+    fn plane(hypothesis: Hypothesis, values: [f64; 4], lambda: f64) -> Result<Self, MaterialError> {
+        let [young, poisson, density, thickness] = values;
         Self::checked(young, poisson, density)?;
         require(thickness > 0.0, "thickness", thickness, "m", "positive")?;
-        Ok(Self { young, lambda, shear: young / (2.0 * (1.0 + poisson)), density, extent: thickness })
+        let shear = young / (2.0 * (1.0 + poisson));
+        Ok(Self { hypothesis, young, poisson, lambda, shear, density, extent: thickness })
     }
 
     fn checked(young: f64, poisson: f64, density: f64) -> Result<(), MaterialError> {
         require(young > 0.0, "young", young, "Pa", "positive")?;
         require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "(no unit)", "above -1 and below 0.5")?;
         require(density > 0.0, "density", density, "kg/m³", "positive")
+    }
+
+    /// What the law supposes across the mesh.
+    #[must_use]
+    pub fn hypothesis(&self) -> Hypothesis {
+        self.hypothesis
+    }
+
+    /// Poisson's ratio ν; 0 for a bar, where it does not matter.
+    #[must_use]
+    pub fn poisson(&self) -> f64 {
+        self.poisson
     }
 
     /// Young's modulus E (Pa).

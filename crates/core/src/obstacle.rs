@@ -35,6 +35,7 @@ pub enum PlaneError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane<const D: usize> {
     point: [f64; D],
+    direction: [f64; D],
     normal: [f64; D],
     friction: f64,
     group: Option<String>,
@@ -60,13 +61,19 @@ impl<const D: usize> Plane<D> {
         if D == 1 && friction != 0.0 {
             return Err(PlaneError::FrictionInOneDimension { friction });
         }
-        Ok(Self { point, normal: normal.map(|n| n / length), friction, group })
+        Ok(Self { point, direction: normal, normal: normal.map(|n| n / length), friction, group })
     }
 
     /// The point it goes through (m).
     #[must_use]
     pub fn point(&self) -> &[f64; D] {
         &self.point
+    }
+
+    /// The normal as it was given, of any length: from it comes the same plane, bit by bit.
+    #[must_use]
+    pub fn direction(&self) -> &[f64; D] {
+        &self.direction
     }
 
     /// Outward unit normal n.

@@ -19,6 +19,22 @@ pub enum TimeError {
     /// No steps at all.
     #[error("`steps` is empty; give at least one time step in seconds")]
     Empty,
+    /// A first instant that is not 0.
+    #[error("the first instant is {time:e} s; it must be 0")]
+    Start {
+        /// The instant (s).
+        time: f64,
+    },
+    /// Instants that do not increase.
+    #[error("instant {index} is {time:e} s, not after the {before:e} s before it")]
+    Order {
+        /// Which instant, from 0.
+        index: usize,
+        /// The instant (s).
+        time: f64,
+        /// The one before (s).
+        before: f64,
+    },
     /// A step that is lost in the sum, or a sum that is infinite.
     #[error("`steps[{index}]` is {step:e} s, which cannot be added to the {time:e} s before it")]
     Lost {
@@ -100,6 +116,25 @@ impl TimeGrid {
         Ok(Self { instants })
     }
 
+    /// The instants given (s), from 0 on.
+    ///
+    /// # Errors
+    /// Fewer than two instants, a first that is not 0, one that is not after that before it.
+    pub fn from_instants(instants: Vec<f64>) -> Result<Self, TimeError> {
+        if instants.len() < 2 {
+            return Err(TimeError::Empty);
+        }
+        if instants[0] != 0.0 {
+            return Err(TimeError::Start { time: instants[0] });
+        }
+        for (before, pair) in instants.windows(2).enumerate() {
+            if !pair[1].is_finite() || pair[1] <= pair[0] {
+                return Err(TimeError::Order { index: before + 1, time: pair[1], before: pair[0] });
+            }
+        }
+        Ok(Self { instants })
+    }
+
     /// The instants t_0 = 0 … t_N = T (s).
     #[must_use]
     pub fn instants(&self) -> &[f64] {
@@ -173,5 +208,17 @@ mod tests {
         assert!(TimeGrid::with_step(1.0, -0.1).is_err());
         assert!(matches!(TimeGrid::with_step(1.0, 1e-12), Err(TimeError::TooMany { .. })));
         assert_eq!(TimeGrid::from_steps(&[]), Err(TimeError::Empty));
+    }
+
+    #[test]
+    fn instants_come_back_bit_by_bit_or_are_refused() {
+        let grid = TimeGrid::with_step(1.3e-5, 2.9e-7).unwrap();
+        assert_eq!(TimeGrid::from_instants(grid.instants().to_vec()), Ok(grid));
+        assert_eq!(TimeGrid::from_instants(vec![0.0]), Err(TimeError::Empty));
+        assert_eq!(TimeGrid::from_instants(vec![1.0, 2.0]), Err(TimeError::Start { time: 1.0 }));
+        for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = TimeGrid::from_instants(vec![0.0, 1.0, wrong]);
+            assert!(matches!(error, Err(TimeError::Order { index: 2, before: 1.0, .. })), "{error:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What can keep an estimate from being made.
 
 use percute_core::dynamics::SimulationError;
+use percute_core::history::{SinkError, StepError};
 use thiserror::Error;
 
 /// Why an estimate could not be made.
@@ -24,51 +25,18 @@ pub enum EstimateError {
         /// How many it holds.
         count: usize,
     },
-    /// Steps that do not follow each other.
-    #[error("step {given} came where step {expected} was expected; steps must come in order, from 0 to {last}")]
-    Order {
-        /// The step given.
-        given: usize,
-        /// The step expected.
-        expected: usize,
-        /// The last step of the time grid.
-        last: usize,
-    },
-    /// A field of the wrong length.
-    #[error("step {step}: {field} has {given} values, but the problem needs {needed}")]
-    Length {
-        /// The step.
-        step: usize,
-        /// Which field.
-        field: &'static str,
-        /// Its length.
-        given: usize,
-        /// The right one.
-        needed: usize,
-    },
-    /// NaN or infinity.
-    #[error("step {step}: {field} holds a value that is not finite at position {position}")]
-    NotFinite {
-        /// The step.
-        step: usize,
-        /// Which field.
-        field: &'static str,
-        /// Where.
-        position: usize,
-    },
-    /// A step at another time than the grid's.
-    #[error("step {step} is at {given:e} s, but the time grid has {expected:e} s there")]
-    Time {
-        /// The step.
-        step: usize,
-        /// Its time (s).
-        given: f64,
-        /// The time of the grid (s).
-        expected: f64,
-    },
+    /// A step that does not fit.
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// A first step that is not the initial state.
     #[error("the displacement of node {node} at step 0 is not the initial displacement of the problem")]
     Start {
+        /// The node.
+        node: usize,
+    },
+    /// A first velocity that is not the initial one.
+    #[error("the velocity of node {node} at step 0 is not the initial velocity of the problem")]
+    StartVelocity {
         /// The node.
         node: usize,
     },
@@ -104,7 +72,7 @@ pub enum EstimateError {
     },
 }
 
-/// Why a run, simulation and estimate together, failed.
+/// Why a simulation with its estimate, or the estimate of a history, failed.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The simulation failed.
@@ -113,4 +81,7 @@ pub enum RunError {
     /// The estimate failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),
+    /// The history could not be read.
+    #[error("{0}")]
+    Source(SinkError),
 }

@@ -51,6 +51,15 @@ pub struct ErrorMeasures {
     pub reference_mean: f64,
 }
 
+/// Which fields of the motion the history brought of its own; the others follow by the scheme.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Given {
+    /// v_n.
+    pub velocity: bool,
+    /// a_n.
+    pub acceleration: bool,
+}
+
 /// The constitutive relation error of a history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -69,6 +78,8 @@ pub struct Estimate {
     /// Normal impulse of the admissible contact force over that of the simulation; `None` without
     /// contact.
     pub kept_impulse: Option<f64>,
+    /// Where velocities and accelerations came from.
+    pub given: Given,
     /// Last step taken in.
     pub steps: usize,
     /// Its time T (s).

@@ -18,14 +18,16 @@ mod measure;
 mod options;
 mod pipeline;
 pub mod reference;
+mod replay;
 mod residual;
 mod stress;
 mod traction;
 
 pub use error::{EstimateError, RunError};
-pub use estimate::{ErrorMeasures, Estimate, Parts, Sample};
+pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use options::{Acceleration, ContactForce, Options, UnknownName};
 pub use pipeline::Estimator;
+pub use replay::estimate;
 pub use residual::Residuals;
 
 use percute_core::dynamics::{Simulation, simulate};

@@ -108,7 +108,8 @@ pub fn simulate<const D: usize, const N: usize>(
             refuse_a_start_too_near(&dynamics, &contact)?;
         }
 
-        let (kinetic, momentum) = energies(&dynamics, n, &velocity, &force);
+        let back = if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) };
+        let (kinetic, momentum) = dynamics.energies(back, &velocity, &force);
         let instant =
             Instant { n, displacement: &displacement, reaction: &contact.reaction, strain, kinetic, momentum };
         if !balance.record(&dynamics, &instant) {
@@ -120,6 +121,8 @@ pub fn simulate<const D: usize, const N: usize>(
             displacement: &displacement,
             reaction: &contact.reaction,
             touching: &contact.touching,
+            velocity: None,
+            acceleration: None,
         };
         sink.push(&step).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
@@ -150,26 +153,6 @@ fn advance<const D: usize, const N: usize>(
             u[c] += dt * v[c];
         }
     }
-}
-
-/// Kinetic energy and momentum with v_n = v_{n−½} + ½Δt_{n−1} a_n.
-fn energies<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
-    n: usize,
-    velocity: &[[f64; D]],
-    force: &[[f64; D]],
-) -> (f64, [f64; D]) {
-    let back = if n == 0 { 0.0 } else { 0.5 * dynamics.times.step(n - 1) };
-    let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
-    for ((v, f), mass) in velocity.iter().zip(force).zip(dynamics.problem.mass()) {
-        for c in 0..D {
-            // m v_n without the inverse mass: one array less to read.
-            let p = mass * v[c] + back * f[c];
-            momentum[c] += p;
-            kinetic[c] += p * p / mass;
-        }
-    }
-    (0.5 * kinetic.iter().sum::<f64>(), momentum)
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at

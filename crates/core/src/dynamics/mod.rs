@@ -1,15 +1,19 @@
 //! The explicit solution: central differences, lumped mass, contact by multipliers (§5).
 
 mod balance;
+mod balancing;
 mod central_difference;
 mod contact;
 mod critical_step;
 mod internal_force;
+mod kinematics;
 
 pub use balance::Balance;
+pub use balancing::Balancing;
 pub use central_difference::{Simulation, SimulationError, simulate};
 pub use critical_step::{critical_time_step, element_time_step};
 pub use internal_force::Stiffness;
+pub use kinematics::Kinematics;
 
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -83,6 +87,20 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
             reaction(i, needed - *slot);
             *slot = needed;
         }
+    }
+
+    /// Kinetic energy (J) and momentum (kg m/s) with v_n = v_{n−½} + `back` a_n.
+    fn energies(&self, back: f64, velocity: &[[f64; D]], force: &[[f64; D]]) -> (f64, [f64; D]) {
+        let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
+        for ((v, f), mass) in velocity.iter().zip(force).zip(self.problem.mass()) {
+            for c in 0..D {
+                // m v_n without the inverse mass: one array less to read.
+                let p = mass * v[c] + back * f[c];
+                momentum[c] += p;
+                kinetic[c] += p * p / mass;
+            }
+        }
+        (0.5 * kinetic.iter().sum::<f64>(), momentum)
     }
 
     /// a_n of a prescribed component: what takes its half-step velocities from one to the next,

@@ -18,16 +18,33 @@ pub enum Initial<const D: usize> {
     Nodal(Vec<[f64; D]>),
 }
 
+/// What the user stated, apart from mesh, obstacles and initial fields: from it comes the same
+/// problem again, bit by bit.
+#[derive(Clone, Debug)]
+pub struct Statement<const D: usize> {
+    /// Materials, each with its group of elements; `None` means all.
+    pub materials: Vec<(Option<String>, Elastic)>,
+    /// Supports.
+    pub supports: Vec<Support<D>>,
+    /// Tractions.
+    pub tractions: Vec<Traction<D>>,
+    /// Body forces.
+    pub body_forces: Vec<BodyForce<D>>,
+}
+
+impl<const D: usize> Default for Statement<D> {
+    fn default() -> Self {
+        Self { materials: Vec::new(), supports: Vec::new(), tractions: Vec::new(), body_forces: Vec::new() }
+    }
+}
+
 /// Collects the parts of a problem; [`Builder::build`] checks them all, in one place.
 #[derive(Clone, Debug)]
 pub struct Builder<const D: usize, const N: usize> {
     mesh: Mesh<D, N>,
-    materials: Vec<(Option<String>, Elastic)>,
+    stated: Statement<D>,
     displacement: Initial<D>,
     velocity: Initial<D>,
-    supports: Vec<Support<D>>,
-    tractions: Vec<Traction<D>>,
-    body_forces: Vec<BodyForce<D>>,
     obstacles: Vec<Plane<D>>,
 }
 
@@ -35,12 +52,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     pub(super) fn new(mesh: Mesh<D, N>) -> Self {
         Self {
             mesh,
-            materials: Vec::new(),
+            stated: Statement::default(),
             displacement: Initial::Uniform([0.0; D]),
             velocity: Initial::Uniform([0.0; D]),
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            body_forces: Vec::new(),
             obstacles: Vec::new(),
         }
     }
@@ -48,14 +62,14 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     /// The material of all elements.
     #[must_use]
     pub fn material(mut self, material: Elastic) -> Self {
-        self.materials.push((None, material));
+        self.stated.materials.push((None, material));
         self
     }
 
     /// The material of a group of elements.
     #[must_use]
     pub fn material_of(mut self, group: impl Into<String>, material: Elastic) -> Self {
-        self.materials.push((Some(group.into()), material));
+        self.stated.materials.push((Some(group.into()), material));
         self
     }
 
@@ -76,21 +90,21 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     /// Adds a support.
     #[must_use]
     pub fn support(mut self, support: Support<D>) -> Self {
-        self.supports.push(support);
+        self.stated.supports.push(support);
         self
     }
 
     /// Adds a traction.
     #[must_use]
     pub fn traction(mut self, traction: Traction<D>) -> Self {
-        self.tractions.push(traction);
+        self.stated.tractions.push(traction);
         self
     }
 
     /// Adds a body force.
     #[must_use]
     pub fn body_force(mut self, force: BodyForce<D>) -> Self {
-        self.body_forces.push(force);
+        self.stated.body_forces.push(force);
         self
     }
 
@@ -104,7 +118,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     /// Materials and body forces are counted in 16 bits.
     fn check_counts(&self) -> Result<(), InputError> {
         let most = usize::from(u16::MAX) - 1;
-        for (table, count) in [("material", self.materials.len()), ("body_force", self.body_forces.len())] {
+        for (table, count) in [("material", self.stated.materials.len()), ("body_force", self.stated.body_forces.len())]
+        {
             if count > most {
                 return Err(Cause::TooMany { count, most }.at(table, Some(most), ""));
             }
@@ -119,7 +134,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     pub fn build(self) -> Result<Problem<D, N>, InputError> {
         self.check_counts()?;
         let mesh = &self.mesh;
-        let (materials, element_material) = materials(mesh, &self.materials)?;
+        let (materials, element_material) = materials(mesh, &self.stated.materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
         let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
         let area = |f: FacetId| mesh.facet_normal(f).1 * extent(mesh.facets()[f.index()].owner);
@@ -134,12 +149,12 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
-        let Supports { facets: supported, prescribed, motions } = boundary::supports(mesh, &self.supports)?;
+        let Supports { facets: supported, prescribed, motions } = boundary::supports(mesh, &self.stated.supports)?;
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
-        let facet_loads = boundary::tractions(mesh, &self.tractions, &supported)?;
-        let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.body_forces, volume)?;
+        let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
+        let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         let mut loaded = vec![false; mesh.facets().len()];
         facet_loads.iter().for_each(|load| loaded[load.facet.index()] = true);
@@ -161,11 +176,12 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             prescribed,
             motions,
             facet_loads,
-            traction_tables: self.tractions.into_iter().map(|t| t.value).collect(),
+            traction_tables: self.stated.tractions.iter().map(|t| t.value.clone()).collect(),
             body_loads,
             element_body_loads,
             obstacles: self.obstacles,
             surface,
+            stated: self.stated,
             mesh: self.mesh,
         };
         check_start_of_supports(&problem)?;

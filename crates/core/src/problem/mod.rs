@@ -5,7 +5,7 @@ mod builder;
 mod error;
 mod surface;
 
-pub use builder::{Builder, Initial};
+pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, InputError, Place};
 pub use surface::{ContactFacet, ContactNode, ContactSurface};
 
@@ -51,6 +51,7 @@ pub struct BodyLoad<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize, const N: usize> {
     mesh: Mesh<D, N>,
+    stated: Statement<D>,
     materials: Vec<Elastic>,
     element_material: Vec<u16>,
     mass: Vec<f64>,
@@ -83,6 +84,12 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn mesh(&self) -> &Mesh<D, N> {
         &self.mesh
+    }
+
+    /// What was stated, to be written down; mesh, obstacles and initial fields are beside it.
+    #[must_use]
+    pub fn statement(&self) -> &Statement<D> {
+        &self.stated
     }
 
     /// The material of an element.

@@ -39,18 +39,25 @@ impl<const D: usize> FreeMotion<D> {
     }
 
     /// Advances over the half steps to t_{n−½} and t_n with a_n, and returns the motion at both;
-    /// at n = 0 there is no half step and the initial conditions are returned.
+    /// at n = 0 there is no half step and the initial conditions are returned. A history may bring
+    /// its own v_n; v_{n−½} then lies ½Δt_{n−1} a_n before it.
     pub(crate) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
         acceleration: &[[f64; D]],
+        given: Option<&[[f64; D]]>,
     ) -> (Option<Motion<D>>, Motion<D>) {
         let n = self.next;
         self.next += 1;
         let mut mid = None;
         if n > 0 {
             let half = 0.5 * times.step(n - 1);
+            if let Some(given) = given {
+                for (h, (v, a)) in self.half_step.iter_mut().zip(given.iter().zip(acceleration)) {
+                    (0..D).for_each(|c| h[c] = v[c] - half * a[c]);
+                }
+            }
             let mut velocity = self.half_step.clone();
             prescribe(problem, &mut velocity, |p| {
                 let v = |k: usize| problem.prescribed_velocity(p, times.instants()[k]);
@@ -60,8 +67,13 @@ impl<const D: usize> FreeMotion<D> {
             mid = Some((self.displacement.clone(), velocity.clone()));
 
             // v_n = v_{n−½} + ½Δt_{n−1} a_n, [38] when the step is constant.
-            for (v, (h, a)) in velocity.iter_mut().zip(self.half_step.iter().zip(acceleration)) {
-                (0..D).for_each(|c| v[c] = h[c] + half * a[c]);
+            match given {
+                Some(given) => velocity.copy_from_slice(given),
+                None => {
+                    for (v, (h, a)) in velocity.iter_mut().zip(self.half_step.iter().zip(acceleration)) {
+                        (0..D).for_each(|c| v[c] = h[c] + half * a[c]);
+                    }
+                }
             }
             prescribe(problem, &mut velocity, |p| problem.prescribed_velocity(p, times.instants()[n]));
             self.integrate(half, &velocity);

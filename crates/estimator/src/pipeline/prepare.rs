@@ -2,13 +2,14 @@
 
 use crate::contact_force::{self, Interval, Reading, SurfaceStep};
 use crate::error::EstimateError;
+use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, NormalStep};
 use crate::level::Level;
 use crate::options::Options;
 use crate::residual::{Residuals, worse};
 use crate::traction::Equilibration;
 use percute_core::dynamics::Dynamics;
-use percute_core::history::Step;
+use percute_core::history::{Step, StepCheck};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
@@ -31,7 +32,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     ready: usize,
     /// The step before the first of `levels` that is not complete.
     before: Option<SurfaceStep<D>>,
-    taken: usize,
+    steps: StepCheck,
     /// Normal impulse (Ns) of the admissible and of the simulation's contact force.
     pub(crate) impulse: (f64, f64),
     pub(crate) residuals: Residuals,
@@ -52,7 +53,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             levels: VecDeque::new(),
             ready: 0,
             before: None,
-            taken: 0,
+            steps: StepCheck::default(),
             impulse: (0.0, 0.0),
             residuals: Residuals::default(),
         }
@@ -60,7 +61,13 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Number of steps taken in.
     pub(super) fn count(&self) -> usize {
-        self.taken
+        self.steps.count()
+    }
+
+    /// What the history brings of its own.
+    pub(super) fn given(&self) -> Given {
+        let [velocity, acceleration] = self.steps.given();
+        Given { velocity, acceleration }
     }
 
     /// Which steps are sampled.
@@ -74,33 +81,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Refuses a step that does not fit.
     pub(super) fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        let (n, last) = (step.index, self.times.step_count());
-        if n != self.taken || n > last {
-            return Err(EstimateError::Order { given: n, expected: self.taken, last });
-        }
-        let surface = self.problem.surface().nodes().len();
-        let lengths = [
-            ("displacement", step.displacement.len(), self.problem.mesh().node_count()),
-            ("reaction", step.reaction.len(), surface),
-            ("touching", step.touching.len(), surface),
-        ];
-        for (field, given, needed) in lengths {
-            if given != needed {
-                return Err(EstimateError::Length { step: n, field, given, needed });
-            }
-        }
-        for (field, values) in [("displacement", step.displacement), ("reaction", step.reaction)] {
-            if let Some(position) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
-                return Err(EstimateError::NotFinite { step: n, field, position });
-            }
-        }
-        // Times are read or added up elsewhere: rounding of the run's length is all they may differ by.
-        let time = self.times.instants()[n];
-        let apart = (step.time - time).abs();
-        if apart.is_nan() || apart > 1e-12 * self.times.end() {
-            return Err(EstimateError::Time { step: n, given: step.time, expected: time });
-        }
-        match n {
+        self.steps.check(self.problem, self.times, step)?;
+        match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
             _ => Ok(()),
@@ -114,6 +96,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         for (node, (u, u0)) in step.displacement.iter().zip(problem.initial_displacement()).enumerate() {
             if u.iter().zip(u0).any(|(a, b)| (a - b).abs() > tolerance) {
                 return Err(EstimateError::Start { node });
+            }
+        }
+        for (node, (v, v0)) in step.velocity.unwrap_or_default().iter().zip(problem.initial_velocity()).enumerate() {
+            if v.iter().zip(v0).any(|(a, b)| (a - b).abs() > problem.speed_tolerance()) {
+                return Err(EstimateError::StartVelocity { node });
             }
         }
         for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
@@ -145,11 +132,13 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Takes in one step.
     pub(super) fn push(&mut self, step: &Step<'_, D>) {
         let n = step.index;
-        self.taken += 1;
+        self.steps.accept(step);
         let mut force = vec![[0.0; D]; step.displacement.len()];
         self.dynamics.forces_without_contact(n, step.displacement, &mut force);
-        let acceleration = self.total_acceleration(&force, step.reaction);
-        let (mid, now) = self.motion.advance(self.problem, self.times, &acceleration);
+        // The equilibrium of ã needs what the scheme makes of u_n; the motion takes what is given.
+        let acceleration =
+            step.acceleration.map_or_else(|| self.total_acceleration(&force, step.reaction), <[_]>::to_vec);
+        let (mid, now) = self.motion.advance(self.problem, self.times, &acceleration, step.velocity);
 
         let instants = self.times.instants();
         let knot = |(displacement, velocity)| Knot { displacement, velocity, increment: Vec::new() };

@@ -101,6 +101,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
         by_element: integral.into_iter().map(|i| (i / end).sqrt()).collect(),
         residuals,
         kept_impulse: (!problem.obstacles().is_empty() && whole > 0.0).then(|| kept / whole),
+        given: preparation.given(),
         steps: last,
         end,
     }

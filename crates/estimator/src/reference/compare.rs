@@ -1,10 +1,10 @@
 //! A simulation against a finer one.
 
 use super::locate::Transfer;
-use super::motion::{Kinematics, Motion};
+use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
 use crate::inertia::mass_product;
-use percute_core::dynamics::Stiffness;
+use percute_core::dynamics::{Kinematics, Stiffness};
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -94,7 +94,8 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
 
 impl<const D: usize, const N: usize> StepSink<D> for Comparison<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let velocity = self.kinematics.velocity(step)?;
+        self.kinematics.advance(step)?;
+        let velocity = self.kinematics.velocity();
         let now = State { time: step.time, displacement: step.displacement.to_vec(), velocity };
         let before = self.before.replace(now.clone());
         let before = before.as_ref().unwrap_or(&now);

@@ -1,20 +1,14 @@
 //! What can keep a true error from being computed.
 
+use percute_core::history::StepError;
 use thiserror::Error;
 
 /// Why a simulation could not be compared with its reference.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ReferenceError {
-    /// Steps that do not follow each other.
-    #[error("step {given} came where step {expected} was expected; steps must come in order, from 0 to {last}")]
-    Order {
-        /// The step given.
-        given: usize,
-        /// The step expected.
-        expected: usize,
-        /// The last step of the time grid.
-        last: usize,
-    },
+    /// A step that does not fit.
+    #[error(transparent)]
+    Step(#[from] StepError),
     /// Fields of another problem.
     #[error("{field} has {given} values, but the problem needs {needed}")]
     Length {

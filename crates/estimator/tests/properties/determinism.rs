@@ -8,12 +8,14 @@ use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, Options, run};
+use percute_estimator::{ContactForce, Estimate, Given, Options, run};
 use percute_testkit::{disc, random_rectangle};
 
 /// Every number of an estimate.
 fn bits(estimate: &Estimate) -> Vec<u64> {
-    let Estimate { error, time_of_sup, parts, over_time, by_element, residuals, kept_impulse, steps, end } = estimate;
+    let Estimate { error, time_of_sup, parts, over_time, by_element, residuals, kept_impulse, given, steps, end } =
+        estimate;
+    assert_eq!(*given, Given::default());
     let mut numbers = vec![
         error.sup,
         error.mean,
@@ -40,6 +42,10 @@ fn bits(estimate: &Estimate) -> Vec<u64> {
 fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) {
     let history = history(problem, times);
     assert!(reactions(&history) > 3, "{what}");
+    // Energies and works that the steps tell are those of the run.
+    let (simulation, _) = run(problem, times, Options::default(), &mut Unobserved).unwrap();
+    let (told, _) = percute_estimator::estimate(problem, &history, Options::default(), &mut Unobserved).unwrap();
+    assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
     for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
         for every in [1, 3] {
             let options =

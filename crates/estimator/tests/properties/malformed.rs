@@ -2,7 +2,7 @@
 
 use crate::bodies::{plane_below, steps, thrown};
 use crate::estimating::history;
-use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::history::{SinkError, Step, StepError, StepSink};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Estimator, Options};
@@ -26,7 +26,8 @@ impl Raw {
 
     fn step(&self) -> Step<'_, 2> {
         let Self { index, time, displacement, reaction, touching } = self;
-        Step { index: *index, time: *time, displacement, reaction, touching }
+        let (index, time) = (*index, *time);
+        Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None }
     }
 }
 
@@ -70,7 +71,7 @@ fn wrong_lengths() {
         for (name, spoil) in fields {
             let error = fed(at, spoil);
             assert!(
-                matches!(error, EstimateError::Length { step, field, .. } if step == at && field == name),
+                matches!(error, EstimateError::Step(StepError::Length { step, field, .. }) if step == at && field == name),
                 "{error}"
             );
         }
@@ -81,19 +82,22 @@ fn wrong_lengths() {
 fn values_that_are_no_numbers() {
     for value in [f64::NAN, f64::INFINITY] {
         let error = fed(3, |raw| raw.displacement[7][1] = value);
-        assert_eq!(error, EstimateError::NotFinite { step: 3, field: "displacement", position: 7 });
+        assert_eq!(error, EstimateError::Step(StepError::NotFinite { step: 3, field: "displacement", position: 7 }));
         let error = fed(0, |raw| raw.reaction[2][0] = value);
-        assert_eq!(error, EstimateError::NotFinite { step: 0, field: "reaction", position: 2 });
+        assert_eq!(error, EstimateError::Step(StepError::NotFinite { step: 0, field: "reaction", position: 2 }));
     }
 }
 
 #[test]
 fn steps_out_of_order() {
-    assert_eq!(fed(3, |raw| raw.index = 5), EstimateError::Order { given: 5, expected: 3, last: 10 });
-    assert_eq!(fed(3, |raw| raw.index = 2), EstimateError::Order { given: 2, expected: 3, last: 10 });
-    assert_eq!(fed(0, |raw| raw.index = 1), EstimateError::Order { given: 1, expected: 0, last: 10 });
+    assert_eq!(fed(3, |raw| raw.index = 5), EstimateError::Step(StepError::Order { given: 5, expected: 3, last: 10 }));
+    assert_eq!(fed(3, |raw| raw.index = 2), EstimateError::Step(StepError::Order { given: 2, expected: 3, last: 10 }));
+    assert_eq!(fed(0, |raw| raw.index = 1), EstimateError::Step(StepError::Order { given: 1, expected: 0, last: 10 }));
     // One step too many.
-    assert_eq!(fed(11, |raw| raw.index = 11), EstimateError::Order { given: 11, expected: 11, last: 10 });
+    assert_eq!(
+        fed(11, |raw| raw.index = 11),
+        EstimateError::Step(StepError::Order { given: 11, expected: 11, last: 10 })
+    );
 }
 
 /// From another program may come what this integrator refuses: a node that touches at step 1 from a gap
@@ -173,8 +177,11 @@ fn steps_of_another_problem() {
     let problem = impact();
     let end = steps(&problem, 0.9, 10).end();
     let found = fed(3, |raw| raw.time += 1e-3 * end);
-    assert!(matches!(found, EstimateError::Time { step: 3, given, expected } if given > expected), "{found:?}");
-    assert!(matches!(fed(3, |raw| raw.time = f64::NAN), EstimateError::Time { step: 3, .. }));
+    assert!(
+        matches!(found, EstimateError::Step(StepError::Time { step: 3, given, expected }) if given > expected),
+        "{found:?}"
+    );
+    assert!(matches!(fed(3, |raw| raw.time = f64::NAN), EstimateError::Step(StepError::Time { step: 3, .. })));
     assert_eq!(fed(0, |raw| raw.displacement[4] = [1e-6, 0.0]), EstimateError::Start { node: 4 });
     let found = fed(0, |raw| raw.touching[1] = true);
     let node = problem.surface().nodes()[1].node.index();

@@ -22,6 +22,8 @@ fn wrong_initial_conditions_show() {
         displacement: problem.initial_displacement(),
         reaction: &[],
         touching: &[],
+        velocity: None,
+        acceleration: None,
     };
     for (other, shows) in [(&problem, false), (&faster, true), (&moved, true)] {
         let mut preparation = Preparation::new(&problem, &times, &Options::default());

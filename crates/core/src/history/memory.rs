@@ -1,0 +1,232 @@
+//! A history in memory.
+
+use super::{SinkError, Step, StepSink, StepSource};
+use crate::time::TimeGrid;
+use thiserror::Error;
+
+/// A history in memory: each field in one array, step after step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History<const D: usize> {
+    times: TimeGrid,
+    count: usize,
+    nodes: usize,
+    contact_nodes: usize,
+    displacement: Vec<[f64; D]>,
+    reaction: Vec<[f64; D]>,
+    touching: Vec<bool>,
+    velocity: Option<Vec<[f64; D]>>,
+    acceleration: Option<Vec<[f64; D]>>,
+}
+
+/// Why a step does not fit into a history in memory.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum MemoryError {
+    /// No room for all steps.
+    #[error("{bytes} bytes for {steps} steps of {nodes} nodes cannot be had in memory; store the history in a file")]
+    Full {
+        /// Bytes wanted.
+        bytes: usize,
+        /// Instants.
+        steps: usize,
+        /// Nodes.
+        nodes: usize,
+    },
+    /// A field unlike that of the first step.
+    #[error("step {step}: {field} has {given} values, but step 0 had {needed}")]
+    Length {
+        /// The step.
+        step: usize,
+        /// Which field.
+        field: &'static str,
+        /// Its length.
+        given: usize,
+        /// That of the first step.
+        needed: usize,
+    },
+}
+
+impl<const D: usize> History<D> {
+    /// An empty history over these instants.
+    #[must_use]
+    pub fn new(times: &TimeGrid) -> Self {
+        Self {
+            times: times.clone(),
+            count: 0,
+            nodes: 0,
+            contact_nodes: 0,
+            displacement: Vec::new(),
+            reaction: Vec::new(),
+            touching: Vec::new(),
+            velocity: None,
+            acceleration: None,
+        }
+    }
+
+    /// Number of instants held, at most N + 1.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether no step has been taken yet.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// u_n (m), node by node and step after step.
+    #[must_use]
+    pub fn displacement(&self) -> &[[f64; D]] {
+        &self.displacement
+    }
+
+    /// R_n (N) on the nodes of the contact surface, node by node and step after step.
+    #[must_use]
+    pub fn reaction(&self) -> &[[f64; D]] {
+        &self.reaction
+    }
+
+    /// Touching status of the nodes of the contact surface, node by node and step after step.
+    #[must_use]
+    pub fn touching(&self) -> &[bool] {
+        &self.touching
+    }
+
+    /// The step n.
+    #[must_use]
+    pub fn step(&self, n: usize) -> Option<Step<'_, D>> {
+        if n >= self.count {
+            return None;
+        }
+        let (nodes, surface) = (n * self.nodes..(n + 1) * self.nodes, n * self.contact_nodes);
+        let surface = surface..surface + self.contact_nodes;
+        Some(Step {
+            index: n,
+            time: *self.times.instants().get(n)?,
+            displacement: &self.displacement[nodes.clone()],
+            reaction: &self.reaction[surface.clone()],
+            touching: &self.touching[surface],
+            velocity: self.velocity.as_ref().map(|v| &v[nodes.clone()]),
+            acceleration: self.acceleration.as_ref().map(|a| &a[nodes]),
+        })
+    }
+
+    /// Takes the sizes from the first step and makes room for all: what is not used is never touched.
+    fn begin(&mut self, first: &Step<'_, D>) -> Result<(), MemoryError> {
+        (self.nodes, self.contact_nodes) = (first.displacement.len(), first.touching.len());
+        let steps = self.times.step_count() + 1;
+        let (nodes, contact) = (self.nodes.saturating_mul(steps), self.contact_nodes.saturating_mul(steps));
+        let bytes = size_of::<[f64; D]>().saturating_mul(nodes.saturating_add(contact)).saturating_add(contact);
+        let full = |_| MemoryError::Full { bytes, steps, nodes: self.nodes };
+        self.displacement.try_reserve_exact(nodes).map_err(full)?;
+        self.reaction.try_reserve_exact(contact).map_err(full)?;
+        self.touching.try_reserve_exact(contact).map_err(full)?;
+        self.velocity = first.velocity.map(|_| Vec::new());
+        self.acceleration = first.acceleration.map(|_| Vec::new());
+        Ok(())
+    }
+
+    fn check(&self, step: &Step<'_, D>) -> Result<(), MemoryError> {
+        let optional = |field: Option<&[[f64; D]]>| field.map_or(0, <[_]>::len);
+        let expected = |there: bool| if there { self.nodes } else { 0 };
+        let fields = [
+            ("displacement", step.displacement.len(), self.nodes),
+            ("reaction", step.reaction.len(), self.contact_nodes),
+            ("touching", step.touching.len(), self.contact_nodes),
+            ("velocity", optional(step.velocity), expected(self.velocity.is_some())),
+            ("acceleration", optional(step.acceleration), expected(self.acceleration.is_some())),
+        ];
+        match fields.into_iter().find(|(_, given, needed)| given != needed) {
+            Some((field, given, needed)) => Err(MemoryError::Length { step: step.index, field, given, needed }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl<const D: usize> StepSink<D> for History<D> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        if self.count == 0 {
+            self.begin(step)?;
+        }
+        self.check(step)?;
+        self.displacement.extend_from_slice(step.displacement);
+        self.reaction.extend_from_slice(step.reaction);
+        self.touching.extend_from_slice(step.touching);
+        for (kept, given) in [(&mut self.velocity, step.velocity), (&mut self.acceleration, step.acceleration)] {
+            if let (Some(kept), Some(given)) = (kept, given) {
+                kept.extend_from_slice(given);
+            }
+        }
+        self.count += 1;
+        Ok(())
+    }
+}
+
+impl<const D: usize> StepSource<D> for History<D> {
+    fn times(&self) -> &TimeGrid {
+        &self.times
+    }
+
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+        (0..self.count).filter_map(|n| self.step(n)).try_for_each(|step| sink.push(&step))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const U: [[f64; 2]; 2] = [[1.0, 2.0], [3.0, 4.0]];
+
+    fn step(index: usize) -> Step<'static, 2> {
+        Step {
+            index,
+            time: index as f64,
+            displacement: &U,
+            reaction: &U[..1],
+            touching: &[true],
+            velocity: None,
+            acceleration: Some(&U),
+        }
+    }
+
+    #[test]
+    fn steps_come_back_as_they_were() {
+        let mut history = History::new(&TimeGrid::uniform(2.0, 2).unwrap());
+        (0..3).for_each(|n| history.push(&step(n)).unwrap());
+        assert_eq!((history.len(), history.displacement().len(), history.reaction().len()), (3, 6, 3));
+        assert_eq!([0, 1, 2].map(|n| history.step(n)), [0, 1, 2].map(|n| Some(step(n))));
+        assert_eq!(history.step(3), None);
+        let mut again = History::new(history.times());
+        history.replay(&mut again).unwrap();
+        assert_eq!(again, history);
+    }
+
+    #[test]
+    fn a_step_unlike_the_first_is_refused() {
+        let mut history = History::new(&TimeGrid::uniform(2.0, 2).unwrap());
+        history.push(&step(0)).unwrap();
+        for wrong in [
+            Step { displacement: &U[..1], ..step(1) },
+            Step { touching: &[], ..step(1) },
+            Step { velocity: Some(&U), ..step(1) },
+            Step { acceleration: None, ..step(1) },
+        ] {
+            assert!(history.push(&wrong).is_err(), "{wrong:?}");
+        }
+        assert_eq!(history.len(), 1);
+    }
+
+    #[test]
+    fn more_than_memory_can_hold_is_an_error() {
+        let mut history = History::new(&TimeGrid::uniform(1.0, 50_000_000).unwrap());
+        // 5e7 steps of 2e6 nodes: 1.6e15 bytes, beyond any address space.
+        let u = vec![[0.0; 2]; 2_000_000];
+        let error = history.push(&Step { displacement: &u, acceleration: None, ..step(0) }).unwrap_err();
+        assert!(matches!(error.downcast_ref(), Some(MemoryError::Full { .. })), "{error}");
+    }
+}

@@ -1,0 +1,75 @@
+//! The estimate of a history that is there already.
+
+use crate::error::{EstimateError, RunError};
+use crate::estimate::Estimate;
+use crate::options::Options;
+use crate::pipeline::Estimator;
+use percute_core::dynamics::{Balancing, Simulation};
+use percute_core::history::{SinkError, Step, StepSink, StepSource};
+use percute_core::observer::{Observer, Progress};
+use percute_core::problem::Problem;
+use std::ops::ControlFlow;
+use thiserror::Error;
+
+/// Estimates a history: from the same steps, the same bits as beside the run that made them. If the
+/// observer breaks, the steps taken so far are estimated. The simulation is what the steps tell of
+/// it.
+///
+/// # Errors
+/// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range.
+pub fn estimate<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    options: Options,
+    observer: &mut dyn Observer,
+) -> Result<(Simulation, Estimate), RunError> {
+    let mut replay = Replay {
+        estimator: Estimator::new(problem, source.times(), options)?,
+        balancing: Balancing::new(problem, source.times()),
+        observer,
+        last: source.count().saturating_sub(1),
+    };
+    let interrupted = match source.replay(&mut replay) {
+        Ok(()) => false,
+        Err(error) if error.is::<Stopped>() => true,
+        Err(error) => return Err(failed(error)),
+    };
+    let balance_over_time = replay.balancing.finish();
+    let balance = balance_over_time.last().copied().unwrap_or_default();
+    let steps = balance_over_time.len().saturating_sub(1);
+    let estimate = replay.estimator.finish()?;
+    Ok((Simulation { balance, balance_over_time, steps, interrupted }, estimate))
+}
+
+/// What takes the steps of a history.
+struct Replay<'a, 'p, const D: usize, const N: usize> {
+    estimator: Estimator<'p, D, N>,
+    balancing: Balancing<'p, D, N>,
+    observer: &'a mut dyn Observer,
+    /// The last step that will come.
+    last: usize,
+}
+
+/// The observer broke.
+#[derive(Debug, Error)]
+#[error("stopped")]
+struct Stopped;
+
+impl<const D: usize, const N: usize> StepSink<D> for Replay<'_, '_, D, N> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        self.estimator.push(step)?;
+        self.balancing.push(step)?;
+        let progress = Progress { stage: "estimating", done: step.index, total: self.last };
+        if self.observer.observe(progress) == ControlFlow::Break(()) && step.index < self.last {
+            return Err(Stopped.into());
+        }
+        Ok(())
+    }
+}
+
+fn failed(error: SinkError) -> RunError {
+    match error.downcast::<EstimateError>() {
+        Ok(error) => RunError::Estimate(*error),
+        Err(error) => RunError::Source(error),
+    }
+}
