@@ -29,13 +29,16 @@ mod place;
 mod problem;
 mod source;
 mod spelling;
+mod statement;
 mod support;
 mod table;
+mod text;
 mod time;
 mod value;
 
 pub(crate) use source::At;
 pub use source::{CaseError, Source};
+pub use statement::{Unsayable, problem_from, statement};
 
 use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;
@@ -47,6 +50,9 @@ use toml::de::DeTable;
 /// The tables of a case file.
 const TABLES: [&str; 9] =
     ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate"];
+
+/// Names of the components.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A case of one dimension, ready to run.
 #[derive(Clone, Debug)]
@@ -78,8 +84,7 @@ impl Case {
     /// # Errors
     /// The first thing that is wrong with it.
     pub fn parse(source: Source) -> Result<Self, CaseError> {
-        let text = source.text().to_string();
-        let document = DeTable::parse(&text).map_err(|error| syntax(&source, &error))?;
+        let document = parsed(&source)?;
         let root = Table::root(&source, document.get_ref());
         root.only(&TABLES)?;
         let mesh = root.single("mesh")?.ok_or_else(|| root.error("the table [mesh] is missing"))?;
@@ -104,9 +109,12 @@ fn read<const D: usize, const N: usize>(
     Ok(CaseOf { source: source.clone(), problem, times, critical_step, options })
 }
 
-fn syntax(source: &Source, error: &toml::de::Error) -> CaseError {
-    let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
-    source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+/// The document in a text.
+fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
+    DeTable::parse(source.text()).map_err(|error| {
+        let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+        source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+    })
 }
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
@@ -115,7 +123,7 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     #[must_use]
     pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
         let SimulationError::StartsTooNear { obstacle, .. } = error else { return None };
-        let document = DeTable::parse(self.source.text()).ok()?;
+        let document = parsed(&self.source).ok()?;
         let root = Table::root(&self.source, document.get_ref());
         let place = percute_core::problem::Place { table: "obstacle", index: Some(*obstacle), key: "point" };
         Some(self.source.error(&place::find(&root, place), error.to_string()))
