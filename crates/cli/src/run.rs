@@ -40,5 +40,5 @@ fn run_one<const D: usize, const N: usize>(
         RunError::Simulation(cause) => case.refused_start(cause).map_or(Failure::Run(error), Failure::Case),
         RunError::Estimate(_) | RunError::Source(_) => Failure::Run(error),
     })?;
-    Ok(Report::new(case, options, &simulation, estimate, start.elapsed().as_secs_f64()))
+    Ok(Report::new(&case.subject(), options, &simulation, estimate, start.elapsed().as_secs_f64()))
 }

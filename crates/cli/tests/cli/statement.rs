@@ -8,7 +8,7 @@ use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Options};
+use percute_estimator::{Acceleration, ContactForce, Options, Request};
 use percute_testkit::{Random, strategy::rectangle};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -163,7 +163,7 @@ fn read(text: &str) -> Case {
 fn as_good_as_the_case<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: Options) {
     same(problem, &options);
     let (problem_again, options_again) = again(problem, &options);
-    let estimate = |problem, options| percute_estimator::run(problem, times, options, &mut Unobserved).unwrap();
+    let estimate = |problem, options| percute_estimator::run(problem, times, options, &Request::default(), &mut Unobserved).unwrap();
     assert_eq!(estimate(problem, options), estimate(&problem_again, options_again));
 }
 
