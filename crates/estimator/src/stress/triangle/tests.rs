@@ -90,3 +90,53 @@ fn nothing_in_a_body_at_rest_and_nan_shows() {
     rest.volume[0][0] = f64::NAN;
     assert!(map().residuals(&rest, 0.0).divergence.is_nan());
 }
+
+/// ∫ab of two linear fields: the middles of the sides are exact.
+fn product(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let middle = |values: [f64; 3], i: usize| 0.5 * (values[i] + values[(i + 1) % 3]);
+    0.5 * map().jacobian / 3.0 * (0..3).map(|i| middle(a, i) * middle(b, i)).sum::<f64>()
+}
+
+/// The loading above and a linear volume load at will, which tractions balance: a third of its resultant on
+/// each edge, which has no moment about the centroid, and a shear flow.
+fn at_will() -> Loading<2, 3> {
+    let mut loads = loading();
+    let field = [[0.7, -1.1], [-0.2, 0.4], [1.3, 0.6]];
+    (0..3).for_each(|i| (0..2).for_each(|c| loads.volume[i][c] += field[i][c]));
+    let (centroid, column) = (map().centroid(), |c: usize| field.map(|f| f[c]));
+    let arm = |c: usize| POINTS.map(|p| p[c] - centroid[c]);
+    let moment = product(arm(0), column(1)) - product(arm(1), column(0));
+    // A unit shear flow turns by twice the area.
+    let flow = moment / map().jacobian;
+    for k in 0..3 {
+        let [a, b] = [POINTS[(k + 1) % 3], POINTS[(k + 2) % 3]];
+        for c in 0..2 {
+            let share = product(column(c), [1.0; 3]) / 3.0 + flow * (b[c] - a[c]);
+            (0..2).for_each(|p| loads.traction[k][p][c] += share);
+        }
+    }
+    loads
+}
+
+/// The divergence theorem: ∫σ_ab = ∮t_a x_b − ∫(div σ)_a x_b, whatever stress balances the loading.
+#[test]
+fn the_mean_follows_from_boundary_and_volume() {
+    let (map, loads) = (map(), at_will());
+    let found = map.residuals(&loads, 0.0);
+    assert!(found.divergence < ROUNDING && found.edges < ROUNDING, "{found:?}");
+    let boundary = |a: usize, b: usize| {
+        let edge = |k: usize| {
+            let [from, to] = [POINTS[(k + 1) % 3][b], POINTS[(k + 2) % 3][b]];
+            let [s, e] = loads.traction[k].map(|t| t[a]);
+            // Simpson's rule, exact for the quadratic; |e| is in the traction.
+            (s * from + (s + e) * (from + to) + e * to) / 6.0
+        };
+        (0..3).map(edge).sum::<f64>()
+    };
+    let volume = |a: usize, b: usize| product(loads.volume.map(|g| g[a]), POINTS.map(|p| p[b]));
+    for (value, (a, b)) in map.mean(&loads).into_iter().zip([(0, 0), (1, 1), (0, 1)]) {
+        let expected = (boundary(a, b) - volume(a, b)) / (0.5 * map.jacobian);
+        // Rounding of sums of order 1.
+        assert!((value - expected).abs() < 1e-13, "({a}, {b}): {value} instead of {expected}");
+    }
+}
