@@ -22,7 +22,7 @@ impl Report {
         case: &CaseOf<D, N>,
         options: Options,
         simulation: &Simulation,
-        estimate: Estimate,
+        estimate: Estimate<D>,
         seconds: f64,
     ) -> Self {
         let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(case));
@@ -131,7 +131,7 @@ fn balance_summary(balance: &Balance) -> BalanceSummary {
     }
 }
 
-fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate) -> Vec<WorstElement> {
+fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate<D>) -> Vec<WorstElement> {
     let centroid = |element: ElementId| {
         let corners = mesh.cell_points(element);
         (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect()
@@ -141,7 +141,7 @@ fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate)
 }
 
 /// The largest residual; one that is no number counts as largest, so that it cannot hide.
-fn largest_residual(estimate: &Estimate) -> LargestResidual {
+fn largest_residual<const D: usize>(estimate: &Estimate<D>) -> LargestResidual {
     let rank = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     let entries = estimate.residuals.entries();
     let (name, value) =

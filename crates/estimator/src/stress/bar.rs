@@ -34,6 +34,12 @@ impl BarStress {
         0.5 * self.compliance * self.length * square / 30.0
     }
 
+    /// By Simpson's rule, exact for a quadratic.
+    pub(super) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+        let [a, m, b] = self.stress(loading);
+        (a + 4.0 * m + b) / 6.0
+    }
+
     pub(super) fn residuals<const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N>,
@@ -74,6 +80,13 @@ mod tests {
         assert!((map.energy(&loading) - exact).abs() < 1e-13 * exact);
         let r = map.residuals(&loading, 0.0);
         assert!(r.divergence < 1e-14 && r.edges < 1e-14);
+    }
+
+    /// ∫(1 + 2x + 3x²) over [0, 2] is 14.
+    #[test]
+    fn mean_of_a_quadratic() {
+        let (map, loading) = balanced();
+        assert!((map.mean(&loading) - 7.0).abs() < 1e-14);
     }
 
     fn balanced() -> (BarStress, Loading<1, 2>) {
