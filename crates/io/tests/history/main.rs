@@ -1,4 +1,9 @@
 //! History files: what comes back, what is refused, and what a kill leaves.
 
 mod common;
+mod damage;
+mod foreign;
+mod kill;
+mod places;
+mod refusals;
 mod round_trip;
