@@ -302,7 +302,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
         let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
         if given != needed {
-            return Err(FileCause::Problem { given, needed }.at(self.path()));
+            return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
         }
         Ok(HistorySource::new(self.clone(), problem))
     }

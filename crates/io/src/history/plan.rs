@@ -1,12 +1,12 @@
 //! A history file before its run: how large it will be, and what it is made of.
 
 use super::rows::{Places, write_vectors};
-use super::steps::write_steps;
 use super::writer::Writer;
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{write_grid, write_groups};
+use crate::steps::write_steps;
 use crate::write::{Case, Texts, group, numbers, offset, ours, room, statement, unit};
 use hdf5::Group;
 use percute_core::problem::Problem;
@@ -14,7 +14,7 @@ use percute_core::time::TimeGrid;
 use std::path::Path;
 
 /// What the library needs beside the arrays, and for each group of the mesh (bytes): measured, rounded up.
-const LIBRARY: u64 = 13_400;
+const LIBRARY: u64 = 14_500;
 const PER_GROUP: u64 = 350;
 
 /// A history file to come.

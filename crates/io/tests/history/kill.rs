@@ -5,7 +5,7 @@ use percute_core::dynamics::simulate;
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, estimate};
+use percute_estimator::{Options, Request, estimate};
 use percute_io::Overwrite;
 use percute_io::history::{Plan, recover};
 use percute_testkit::Random;
@@ -75,7 +75,8 @@ fn check(runs: std::ops::Range<usize>) -> (usize, usize) {
         assert_same(&replayed, &undisturbed, file.count());
         if file.count() > 2 {
             let options = Options { every: 50, ..Options::default() };
-            let (_, estimate) = estimate(&problem, &file.source(&problem).unwrap(), options, &mut Unobserved).unwrap();
+            let source = file.source(&problem).unwrap();
+            let (_, estimate) = estimate(&problem, &source, options, &Request::default(), &mut Unobserved).unwrap();
             assert_eq!(estimate.steps, file.count() - 1);
         }
         assert_eq!(recover(&path).unwrap().count, file.count());

@@ -247,7 +247,7 @@ fn another_problem() {
     let path = folder.path().join("a.vtkhdf");
     small(&path);
     let error = plane_file(&path).source(&block(3, 3)).unwrap_err();
-    assert!(matches!(error.cause, FileCause::Problem { given: 16, needed: NODES }), "{error}");
+    assert!(matches!(error.cause, FileCause::Problem { given: 16, needed: NODES, .. }), "{error}");
     let error = plane_file(&path).displacement(13).unwrap_err();
     assert!(error.to_string().contains("step 13 is not in the file, which holds 13 instants"), "{error}");
 }
