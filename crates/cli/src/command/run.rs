@@ -6,6 +6,7 @@ use super::{Console, case};
 use crate::args::RunArguments;
 use crate::case::{Case, CaseOf};
 use crate::failure::{Failure, INTERRUPTED};
+use crate::history::stored_case;
 use crate::picture::Drawn;
 use crate::progress::Watch;
 use crate::report::{Report, many_steps};
@@ -59,9 +60,8 @@ where
     let report = Report::new(&case.subject(), options, &simulation, &estimate, seconds);
     let given = Given {
         problem: &case.problem,
-        times: &case.times,
         options,
-        case: Some(&case.source),
+        case: Some(stored_case(&case.source)),
         estimate: &estimate,
         report: &report,
         told: early.is_some(),
