@@ -5,9 +5,11 @@
 
 mod common;
 mod examples;
+mod history;
 mod house;
 #[cfg(target_os = "linux")]
 mod interrupt;
 mod mistakes;
 mod picture;
 mod run;
+mod statement;
