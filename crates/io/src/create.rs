@@ -55,7 +55,8 @@ impl Unnamed {
         let made = {
             let _alone = alone();
             hdf5::File::with_options()
-                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110))
+                // VTK loses arrays of later formats; who maps arrays into memory wants them aligned.
+                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8))
                 .create(temporary.path())
                 .map_err(|error| refused(&error))
                 .and_then(|file| {

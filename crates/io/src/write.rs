@@ -89,7 +89,7 @@ impl Texts {
         let value = if value.is_empty() { "\0" } else { value };
         let set = parent
             .new_dataset_builder()
-            .empty_as(&TypeDescriptor::FixedUnicode(value.len()))
+            .empty_as(TypeDescriptor::FixedUnicode(value.len()))
             .alloc_time(Some(AllocTime::Early))
             .fill_time(FillTime::Never)
             .layout(Layout::Contiguous)

@@ -50,8 +50,10 @@ struct Work<'a, const D: usize, const N: usize> {
     report: &'a str,
 }
 
-/// Name, unit, numbers of an instant for each node or element, and how they are taken from a map.
-type Field<'a, const D: usize> = (&'static str, &'static str, usize, Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>);
+/// The numbers of one field in a map.
+type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
+/// Name, unit, numbers for each node or element, and how they are taken.
+type Field<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
 
 impl<const D: usize, const N: usize> Work<'_, D, N> {
     fn check(&self) -> Result<(), FileCause> {
@@ -195,8 +197,6 @@ fn point_fields<const D: usize>() -> Vec<Field<'static, D>> {
     ]
 }
 
-fn of_fields<const D: usize>(
-    take: impl Fn(&AdmissibleFields<D>) -> Vec<f64> + 'static,
-) -> Box<dyn Fn(&ElementMap<D>) -> Vec<f64>> {
+fn of_fields<const D: usize>(take: impl Fn(&AdmissibleFields<D>) -> Vec<f64> + 'static) -> Take<'static, D> {
     Box::new(move |map| map.fields.as_ref().map(&take).unwrap_or_default())
 }

@@ -129,7 +129,7 @@ fn single(data: &Data<'_>) -> Result<i64, FileCause> {
 /// A field over time, if it is there: its shape, its type and where VTK looks for its steps.
 fn field<'f>(vtk: &Part<'f>, name: &str, instants: usize, nodes: usize) -> Result<Option<Data<'f>>, FileCause> {
     let Some(field) = vtk.group("PointData")?.optional(name)? else { return Ok(None) };
-    let rows = instants.checked_mul(nodes).unwrap_or(usize::MAX);
+    let rows = instants.saturating_mul(nodes);
     field.expect(&[rows, 3], "(instants x nodes, 3), step after step")?;
     field.check_floats()?;
     let steps = vtk.group("Steps")?;

@@ -1,5 +1,8 @@
 //! Estimate files: what was estimated is in them, bit by bit.
 
+// What helpers unwrap makes a test fail too; the general allowance covers test functions only.
+#![allow(clippy::unwrap_used)]
+
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};

@@ -190,6 +190,7 @@ fn arrays_lie_where_they_are_said_to() {
     let (problem, history) = small(&path);
     let stored = std::fs::read(&path).unwrap();
     let arrays = plane_file(&path).arrays().unwrap();
+    assert!(arrays.iter().all(|a| a.offset.unwrap().is_multiple_of(8)));
     let names: Vec<_> = arrays.iter().map(|a| a.name).collect();
     assert_eq!(names, ["displacement", "reaction", "touching"]);
     let numbers = |at: usize, count: usize| -> Vec<u64> {
