@@ -1,12 +1,13 @@
 //! New files: made whole under another name, with their room reserved, and only then put in place.
 
 use crate::error::FileCause;
+use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
 use rustix::io::Errno;
-use std::fs::{File, Permissions, TryLockError};
+use std::fs::{File, Permissions};
 use std::io;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -27,8 +28,8 @@ pub enum Overwrite {
 pub(crate) struct Unnamed {
     temporary: NamedTempFile,
     path: PathBuf,
-    /// Holds the lock of the file that is to be replaced.
-    old: Option<File>,
+    /// Keeps the file that is to be replaced.
+    old: Option<Held>,
     overwrite: Overwrite,
 }
 
@@ -52,20 +53,7 @@ impl Unnamed {
             return Err(FileCause::NoSpace { needed: bytes, free });
         }
         let mut texts = Texts::default();
-        let made = {
-            let _alone = alone();
-            hdf5::File::with_options()
-                // VTK loses arrays of later formats; who maps arrays into memory wants them aligned.
-                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8))
-                .create(temporary.path())
-                .map_err(|error| refused(&error))
-                .and_then(|file| {
-                    let made = fill(&file, &mut texts)?;
-                    file.close().map_err(|error| refused(&error))?;
-                    Ok(made)
-                })
-        };
-        let made = made.map_err(|cause| match free(folder) {
+        let made = make(temporary.path(), |file| fill(file, &mut texts)).map_err(|cause| match free(folder) {
             Some(free) if free < bytes => FileCause::NoSpace { needed: bytes, free },
             _ => cause,
         })?;
@@ -89,24 +77,39 @@ impl Unnamed {
         &self.path
     }
 
-    /// Gives the file its name. It stays locked against writers as long as it is open.
-    pub(crate) fn put(self) -> Result<File, FileCause> {
-        // File systems without locks go without.
-        let _ = self.temporary.as_file().try_lock_shared();
+    /// Gives the file its name. It is locked against writers from then on.
+    pub(crate) fn put(self) -> Result<Held, FileCause> {
+        let own = self.temporary.as_file().try_clone().map_err(|source| FileCause::Create { source })?;
+        let held = Held::shared(own)?;
         let put = match self.overwrite {
             Overwrite::Refuse => self.temporary.persist_noclobber(&self.path),
             Overwrite::Replace => self.temporary.persist(&self.path),
         };
         drop(self.old);
-        put.map_err(|refused| match refused.error {
-            error if error.kind() == io::ErrorKind::AlreadyExists => FileCause::Exists,
-            source => FileCause::Create { source },
-        })
+        match put {
+            Ok(_) => Ok(held),
+            Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => Err(FileCause::Exists),
+            Err(refused) => Err(FileCause::Create { source: refused.error }),
+        }
     }
 }
 
+/// Makes an HDF5 file and closes it.
+fn make<T>(path: &Path, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) -> Result<T, FileCause> {
+    let _alone = alone();
+    let file = hdf5::File::with_options()
+        // VTK loses arrays of later formats; who maps arrays into memory wants them aligned. Nobody else
+        // knows the file.
+        .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).file_locking(false))
+        .create(path)
+        .map_err(|error| refused(&error))?;
+    let made = fill(&file)?;
+    file.close().map_err(|error| refused(&error))?;
+    Ok(made)
+}
+
 /// Where the file goes, and the lock of the one that it replaces.
-fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<File>), FileCause> {
+fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Held>), FileCause> {
     let Ok(found) = path.symlink_metadata() else { return Ok((path.to_path_buf(), None)) };
     if overwrite == Overwrite::Refuse {
         return Err(FileCause::Exists);
@@ -118,10 +121,7 @@ fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Fil
         return Err(FileCause::NotAFile);
     }
     let old = File::open(&path).map_err(|source| FileCause::Create { source })?;
-    match old.try_lock() {
-        Err(TryLockError::WouldBlock) => Err(FileCause::InUse),
-        Ok(()) | Err(TryLockError::Error(_)) => Ok((path, Some(old))),
-    }
+    Ok((path, Some(Held::alone(old)?)))
 }
 
 /// Bytes free for us in a folder.

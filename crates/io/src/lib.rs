@@ -7,6 +7,7 @@
 mod create;
 mod error;
 pub mod estimate_file;
+mod held;
 pub mod history;
 mod kind;
 mod library;

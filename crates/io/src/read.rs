@@ -1,13 +1,14 @@
 //! Reading with HDF5: every size is checked against what is stored before memory is taken for it.
 
 use crate::error::{FileCause, FileError};
+use crate::held::Held;
 use crate::kind::Kind;
 use crate::library::{alone, damaged};
 use hdf5::dataset::Layout;
 use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5::{Container, Dataset, Group, H5Type, Hyperslab, Selection, SliceOrIndex};
-use std::fs::{File, TryLockError};
-use std::io::{self, Read};
+use std::fs::File;
+use std::io;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
@@ -25,6 +26,7 @@ pub(crate) const LAYOUT: i64 = 1;
 pub(crate) struct Opened {
     file: hdf5::File,
     bytes: u64,
+    _held: Held,
     /// Dropped last: the file is closed by then.
     _alone: MutexGuard<'static, ()>,
 }
@@ -32,9 +34,9 @@ pub(crate) struct Opened {
 impl Opened {
     pub(crate) fn new(path: &Path) -> Result<Self, FileCause> {
         let alone = alone();
-        let bytes = look(path)?;
-        let file = hdf5::File::open(path).map_err(damaged)?;
-        Ok(Self { file, bytes, _alone: alone })
+        let (held, bytes) = look(path)?;
+        let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open(path).map_err(damaged)?;
+        Ok(Self { file, bytes, _held: held, _alone: alone })
     }
 
     /// Bytes of the file.
@@ -80,8 +82,9 @@ impl Opened {
     }
 }
 
-/// Looks at a file without HDF5, whose words for what goes wrong here are poor. Returns its size.
-fn look(path: &Path) -> Result<u64, FileCause> {
+/// Looks at a file without HDF5, whose words for what goes wrong here are poor. Returns it locked, and its
+/// size.
+fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     let refused = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => FileCause::Missing,
         _ => FileCause::Read { source },
@@ -90,16 +93,13 @@ fn look(path: &Path) -> Result<u64, FileCause> {
     if !found.is_file() {
         return Err(FileCause::NotAFile);
     }
-    let mut file = File::open(path).map_err(refused)?;
-    if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
-        return Err(FileCause::InUse);
-    }
+    let held = Held::shared(File::open(path).map_err(refused)?)?;
     let mut first = [0; 8];
-    match file.read_exact(&mut first) {
+    match held.file().read_exact_at(&mut first, 0) {
         Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(refused(error)),
         // A block of the user's own before the signature is possible, but nobody's histories have one.
         _ if first != SIGNATURE => Err(FileCause::NotHdf5),
-        _ => Ok(found.len()),
+        _ => Ok((held, found.len())),
     }
 }
 

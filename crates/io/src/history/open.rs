@@ -43,20 +43,7 @@ fn contents<const D: usize, const N: usize>(
     let times = times(&vtk)?;
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
-    let mut initial = Vec::new();
-    let mut given = [false; 2];
-    for (at, name) in ["displacement", "velocity", "acceleration"].into_iter().enumerate() {
-        let Some(field) = field(&vtk, name, instants, nodes)? else { continue };
-        if at == 0 {
-            initial = vectors::<D>(&field, field.float_rows(0..nodes)?)?;
-            finite(DISPLACEMENT, &initial)?;
-        } else {
-            given[at - 1] = true;
-        }
-    }
-    if initial.is_empty() {
-        return Err(FileCause::MissingPart { name: DISPLACEMENT.to_string() });
-    }
+    let (initial_displacement, given) = fields::<D>(&vtk, instants, nodes)?;
     let velocity = ours.data("initial_velocity")?;
     velocity.expect(&[nodes, D], "(nodes, dimension)")?;
     let initial_velocity = velocity.floats()?.as_chunks::<D>().0.to_vec();
@@ -72,7 +59,7 @@ fn contents<const D: usize, const N: usize>(
         statement,
         case: case(&ours)?,
         provenance: provenance(&ours)?,
-        initial_displacement: initial,
+        initial_displacement,
         initial_velocity,
         times,
         count,
@@ -80,6 +67,22 @@ fn contents<const D: usize, const N: usize>(
         contact_nodes,
         given,
     }))
+}
+
+/// The initial displacement, and whether velocities and accelerations are given; all of their shapes are
+/// checked.
+fn fields<const D: usize>(
+    vtk: &Part<'_>,
+    instants: usize,
+    nodes: usize,
+) -> Result<(Vec<[f64; D]>, [bool; 2]), FileCause> {
+    let missing = || FileCause::MissingPart { name: DISPLACEMENT.to_string() };
+    let displacement = field(vtk, "displacement", instants, nodes)?.ok_or_else(missing)?;
+    let initial = vectors::<D>(&displacement, displacement.float_rows(0..nodes)?)?;
+    finite(DISPLACEMENT, &initial)?;
+    let velocity = field(vtk, "velocity", instants, nodes)?.is_some();
+    let acceleration = field(vtk, "acceleration", instants, nodes)?.is_some();
+    Ok((initial, [velocity, acceleration]))
 }
 
 fn times(vtk: &Part<'_>) -> Result<TimeGrid, FileCause> {

@@ -79,8 +79,8 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let (unnamed, places) = Unnamed::new(path, overwrite, self.bytes(), |file, texts| self.fill(file, texts))?;
         write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement()).map_err(create)?;
         let path = unnamed.path().to_path_buf();
-        let file = unnamed.put()?;
-        Writer::new(&path, file, places, self.times.step_count(), self.given).map_err(create)
+        let held = unnamed.put()?;
+        Writer::new(&path, held, places, self.times.step_count(), self.given).map_err(create)
     }
 
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<Places, FileCause> {

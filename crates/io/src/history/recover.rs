@@ -2,9 +2,10 @@
 
 use super::open::open;
 use crate::error::{FileCause, FileError};
+use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::steps::note_steps;
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::path::Path;
 
 /// What was found in a file.
@@ -31,13 +32,11 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
         // Its writer, if it still lives, holds the file.
-        if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(FileCause::InUse);
-        }
+        let held = Held::alone(file)?;
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
         set_steps(path, recovered.count).map_err(failed)?;
         set_complete(path).map_err(failed)?;
-        file.sync_all().map_err(|error| failed(error.to_string()))
+        held.file().sync_all().map_err(|error| failed(error.to_string()))
     };
     finish().map_err(|cause| cause.at(path))?;
     Ok(recovered)
@@ -59,7 +58,8 @@ fn set_complete(path: &Path) -> Result<(), String> {
     file.close().map_err(|error| detail(&error))
 }
 
-/// Opened without a lock: whoever reads the file meanwhile holds one, and only a number changes.
+/// Opened without a lock: whoever reads the file while its writer finishes it holds one, and only a number
+/// changes.
 fn writable(path: &Path) -> Result<hdf5::File, String> {
     hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path).map_err(|error| detail(&error))
 }

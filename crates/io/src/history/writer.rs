@@ -3,6 +3,7 @@
 use super::recover::set_steps;
 use super::rows::{Places, Row};
 use crate::error::{FileCause, FileError};
+use crate::held::Held;
 use percute_core::history::{SinkError, Step, StepError, StepSink};
 use std::fs::File;
 use std::io;
@@ -20,7 +21,7 @@ const WAITING: usize = 2;
 #[derive(Debug)]
 pub struct Writer<const D: usize> {
     path: PathBuf,
-    file: File,
+    held: Held,
     places: Places,
     last: usize,
     next: usize,
@@ -47,14 +48,14 @@ impl Failure {
 }
 
 impl<const D: usize> Writer<D> {
-    pub(super) fn new(path: &Path, file: File, places: Places, last: usize, given: [bool; 2]) -> io::Result<Self> {
+    pub(super) fn new(path: &Path, held: Held, places: Places, last: usize, given: [bool; 2]) -> io::Result<Self> {
         let (rows, taken) = sync_channel(WAITING);
         let (back, used) = channel();
-        let own = file.try_clone()?;
+        let own = held.file().try_clone()?;
         let work = move || write_all(&own, &places, &taken, &back);
         let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
         let (rows, thread) = (Some(rows), Some(thread));
-        Ok(Self { path: path.to_path_buf(), file, places, last, next: 0, given, rows, used, thread, failed: None })
+        Ok(Self { path: path.to_path_buf(), held, places, last, next: 0, given, rows, used, thread, failed: None })
     }
 
     /// The file.
@@ -86,14 +87,14 @@ impl<const D: usize> Writer<D> {
     fn complete(&self) -> Result<(), FileCause> {
         let failed = |detail: String| FileCause::Finish { detail, steps: self.next };
         let told = |error: io::Error| failed(error.to_string());
-        self.file.sync_data().map_err(told)?;
-        let mine = self.file.metadata().map_err(told)?;
+        self.held.file().sync_data().map_err(told)?;
+        let mine = self.held.file().metadata().map_err(told)?;
         if !self.path.metadata().is_ok_and(|there| (there.dev(), there.ino()) == (mine.dev(), mine.ino())) {
             return Err(FileCause::Lost);
         }
         set_steps(&self.path, self.next).map_err(failed)?;
-        self.file.write_all_at(&[1], self.places.complete).map_err(told)?;
-        self.file.sync_all().map_err(told)
+        self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
+        self.held.file().sync_all().map_err(told)
     }
 
     /// Lets the thread write what it has and ends it.

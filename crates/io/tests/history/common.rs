@@ -129,3 +129,9 @@ pub(crate) fn assert_same<const D: usize>(one: &History<D>, other: &History<D>, 
         assert_eq!((a.velocity.map(bits), a.acceleration.map(bits)), (b.velocity.map(bits), b.acceleration.map(bits)));
     }
 }
+
+/// Opens a file with the library itself, without its locks: they outlive the file in children that
+/// other tests fork.
+pub(crate) fn raw(path: &Path, mode: hdf5::OpenMode) -> hdf5::File {
+    hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_as(path, mode).unwrap()
+}

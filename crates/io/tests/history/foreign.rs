@@ -4,7 +4,7 @@ use crate::common::*;
 use hdf5::dataset::AllocTime;
 use hdf5::file::LibraryVersion;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
-use hdf5::{Dataset, Group};
+use hdf5::{Dataset, Group, OpenMode};
 use percute_core::history::StepSource;
 use percute_core::observer::Unobserved;
 use percute_estimator::{Options, Request, estimate};
@@ -26,9 +26,9 @@ pub(crate) enum Style {
 
 /// Copies all groups, data sets and attributes that a history needs into a new file.
 pub(crate) fn rewrite(from: &Path, to: &Path, style: Style) {
-    let old = hdf5::File::open(from).unwrap();
+    let old = raw(from, OpenMode::Read);
     let new = hdf5::File::with_options()
-        .with_fapl(|p| p.libver_bounds(LibraryVersion::Earliest, LibraryVersion::V110))
+        .with_fapl(|p| p.libver_bounds(LibraryVersion::Earliest, LibraryVersion::V110).file_locking(false))
         .create(to)
         .unwrap();
     let mut texts = Vec::new();
@@ -169,7 +169,7 @@ fn contact_rows_go_by_their_nodes() {
         touching.extend(step.touching.iter().rev().map(|&t| u8::from(t)));
     }
     let write = |path: &Path, touching: &[u8]| {
-        let file = hdf5::File::open_rw(path).unwrap();
+        let file = raw(path, OpenMode::ReadWrite);
         let ours = file.group("percute").unwrap();
         ours.unlink("contact").unwrap();
         let contact = ours.create_group("contact").unwrap();
@@ -188,7 +188,7 @@ fn contact_rows_go_by_their_nodes() {
         format!("node {} touches or has a reaction at step 3, but no obstacle", problem.mesh().node_count() - 1);
     assert!(error.to_string().contains(&words), "{error}");
 
-    let file = hdf5::File::open_rw(&path).unwrap();
+    let file = raw(&path, OpenMode::ReadWrite);
     file.unlink("percute/contact").unwrap();
     drop(file);
     let without = replayed(&path, &problem).unwrap();

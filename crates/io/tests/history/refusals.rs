@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use hdf5::types::VarLenUnicode;
-use hdf5::{File, H5Type};
+use hdf5::{File, H5Type, OpenMode};
 use percute_io::history::open;
 use percute_io::{FileCause, Kind};
 
@@ -12,7 +12,7 @@ fn spoilt(spoil: impl FnOnce(&File)) -> String {
     let folder = folder();
     let path = folder.path().join("a.vtkhdf");
     let (problem, _) = small(&path);
-    let file = File::open_rw(&path).unwrap();
+    let file = raw(&path, OpenMode::ReadWrite);
     spoil(&file);
     file.close().unwrap();
     let error = replayed(&path, &problem).unwrap_err();
@@ -54,7 +54,7 @@ fn foreign_files() {
         (vec!["a", "b", "c"], "it holds `a`, `b` and more"),
         (vec!["VTKHDF"], "it is VTKHDF, but has no group `percute`"),
     ] {
-        let file = File::create(&path).unwrap();
+        let file = raw(&path, OpenMode::Create);
         names.iter().for_each(|name| drop(file.create_group(name).unwrap()));
         file.close().unwrap();
         let error = open(&path).unwrap_err();
