@@ -1,9 +1,7 @@
 //! The extension module `percute._percute`; the package around it is `python/percute`.
 
-use pyo3::prelude::*;
-
 /// What the Python package `percute` is made of; use the package.
-#[pymodule]
+#[pyo3::pymodule]
 mod _percute {
     use pyo3::prelude::*;
     use std::ffi::OsString;
