@@ -1,10 +1,31 @@
-//! The extension module `percute._percute`; the package around it is `python/percute`.
+//! The extension module `percute._percute`; the package around it, which has the names that users see, is
+//! `python/percute`.
+
+mod any;
+mod door;
+mod errors;
+mod history;
+mod mesh;
+mod problem;
+mod run;
+mod statement;
+mod time;
+mod view;
 
 /// What the Python package `percute` is made of; use the package.
 #[pyo3::pymodule]
 mod _percute {
     use pyo3::prelude::*;
     use std::ffi::OsString;
+
+    #[pymodule_export]
+    use super::door::ProgressNow;
+    #[pymodule_export]
+    use super::history::{HistoryData, simulate};
+    #[pymodule_export]
+    use super::mesh::MeshData;
+    #[pymodule_export]
+    use super::problem::ProblemData;
 
     /// Adds what is no function.
     #[pymodule_init]
