@@ -1,8 +1,11 @@
 """The installed package and its command."""
 
+import re
+import signal
 import subprocess
 import sys
 import sysconfig
+import time
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -39,3 +42,25 @@ def test_the_command_runs_a_case(command: list[str]) -> None:
 def test_the_exit_code_is_that_of_the_command() -> None:
     done = run(SCRIPT, "run", "no such file.toml")
     assert done.returncode == 2 and "no such file.toml" in done.stderr and done.stdout == ""
+
+
+def processor_ticks(process: subprocess.Popen[str]) -> int:
+    """Processor time of a process: unlike the clock it tells whether it has begun its work."""
+    after_name = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return int(after_name[11]) + int(after_name[12])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc how far the run has come")
+@pytest.mark.parametrize("command", COMMANDS)
+def test_ctrl_c_prints_the_summary_of_the_steps_done(command: list[str], tmp_path: Path) -> None:
+    block = (ROOT / "examples" / "block.toml").read_text()
+    case = tmp_path / "case.toml"
+    # Millions of steps: far longer than any test.
+    case.write_text(re.sub(r"end = \S+", "end = 2.0", block))
+    arguments = [*command, "run", str(case), "--quiet"]
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while process.poll() is None and processor_ticks(process) < 100:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate()
+    assert process.returncode == 130 and "INTERRUPTED at step " in out and err == "", (out, err)
