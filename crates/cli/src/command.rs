@@ -77,7 +77,10 @@ fn run_command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8
     }
     print(&report, arguments.json, console)?;
     if let Some(file) = &arguments.picture {
-        picture::write(&case, &report, file)?;
+        match &case {
+            Case::Bar(case) => picture::write(&case.problem, &report, file)?,
+            Case::Plane(case) => picture::write(&case.problem, &report, file)?,
+        }
     }
     Ok(if report.interrupted { INTERRUPTED } else { DONE })
 }

@@ -25,7 +25,8 @@ where
     let _ = ctrlc::set_handler(move || _ = ASKED.swap(true, Relaxed).then(exit));
     let (mut out, mut err) = (stdout().lock(), stderr());
     let (progress, interrupted) = (err.is_terminal(), || ASKED.load(Relaxed));
-    let code = command_line(arguments, &mut Console { out: &mut out, err: &mut err, progress, interrupted: &interrupted });
+    let code =
+        command_line(arguments, &mut Console { out: &mut out, err: &mut err, progress, interrupted: &interrupted });
     // Only Rust's own `main` would do it at the end.
     let _ = out.flush();
     code

@@ -4,7 +4,7 @@ use crate::case::{Case, CaseOf};
 use crate::failure::Failure;
 use crate::report::Report;
 use percute_core::observer::Observer;
-use percute_estimator::{Options, RunError};
+use percute_estimator::{Options, Request, RunError};
 use std::time::Instant;
 
 /// What a run takes from its caller rather than from the case: nothing of it changes the result.
@@ -35,10 +35,10 @@ fn run_one<const D: usize, const N: usize>(
 ) -> Result<Report, Failure> {
     let options = Options { threads: settings.threads, window: settings.window, ..case.options };
     let start = Instant::now();
-    let ended = percute_estimator::run(&case.problem, &case.times, options, observer);
+    let ended = percute_estimator::run(&case.problem, &case.times, options, &Request::default(), observer);
     let (simulation, estimate) = ended.map_err(|error| match &error {
         RunError::Simulation(cause) => case.refused_start(cause).map_or(Failure::Run(error), Failure::Case),
         RunError::Estimate(_) | RunError::Source(_) => Failure::Run(error),
     })?;
-    Ok(Report::new(case, options, &simulation, estimate, start.elapsed().as_secs_f64()))
+    Ok(Report::new(&case.subject(), options, &simulation, estimate, start.elapsed().as_secs_f64()))
 }

@@ -17,4 +17,7 @@ pub mod mesh;
 pub mod observer;
 pub mod obstacle;
 pub mod problem;
+mod ratio;
 pub mod time;
+
+pub use ratio::ratio;

@@ -11,7 +11,7 @@ use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, Options};
+use percute_estimator::{ContactForce, Estimate, Options, Request};
 
 /// One mesh: cells along x and y, number of steps, and the absolute errors (J^½) that are known.
 struct Row {
@@ -58,13 +58,13 @@ fn block(cells: [usize; 2], gap: f64) -> Result<TriangleProblem, Failure> {
 }
 
 /// The estimate on one mesh, with a gap of 1.3 Δt|v_y| and Δt = 0.9 Δt_c exactly.
-fn estimate(row: &Row) -> Result<Estimate, Failure> {
+fn estimate(row: &Row) -> Result<Estimate<2>, Failure> {
     // Contact does not enter the critical step: any gap will do to find it.
     let step = 0.9 * critical_time_step(&block(row.cells, 1.0)?);
     let problem = block(row.cells, 1.3 * step * 400.0)?;
     let times = TimeGrid::uniform(step * row.steps as f64, row.steps)?;
     let options = Options { contact_force: ContactForce::Paper, ..Options::default() };
-    Ok(percute_estimator::run(&problem, &times, options, &mut Unobserved)?.1)
+    Ok(percute_estimator::run(&problem, &times, options, &Request::default(), &mut Unobserved)?.1)
 }
 
 fn main() -> Result<(), Failure> {

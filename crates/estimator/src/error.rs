@@ -1,5 +1,6 @@
 //! What can keep an estimate from being made.
 
+use crate::request::RequestError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{SinkError, StepError};
 use thiserror::Error;
@@ -13,6 +14,9 @@ pub enum EstimateError {
         /// The option.
         name: &'static str,
     },
+    /// Maps that cannot be kept.
+    #[error(transparent)]
+    Request(#[from] RequestError),
     /// No threads to work with.
     #[error("the threads of the estimate could not be started: {cause}")]
     Threads {

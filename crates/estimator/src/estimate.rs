@@ -1,5 +1,6 @@
 //! What an estimate says.
 
+use crate::map::ElementMap;
 use crate::residual::Residuals;
 use percute_core::ids::ElementId;
 
@@ -62,7 +63,7 @@ pub struct Given {
 
 /// The constitutive relation error of a history.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
+pub struct Estimate<const D: usize> {
     /// The measures.
     pub error: ErrorMeasures,
     /// When η is largest (s).
@@ -73,6 +74,8 @@ pub struct Estimate {
     pub over_time: Vec<Sample>,
     /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. \[20\].
     pub by_element: Vec<f64>,
+    /// The maps requested at steps that the run reached, in their order.
+    pub maps: Vec<ElementMap<D>>,
     /// How far each field is from exactly admissible.
     pub residuals: Residuals,
     /// Normal impulse of the admissible contact force over that of the simulation; `None` without
@@ -86,7 +89,7 @@ pub struct Estimate {
     pub end: f64,
 }
 
-impl Estimate {
+impl<const D: usize> Estimate<D> {
     /// Whether every number of it is one.
     pub(crate) fn is_finite(&self) -> bool {
         let e = &self.error;

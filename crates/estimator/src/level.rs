@@ -45,3 +45,29 @@ pub(crate) struct Level<const D: usize> {
     /// The same around contact nodes, side `Before`.
     pub(crate) flux_before: Vec<[f64; D]>,
 }
+
+impl<const D: usize> Level<D> {
+    /// A level of which the motion alone is known.
+    pub(crate) fn new(index: usize, mid: Option<Knot<D>>, knot: Knot<D>, contact_facets: usize) -> Self {
+        let none = vec![[[0.0; D]; D]; contact_facets];
+        Self {
+            index,
+            knot,
+            mid,
+            displacement: Vec::new(),
+            force: Vec::new(),
+            body_force: Vec::new(),
+            load_moments: Vec::new(),
+            surface: SurfaceStep { reaction: Vec::new(), touching: Vec::new() },
+            acceleration: Vec::new(),
+            acceleration_before: Vec::new(),
+            density_before: none.clone(),
+            density_after: none,
+            contact: vec![[0.0; 2]; contact_facets],
+            stress: Vec::new(),
+            force_scale: 0.0,
+            flux: Vec::new(),
+            flux_before: Vec::new(),
+        }
+    }
+}

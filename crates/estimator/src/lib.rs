@@ -14,20 +14,25 @@ mod estimate;
 mod inertia;
 mod kinematic;
 mod level;
+mod loaded;
+mod map;
 mod measure;
 mod options;
 mod pipeline;
 pub mod reference;
 mod replay;
+mod request;
 mod residual;
 mod stress;
 mod traction;
 
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
+pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Acceleration, ContactForce, Options, UnknownName};
 pub use pipeline::Estimator;
 pub use replay::estimate;
+pub use request::{Request, RequestError};
 pub use residual::Residuals;
 
 use percute_core::dynamics::{Simulation, simulate};
@@ -38,14 +43,15 @@ use percute_core::time::TimeGrid;
 /// Simulates and estimates beside the run. If the observer breaks, the steps done are estimated.
 ///
 /// # Errors
-/// [`RunError`]: a simulation that fails, or options out of range.
+/// [`RunError`]: a simulation that fails, options out of range, or maps that cannot be kept.
 pub fn run<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     options: Options,
+    request: &Request,
     observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate), RunError> {
-    let mut estimator = Estimator::new(problem, times, options)?;
+) -> Result<(Simulation, Estimate<D>), RunError> {
+    let mut estimator = Estimator::new(problem, times, options)?.keeping(request)?;
     let simulation = simulate(problem, times, &mut estimator, observer)?;
     Ok((simulation, estimator.finish()?))
 }

@@ -192,6 +192,14 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         ElementError { kinetic, elastic, reference: 2.0 * (kinetic + elastic) + 4.0 * products }
     }
 
+    /// Means of σ_DA and of Γ_DA/ρ over the element, on the side `After`.
+    pub(crate) fn means(&self, equilibration: &Equilibration<'_, D, N>, level: &Level<D>) -> ([[f64; D]; D], [f64; D]) {
+        let balanced = self.balanced(equilibration, level, &[None; N], Side::After);
+        let inertia = self.inertia.apply(&self.element.gather(&level.acceleration));
+        let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
+        (self.stress.mean(&balanced.loading), acceleration)
+    }
+
     /// ∫σ_DA : ε(u) as the work of what σ_DA balances (J).
     #[inline]
     fn work(&self, balanced: &Balanced<D, N>, u: &[[f64; D]; N]) -> f64 {

@@ -4,6 +4,7 @@ use crate::error::{EstimateError, RunError};
 use crate::estimate::Estimate;
 use crate::options::Options;
 use crate::pipeline::Estimator;
+use crate::request::Request;
 use percute_core::dynamics::{Balancing, Simulation};
 use percute_core::history::{SinkError, Step, StepSink, StepSource};
 use percute_core::observer::{Observer, Progress};
@@ -16,15 +17,17 @@ use thiserror::Error;
 /// it.
 ///
 /// # Errors
-/// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range.
+/// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps
+/// that cannot be kept.
 pub fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
     options: Options,
+    request: &Request,
     observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate), RunError> {
+) -> Result<(Simulation, Estimate<D>), RunError> {
     let mut replay = Replay {
-        estimator: Estimator::new(problem, source.times(), options)?,
+        estimator: Estimator::new(problem, source.times(), options)?.keeping(request)?,
         balancing: Balancing::new(problem, source.times()),
         observer,
         last: source.count().saturating_sub(1),

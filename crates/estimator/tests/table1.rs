@@ -9,7 +9,7 @@ use common::{MESHES, assert_close, block};
 use percute_core::dynamics::critical_time_step;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Options};
+use percute_estimator::{ContactForce, Options, Request};
 
 /// Number of steps, e_sup and e_mean (J^½ per metre of thickness): from a computation independent of
 /// this program, with the forces `paper`, Γ_DA `closest`, plane stress, a gap of 1.3 Δt|v_y| and
@@ -27,7 +27,8 @@ fn the_eight_absolute_errors() {
         let problem = block(cells, 1.3 * step * 400.0);
         let times = TimeGrid::uniform(end, steps).unwrap();
         let options = Options { contact_force: ContactForce::Paper, ..Options::default() };
-        let (_, estimate) = percute_estimator::run(&problem, &times, options, &mut Unobserved).unwrap();
+        let (_, estimate) =
+            percute_estimator::run(&problem, &times, options, &Request::default(), &mut Unobserved).unwrap();
         // The values are rounded to 1 J^½, 0.25 % of the smallest; 1 % leaves room for the
         // critical step, of which the other computation may have had fewer digits.
         assert_close(estimate.error.sup, sup, 0.01, &format!("e_sup on {cells:?}"));

@@ -15,7 +15,9 @@
 //! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
 //!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
 //! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
-//! - `[estimate]`: `contact_force`, `acceleration`, `every`.
+//! - `[estimate]`: `contact_force`, `acceleration`, `every`;
+//! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
+//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields.
 //!
 //! The reader walks the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
@@ -25,18 +27,24 @@ mod load;
 mod material;
 mod mesh;
 mod obstacle;
+mod output;
 mod place;
 mod problem;
 mod source;
 mod spelling;
+mod statement;
 mod support;
 mod table;
+mod text;
 mod time;
 mod value;
 
+pub use output::{Instants, Output};
 pub(crate) use source::At;
 pub use source::{CaseError, Source};
+pub use statement::{Unsayable, problem_from, statement};
 
+use crate::report::Subject;
 use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -45,8 +53,11 @@ use table::Table;
 use toml::de::DeTable;
 
 /// The tables of a case file.
-const TABLES: [&str; 9] =
-    ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate"];
+const TABLES: [&str; 10] =
+    ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
+
+/// Names of the components.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A case of one dimension, ready to run.
 #[derive(Clone, Debug)]
@@ -61,6 +72,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub critical_step: f64,
     /// Options of the estimate.
     pub options: Options,
+    /// The files that a run makes.
+    pub output: Output,
 }
 
 /// A case ready to run.
@@ -78,8 +91,7 @@ impl Case {
     /// # Errors
     /// The first thing that is wrong with it.
     pub fn parse(source: Source) -> Result<Self, CaseError> {
-        let text = source.text().to_string();
-        let document = DeTable::parse(&text).map_err(|error| syntax(&source, &error))?;
+        let document = parsed(&source)?;
         let root = Table::root(&source, document.get_ref());
         root.only(&TABLES)?;
         let mesh = root.single("mesh")?.ok_or_else(|| root.error("the table [mesh] is missing"))?;
@@ -97,25 +109,36 @@ fn read<const D: usize, const N: usize>(
 ) -> Result<CaseOf<D, N>, CaseError> {
     // Cheap tables first: a slip in the last line should not wait for the critical step.
     let options = estimate::read(root)?;
+    let output = output::read(root)?;
     let wanted = time::read(root)?;
     let problem = problem::read(root, mesh)?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
     let times = wanted.grid(critical_step)?;
-    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options })
+    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output })
 }
 
-fn syntax(source: &Source, error: &toml::de::Error) -> CaseError {
-    let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
-    source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+/// The document in a text.
+fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
+    DeTable::parse(source.text()).map_err(|error| {
+        let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+        source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+    })
 }
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
+    /// What a report on it is about.
+    #[must_use]
+    pub fn subject(&self) -> Subject<'_, D, N> {
+        let Self { source, problem, times, critical_step, .. } = self;
+        Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None }
+    }
+
     /// The place in the file of a start that the simulation refuses; `None` for other failures,
     /// which are not the input's.
     #[must_use]
     pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
         let SimulationError::StartsTooNear { obstacle, .. } = error else { return None };
-        let document = DeTable::parse(self.source.text()).ok()?;
+        let document = parsed(&self.source).ok()?;
         let root = Table::root(&self.source, document.get_ref());
         let place = percute_core::problem::Place { table: "obstacle", index: Some(*obstacle), key: "point" };
         Some(self.source.error(&place::find(&root, place), error.to_string()))

@@ -6,20 +6,14 @@ use super::table::Table;
 use super::value::Value;
 use super::{load, material, obstacle, place, support};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Cause, Initial, InputError, Problem};
+use percute_core::problem::{Builder, Cause, Initial, InputError, Problem};
 
 /// Reads all that makes the problem on a mesh.
 pub(super) fn read<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
-    let mut builder = Problem::builder(mesh);
-    for (group, law) in material::read::<D>(root)? {
-        builder = match group {
-            Some(group) => builder.material_of(group, law),
-            None => builder.material(law),
-        };
-    }
+    let mut builder = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
         if let Some(value) = table.get("velocity") {
@@ -28,6 +22,21 @@ pub(super) fn read<const D: usize, const N: usize>(
         if let Some(value) = table.get("displacement") {
             builder = builder.initial_displacement(field(&value, "m")?);
         }
+    }
+    build(root, builder)
+}
+
+/// Reads materials, planes, supports and loads.
+pub(super) fn stated<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    mesh: Mesh<D, N>,
+) -> Result<Builder<D, N>, CaseError> {
+    let mut builder = Problem::builder(mesh);
+    for (group, law) in material::read::<D>(root)? {
+        builder = match group {
+            Some(group) => builder.material_of(group, law),
+            None => builder.material(law),
+        };
     }
     for plane in obstacle::read(root)? {
         builder = builder.obstacle(plane);
@@ -41,6 +50,14 @@ pub(super) fn read<const D: usize, const N: usize>(
     for force in load::body_forces(root)? {
         builder = builder.body_force(force);
     }
+    Ok(builder)
+}
+
+/// Has the core check the problem as a whole.
+pub(super) fn build<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    builder: Builder<D, N>,
+) -> Result<Problem<D, N>, CaseError> {
     builder.build().map_err(|error| located(root, &error))
 }
 

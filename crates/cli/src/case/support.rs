@@ -1,12 +1,12 @@
 //! `[[support]]`: components of the motion that are prescribed.
 
+use super::AXES;
 use super::load::table_in_time;
 use super::source::CaseError;
 use super::spelling::{hint, list};
 use super::table::Table as Keys;
 use percute_core::load::{Support, Table};
 
-const AXES: [&str; 3] = ["x", "y", "z"];
 const VELOCITY: &str = "{ time = [0.0, 1e-5], value = [0.0, 3.0] }";
 
 /// Reads all supports.
@@ -64,11 +64,11 @@ fn spread<const C: usize, const D: usize>(
     table: &Keys<'_>,
     order: &[usize],
 ) -> Result<Table<D>, CaseError> {
-    let times = table.get("time").map_or(Ok(vec![0.0]), |time| time.numbers("s"))?;
-    let at = |&t: &f64| {
-        let (value, mut all) = (named.at(t), [0.0; D]);
-        order.iter().zip(value).for_each(|(&axis, v)| all[axis] = v);
+    let place = |value: &[f64; C]| {
+        let mut all = [0.0; D];
+        order.iter().zip(value).for_each(|(&axis, &v)| all[axis] = v);
         all
     };
-    Table::new(times.clone(), times.iter().map(at).collect()).map_err(|error| table.error(error.to_string()))
+    let values = named.value().iter().map(place).collect();
+    Table::new(named.time().to_vec(), values).map_err(|error| table.error(error.to_string()))
 }

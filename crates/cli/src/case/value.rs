@@ -71,6 +71,11 @@ impl<'a> Value<'a> {
         self.value.as_str().ok_or_else(|| self.must_be(format!("{what}, in quotes")))
     }
 
+    /// Yes or no.
+    pub(crate) fn flag(&self) -> Result<bool, CaseError> {
+        self.value.as_bool().ok_or_else(|| self.must_be("true or false"))
+    }
+
     /// The entries of a list; `what` says what it should hold.
     pub(crate) fn list(&self, what: &str) -> Result<Vec<Value<'a>>, CaseError> {
         let list = self.value.as_array().ok_or_else(|| self.must_be(format!("a list of {what}")))?;

@@ -2,11 +2,11 @@
 
 use super::DrawError;
 use super::canvas::{
-    AXIS_BELOW, AXIS_LEFT, Chart, FAINT, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
+    AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px,
 };
-use crate::case::CaseOf;
 use crate::report::Report;
 use percute_core::ids::ElementId;
+use percute_core::problem::BarProblem;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -17,14 +17,14 @@ const PLOT: (i32, i32) = (760, 360);
 const ROOM: f64 = 0.04;
 
 /// Draws the error as a step curve, and the planes.
-pub(super) fn draw(case: &CaseOf<1, 2>, report: &Report) -> Result<String, DrawError> {
+pub(super) fn draw(problem: &BarProblem, report: &Report) -> Result<String, DrawError> {
     let size = (AXIS_LEFT + PLOT.0 + 3 * MARGIN, HEAD + PLOT.1 + AXIS_BELOW + MARGIN);
-    picture(size, report, |area| draw_curve(area, case, report))
+    picture(size, report, |area| draw_curve(area, problem, report))
 }
 
 /// The pieces of the curve in order: from, to, value.
-fn pieces(case: &CaseOf<1, 2>, values: &[f64]) -> Vec<(f64, f64, f64)> {
-    let ends = |e: usize| case.problem.mesh().cell_points(ElementId::new(e)).map(|p| p[0]);
+fn pieces(problem: &BarProblem, values: &[f64]) -> Vec<(f64, f64, f64)> {
+    let ends = |e: usize| problem.mesh().cell_points(ElementId::new(e)).map(|p| p[0]);
     let piece = |(e, &value): (usize, &f64)| {
         let [a, b] = ends(e);
         (a.min(b), a.max(b), value)
@@ -36,7 +36,7 @@ fn pieces(case: &CaseOf<1, 2>, values: &[f64]) -> Vec<(f64, f64, f64)> {
 
 fn draw_curve(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
-    case: &CaseOf<1, 2>,
+    problem: &BarProblem,
     report: &Report,
 ) -> Result<(), DrawError> {
     let (low, high) = (report.problem.lower_corner[0], report.problem.upper_corner[0]);
@@ -51,35 +51,20 @@ fn draw_curve(
         .y_label_area_size(px(f64::from(AXIS_LEFT)))
         .build_cartesian_2d(shown.clone(), 0.0..top)
         .map_err(DrawError::from_library)?;
-    draw_axes(&mut chart)?;
-    let pieces = pieces(case, &report.by_element);
+    draw_axes(&mut chart, |axes| {
+        let line = FAINT.mix(0.25).stroke_width(UNITS as u32);
+        axes.disable_x_mesh().light_line_style(TRANSPARENT).bold_line_style(line).x_desc("x (m)").y_desc("e_E (J^½)")
+    })?;
+    let pieces = pieces(problem, &report.by_element);
     let line = colour(0.35, 1.0);
     let bars = pieces.iter().map(|&(a, b, v)| Rectangle::new([(a, 0.0), (b, v)], line.mix(0.25).filled()));
     chart.draw_series(bars).map_err(DrawError::from_library)?;
     let steps: Vec<(f64, f64)> = pieces.iter().flat_map(|&(a, b, v)| [(a, v), (b, v)]).collect();
     let curve = LineSeries::new(steps, line.stroke_width(2 * UNITS as u32));
     chart.draw_series(curve).map_err(DrawError::from_library)?;
-    let planes = case.problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.normal()[0]);
+    let planes = problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.normal()[0]);
     let planes = planes.filter(|x| shown.contains(x));
     let lines = planes.map(|x| PathElement::new(vec![(x, 0.0), (x, top)], INK.stroke_width(2 * UNITS as u32)));
     chart.draw_series(lines).map_err(DrawError::from_library)?;
     Ok(())
-}
-
-fn draw_axes(chart: &mut Chart<'_, '_>) -> Result<(), DrawError> {
-    chart
-        .configure_mesh()
-        .disable_x_mesh()
-        .set_all_tick_mark_size(px(MARK))
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(FAINT.mix(0.25).stroke_width(UNITS as u32))
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
-        .label_style(font(13.0, &INK))
-        .axis_desc_style(font(14.0, &INK))
-        .axis_style(INK.stroke_width(UNITS as u32))
-        .x_desc("x (m)")
-        .y_desc("e_E (J^½)")
-        .draw()
-        .map_err(DrawError::from_library)
 }

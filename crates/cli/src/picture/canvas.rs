@@ -4,7 +4,7 @@ use super::DrawError;
 use crate::report::Report;
 use crate::report::number::{percent, short, trimmed};
 use plotters::backend::SVGBackend;
-use plotters::chart::ChartContext;
+use plotters::chart::{ChartContext, MeshStyle};
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -54,6 +54,24 @@ pub(super) fn largest(values: &[f64]) -> f64 {
 pub(super) fn tick(value: &f64) -> String {
     // What is left of zero after adding up steps of an axis.
     if value.abs() < 1e-12 { "0".to_string() } else { trimmed(*value, 6) }
+}
+
+/// Axes as those of this program.
+pub(super) type Axes<'b, 'c, 's> = MeshStyle<'c, 'b, RangedCoordf64, RangedCoordf64, SVGBackend<'s>>;
+
+/// Draws axes in the look of all pictures, with what `own` adds.
+pub(super) fn draw_axes<'c, 's>(
+    chart: &mut Chart<'c, 's>,
+    own: impl for<'a, 'b> FnOnce(&'a mut Axes<'b, 'c, 's>) -> &'a mut Axes<'b, 'c, 's>,
+) -> Result<(), DrawError> {
+    let mut axes = chart.configure_mesh();
+    axes.set_all_tick_mark_size(px(MARK))
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
+        .label_style(font(13.0, &INK))
+        .axis_desc_style(font(14.0, &INK))
+        .axis_style(INK.stroke_width(UNITS as u32));
+    own(&mut axes).draw().map_err(DrawError::from_library)
 }
 
 /// Draws a picture of this size in pixels and returns its document.

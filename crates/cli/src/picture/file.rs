@@ -1,7 +1,6 @@
 //! The file that a picture goes to.
 
-use super::draw;
-use crate::case::Case;
+use super::Drawn;
 use crate::failure::Failure;
 use crate::report::Report;
 use std::fs::OpenOptions;
@@ -36,9 +35,9 @@ pub fn check_path(file: &Path) -> Result<(), Failure> {
 ///
 /// # Errors
 /// A picture that cannot be drawn or written.
-pub fn write(case: &Case, report: &Report, file: &Path) -> Result<(), Failure> {
+pub fn write(body: &impl Drawn, report: &Report, file: &Path) -> Result<(), Failure> {
     let fail = |cause: String| Failure::Picture { file: file.to_path_buf(), cause };
-    let svg = draw(case, report).map_err(|error| fail(error.to_string()))?;
+    let svg = body.draw(report).map_err(|error| fail(error.to_string()))?;
     std::fs::write(file, svg).map_err(|cause| fail(cause.to_string()))
 }
 

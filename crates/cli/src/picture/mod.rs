@@ -8,8 +8,8 @@ mod plane_body;
 
 pub use file::{check_path, write};
 
-use crate::case::Case;
 use crate::report::Report;
+use percute_core::problem::{BarProblem, TriangleProblem};
 use thiserror::Error;
 
 /// Why a picture could not be drawn.
@@ -24,14 +24,24 @@ impl DrawError {
     }
 }
 
-/// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along
-/// a bar.
-///
-/// # Errors
-/// What the drawing library reports.
-pub fn draw(case: &Case, report: &Report) -> Result<String, DrawError> {
-    match case {
-        Case::Bar(case) => bar::draw(case, report),
-        Case::Plane(case) => plane_body::draw(case, report),
+/// A body whose error can be drawn.
+pub trait Drawn {
+    /// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along a
+    /// bar.
+    ///
+    /// # Errors
+    /// What the drawing library reports.
+    fn draw(&self, report: &Report) -> Result<String, DrawError>;
+}
+
+impl Drawn for BarProblem {
+    fn draw(&self, report: &Report) -> Result<String, DrawError> {
+        bar::draw(self, report)
+    }
+}
+
+impl Drawn for TriangleProblem {
+    fn draw(&self, report: &Report) -> Result<String, DrawError> {
+        plane_body::draw(self, report)
     }
 }

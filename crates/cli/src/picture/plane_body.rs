@@ -2,13 +2,13 @@
 
 use super::DrawError;
 use super::canvas::{
-    AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, MARK, UNITS, colour, font, largest, picture, px, tick,
+    AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px,
 };
 use super::frame::Frame;
-use crate::case::CaseOf;
 use crate::report::Report;
 use percute_core::ids::ElementId;
 use percute_core::obstacle::Plane;
+use percute_core::problem::TriangleProblem;
 use plotters::backend::SVGBackend;
 use plotters::chart::LabelAreaPosition;
 use plotters::coord::Shift;
@@ -24,7 +24,7 @@ const OUTLINED: f64 = 14.0;
 const HATCH: f64 = 9.0;
 
 /// Draws the mesh, the planes and the scale of colours.
-pub(super) fn draw(case: &CaseOf<2, 3>, report: &Report) -> Result<String, DrawError> {
+pub(super) fn draw(problem: &TriangleProblem, report: &Report) -> Result<String, DrawError> {
     let corner = |corner: &[f64]| [corner[0], corner[1]];
     let frame = Frame::around(corner(&report.problem.lower_corner), corner(&report.problem.upper_corner));
     let width = MARGIN + AXIS_LEFT + frame.pixels[0] + SCALE.iter().sum::<i32>() + MARGIN;
@@ -32,7 +32,7 @@ pub(super) fn draw(case: &CaseOf<2, 3>, report: &Report) -> Result<String, DrawE
     let most = largest(&report.by_element);
     picture((width, height), report, |area| {
         let (map, scale) = area.split_horizontally(px(f64::from(MARGIN + AXIS_LEFT + frame.pixels[0])));
-        draw_map(&map, &frame, case, &report.by_element, most)?;
+        draw_map(&map, &frame, problem, &report.by_element, most)?;
         draw_scale(&scale, most)
     })
 }
@@ -40,7 +40,7 @@ pub(super) fn draw(case: &CaseOf<2, 3>, report: &Report) -> Result<String, DrawE
 fn draw_map(
     area: &DrawingArea<SVGBackend<'_>, Shift>,
     frame: &Frame,
-    case: &CaseOf<2, 3>,
+    problem: &TriangleProblem,
     values: &[f64],
     most: f64,
 ) -> Result<(), DrawError> {
@@ -51,33 +51,22 @@ fn draw_map(
         .y_label_area_size(px(f64::from(AXIS_LEFT)))
         .build_cartesian_2d(frame.low[0]..frame.high[0], frame.low[1]..frame.high[1])
         .map_err(DrawError::from_library)?;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .set_all_tick_mark_size(px(MARK))
-        .x_labels((frame.pixels[0] / 90).max(3) as usize)
-        .y_labels((frame.pixels[1] / 60).max(3) as usize)
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
-        .label_style(font(13.0, &INK))
-        .axis_desc_style(font(14.0, &INK))
-        .axis_style(INK.stroke_width(UNITS as u32))
-        .x_desc("x (m)")
-        .y_desc("y (m)")
-        .draw()
-        .map_err(DrawError::from_library)?;
-    draw_elements(&mut chart, frame, case, values, most)?;
-    case.problem.obstacles().iter().try_for_each(|plane| draw_plane(&mut chart, frame, plane))
+    draw_axes(&mut chart, |axes| {
+        let labels = [frame.pixels[0] / 90, frame.pixels[1] / 60].map(|count| count.max(3) as usize);
+        axes.disable_mesh().x_labels(labels[0]).y_labels(labels[1]).x_desc("x (m)").y_desc("y (m)")
+    })?;
+    draw_elements(&mut chart, frame, problem, values, most)?;
+    problem.obstacles().iter().try_for_each(|plane| draw_plane(&mut chart, frame, plane))
 }
 
 fn draw_elements(
     chart: &mut Chart<'_, '_>,
     frame: &Frame,
-    case: &CaseOf<2, 3>,
+    problem: &TriangleProblem,
     values: &[f64],
     most: f64,
 ) -> Result<(), DrawError> {
-    let mesh = case.problem.mesh();
+    let mesh = problem.mesh();
     let corners = |e: usize| mesh.cell_points(ElementId::new(e)).map(|p| (p[0], p[1]));
     let filled = |(e, &value): (usize, &f64)| Polygon::new(corners(e).to_vec(), colour(value, most).filled());
     chart.draw_series(values.iter().enumerate().map(filled)).map_err(DrawError::from_library)?;
@@ -129,17 +118,5 @@ fn draw_scale(area: &DrawingArea<SVGBackend<'_>, Shift>, most: f64) -> Result<()
         Rectangle::new([(0.0, low), (1.0, low + height)], colour(low + 0.5 * height, most).filled())
     };
     chart.draw_series((0..SHADES).map(shade)).map_err(DrawError::from_library)?;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .set_all_tick_mark_size(px(MARK))
-        .disable_x_axis()
-        .y_labels(8)
-        .y_label_formatter(&tick)
-        .label_style(font(13.0, &INK))
-        .axis_desc_style(font(14.0, &INK))
-        .axis_style(INK.stroke_width(UNITS as u32))
-        .y_desc("e_E (J^½)")
-        .draw()
-        .map_err(DrawError::from_library)
+    draw_axes(&mut chart, |axes| axes.disable_mesh().disable_x_axis().y_labels(8).y_desc("e_E (J^½)"))
 }

@@ -2,10 +2,9 @@
 
 use super::warnings::{Facts, warnings};
 use super::{
-    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, LargestResidual, Measures, ObstacleSummary, OptionsUsed,
-    OverTime, Parts, ProblemSummary, Report, Versions, WorstElement,
+    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, Given, LargestResidual, Measures, ObstacleSummary, OptionsUsed,
+    OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
 };
-use crate::case::CaseOf;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
@@ -16,40 +15,46 @@ use percute_estimator::{ErrorMeasures, Estimate, Options, Sample};
 const WORST: usize = 5;
 
 impl Report {
-    /// Puts together what a run gave.
+    /// Puts together what a run, or the estimate of a history, gave.
     #[must_use]
     pub fn new<const D: usize, const N: usize>(
-        case: &CaseOf<D, N>,
+        subject: &Subject<'_, D, N>,
         options: Options,
         simulation: &Simulation,
-        estimate: Estimate,
+        estimate: Estimate<D>,
         seconds: f64,
     ) -> Self {
-        let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(case));
-        let (softest, size) = (softest(&case.problem), case.problem.mesh().size());
-        let (kept_impulse, residual) = (estimate.kept_impulse, &largest_residual);
-        let warnings = warnings(&Facts { problem: &problem, softest, size, simulation, kept_impulse, residual });
+        let Subject { name, times, critical_step, held, .. } = *subject;
+        let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(subject));
+        let (softest, size) = (softest(subject.problem), subject.problem.mesh().size());
+        let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
+        let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
+        let facts =
+            Facts { problem: &problem, softest, size, drift, interrupted, kept_impulse, residual, steps: planned };
+        let warnings = warnings(&facts);
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),
-            case: case.source.name().into(),
+            case: name.into(),
             problem,
             warnings,
             options: options_used(options),
-            time_step: case.times.longest_step(),
-            critical_time_step: case.critical_step,
+            time_step: times.longest_step(),
+            critical_time_step: critical_step,
             steps: estimate.steps,
             end: estimate.end,
-            steps_planned: case.times.step_count(),
-            interrupted: simulation.interrupted,
+            steps_planned: planned,
+            interrupted,
+            given: Given { velocity: estimate.given.velocity, acceleration: estimate.given.acceleration },
+            held,
             error: measures(&estimate.error),
             parts: parts(&estimate.parts),
             time_of_sup: estimate.time_of_sup,
-            worst_elements: worst(case.problem.mesh(), &estimate),
+            worst_elements: worst(subject.problem.mesh(), &estimate),
             residuals: estimate.residuals.entries().to_vec(),
             largest_residual,
             balance: balance_summary(&simulation.balance),
-            balance_over_time: balance_over_time(&simulation.balance_over_time, case.times.instants()),
+            balance_over_time: balance_over_time(&simulation.balance_over_time, times.instants()),
             kept_impulse,
             over_time: over_time(&estimate.over_time),
             by_element: estimate.by_element,
@@ -68,8 +73,8 @@ fn options_used(options: Options) -> OptionsUsed {
     }
 }
 
-fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> ProblemSummary {
-    let (problem, mesh) = (&case.problem, case.problem.mesh());
+pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {
+    let (problem, mesh) = (subject.problem, subject.problem.mesh());
     let extreme =
         |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
     let obstacle = |plane: &percute_core::obstacle::Plane<D>| ObstacleSummary {
@@ -93,7 +98,7 @@ fn problem_summary<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Probl
         prescribed_components: problem.prescribed().len(),
         loaded_facets: problem.facet_loads().len(),
         body_forces: problem.body_loads().len(),
-        resampling_error: problem.resampling_error(case.times.instants()),
+        resampling_error: problem.resampling_error(subject.times.instants()),
     }
 }
 
@@ -117,7 +122,7 @@ fn parts(parts: &percute_estimator::Parts) -> Parts {
     Parts { kinetic: parts.kinetic, elastic: parts.elastic, contact: parts.contact }
 }
 
-fn balance_summary(balance: &Balance) -> BalanceSummary {
+pub(crate) fn balance_summary(balance: &Balance) -> BalanceSummary {
     BalanceSummary {
         kinetic: balance.kinetic,
         strain: balance.strain,
@@ -131,7 +136,7 @@ fn balance_summary(balance: &Balance) -> BalanceSummary {
     }
 }
 
-fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate) -> Vec<WorstElement> {
+fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate<D>) -> Vec<WorstElement> {
     let centroid = |element: ElementId| {
         let corners = mesh.cell_points(element);
         (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect()
@@ -141,7 +146,7 @@ fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate)
 }
 
 /// The largest residual; one that is no number counts as largest, so that it cannot hide.
-fn largest_residual(estimate: &Estimate) -> LargestResidual {
+fn largest_residual<const D: usize>(estimate: &Estimate<D>) -> LargestResidual {
     let rank = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     let entries = estimate.residuals.entries();
     let (name, value) =

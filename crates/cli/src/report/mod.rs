@@ -1,20 +1,38 @@
 //! What a run has to say, ready to print. The fields are the keys of the JSON document, described
 //! in `docs/json.md`.
 
-mod build;
+pub(crate) mod build;
 pub(crate) mod number;
-mod summary;
+pub(crate) mod summary;
 mod warnings;
 
 pub use summary::summary;
 pub use warnings::Warning;
+pub(crate) use warnings::many_steps;
 
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use serde::{Serialize, Serializer};
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
 const FORMAT: u32 = 1;
 /// Residuals above this mean that a field is not admissible.
 pub(crate) const ADMISSIBLE: f64 = 1e-10;
+
+/// What a report is about.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a, const D: usize, const N: usize> {
+    /// Name of the case or of the history, as it was given.
+    pub name: &'a str,
+    /// The problem.
+    pub problem: &'a Problem<D, N>,
+    /// The instants, those that were not reached too.
+    pub times: &'a TimeGrid,
+    /// Δt_c (s), eq. \[34\].
+    pub critical_step: f64,
+    /// Number of instants that a stored history holds; `None` beside a run.
+    pub held: Option<usize>,
+}
 
 /// The report of a run. SI units; energies, errors and forces of a plane body are those of its
 /// thickness.
@@ -32,6 +50,9 @@ pub struct Report {
     pub steps_planned: usize,
     pub end: f64,
     pub interrupted: bool,
+    pub given: Given,
+    #[serde(skip)]
+    pub held: Option<usize>,
     pub error: Measures,
     pub parts: Parts,
     pub time_of_sup: f64,
@@ -46,6 +67,14 @@ pub struct Report {
     pub by_element: Vec<f64>,
     pub warnings: Vec<Warning>,
     pub seconds: f64,
+}
+
+/// Which fields a history brought of its own; the others follow by the scheme.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct Given {
+    pub velocity: bool,
+    pub acceleration: bool,
 }
 
 /// Versions of the programs that made a report.
@@ -179,7 +208,7 @@ pub struct OverTime {
 }
 
 impl Versions {
-    fn of_this_program() -> Self {
+    pub(crate) fn of_this_program() -> Self {
         let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
         Self { percute: env!("CARGO_PKG_VERSION"), architecture, system }
     }

@@ -1,8 +1,7 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
 use super::number::{percent, short, trimmed};
-use super::{ADMISSIBLE, Report};
-use std::fmt::Write;
+use super::{ADMISSIBLE, BalanceSummary, ProblemSummary, Report};
 
 /// What the number means, and what it does not.
 const MEANING: &str = "\
@@ -13,12 +12,12 @@ space, time, lumped mass and contact together: a measure, not a strict bound.
 /// The summary of a run.
 #[must_use]
 pub fn summary(report: &Report) -> String {
-    let mut text = String::new();
-    for (name, value) in lines(report) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}", cut(&format!("{name:<10}{value}")));
-    }
-    text + MEANING
+    layout(&lines(report)) + MEANING
+}
+
+/// Names and values in two columns.
+pub(crate) fn layout(lines: &[(&str, String)]) -> String {
+    lines.iter().map(|(name, value)| cut(&format!("{name:<10}{value}")) + "\n").collect()
 }
 
 /// A line that fits the screen.
@@ -38,33 +37,53 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines
 }
 
-fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
-    let problem = &report.problem;
+/// Elements, nodes and size of a body.
+pub(crate) fn body(problem: &ProblemSummary) -> String {
     let kind = if problem.dimension == 1 { "bar elements" } else { "triangles" };
     let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| trimmed(u - l, 4));
     let size = size.collect::<Vec<_>>().join(" x ");
-    let (step, critical) = (report.time_step, report.critical_time_step);
-    let ratio = trimmed(step / critical, 4);
+    format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)
+}
+
+/// The longest step beside the critical one (s).
+pub(crate) fn step(step: f64, critical: f64) -> String {
+    format!("step {step:.4e} s, critical {critical:.4e} s, ratio {}", trimmed(step / critical, 4))
+}
+
+fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
+    let label = if report.held.is_some() { "history" } else { "case" };
+    let (version, seconds) = (report.versions.percute, short(report.seconds, 3));
     let options = &report.options;
-    let steps = match report.interrupted {
-        true => format!(
-            "INTERRUPTED at step {} of {}, t = {} s;",
-            report.steps,
-            report.steps_planned,
-            trimmed(report.end, 5)
-        ),
-        false => format!("{} s in {} steps;", trimmed(report.end, 5), report.steps),
-    };
-    vec![
-        ("case", format!("{} (percute {}, {} s)", report.case, report.versions.percute, short(report.seconds, 3))),
-        ("body", format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)),
-        ("time", steps),
-        ("", format!("step {step:.4e} s, critical {critical:.4e} s, ratio {ratio}")),
+    let mut lines = vec![
+        (label, format!("{} (percute {version}, {seconds} s)", report.case)),
+        ("body", body(&report.problem)),
+        ("time", time(report)),
+        ("", step(report.time_step, report.critical_time_step)),
         (
             "options",
             format!("{} forces, {} acceleration, every {}", options.contact_force, options.acceleration, options.every),
         ),
-    ]
+    ];
+    let given = [("velocities", report.given.velocity), ("accelerations", report.given.acceleration)];
+    let given: Vec<_> = given.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
+    if !given.is_empty() {
+        lines.push(("given", format!("{} of the history itself", given.join(" and "))));
+    }
+    lines
+}
+
+/// How far the run or the history went.
+fn time(report: &Report) -> String {
+    let Report { steps, steps_planned: planned, .. } = *report;
+    let end = trimmed(report.end, 5);
+    match report.held.map(|instants| instants.saturating_sub(1)) {
+        _ if !report.interrupted => format!("{end} s in {steps} steps;"),
+        Some(held) if held == steps => format!("INCOMPLETE history of {steps} of {planned} steps, t = {end} s;"),
+        Some(held) if held < planned => {
+            format!("INTERRUPTED at step {steps} of {held} ({planned} planned), t = {end} s;")
+        }
+        _ => format!("INTERRUPTED at step {steps} of {planned}, t = {end} s;"),
+    }
 }
 
 fn error(report: &Report) -> Vec<(&'static str, String)> {
@@ -96,19 +115,24 @@ fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
 
 fn balance(report: &Report) -> Vec<(&'static str, String)> {
     let b = &report.balance;
-    let joule = |x: f64| short(x, 4);
+    let [loads, supports, contact, friction] =
+        [b.work_of_loads, b.work_of_supports, b.work_of_contact, b.friction].map(|x| short(x, 4));
     vec![
-        (
-            "energy",
-            format!("initial {}, now kinetic {}, strain {} J", joule(b.initial), joule(b.kinetic), joule(b.strain)),
-        ),
-        ("work", {
-            let (loads, supports, contact) =
-                (joule(b.work_of_loads), joule(b.work_of_supports), joule(b.work_of_contact));
-            format!("loads {loads}, supports {supports}, contact {contact}, friction {} J", joule(b.friction))
-        }),
-        ("drift", format!("energy {}, impulse {}", percent(b.energy_drift), percent(b.impulse_drift))),
+        ("energy", energy(b)),
+        ("work", format!("loads {loads}, supports {supports}, contact {contact}, friction {friction} J")),
+        ("drift", drift(b)),
     ]
+}
+
+/// Energies at the start and now.
+pub(crate) fn energy(balance: &BalanceSummary) -> String {
+    let [initial, kinetic, strain] = [balance.initial, balance.kinetic, balance.strain].map(|x| short(x, 4));
+    format!("initial {initial}, now kinetic {kinetic}, strain {strain} J")
+}
+
+/// Drifts of the two balances.
+pub(crate) fn drift(balance: &BalanceSummary) -> String {
+    format!("energy {}, impulse {}", percent(balance.energy_drift), percent(balance.impulse_drift))
 }
 
 fn residual(report: &Report) -> String {

@@ -2,13 +2,14 @@
 
 use super::number::{percent, short};
 use super::{LargestResidual, ProblemSummary};
-use percute_core::dynamics::Simulation;
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
 const DRIFT: f64 = 0.1;
-/// So is a contact impulse of which less than this is kept.
-const KEPT: f64 = 0.9;
+/// So is a contact impulse of which less than the one or more than the other is kept.
+const KEPT: [f64; 2] = [0.9, 1.1];
+/// More steps than this are more likely a slip in `end` or in a unit.
+const MANY_STEPS: usize = 1_000_000;
 /// Resampling of tables below this is rounding.
 const RESAMPLED: f64 = 1e-12;
 /// Softer than this (Pa) and longer than a metre: more likely megapascals or millimetres.
@@ -31,7 +32,9 @@ pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
     pub(super) softest: f64,
     pub(super) size: f64,
-    pub(super) simulation: &'a Simulation,
+    pub(super) drift: f64,
+    pub(super) interrupted: bool,
+    pub(super) steps: usize,
     pub(super) kept_impulse: Option<f64>,
     pub(super) residual: &'a LargestResidual,
 }
@@ -46,6 +49,7 @@ pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
         units(facts),
         resampled(facts),
         mended(facts),
+        many_steps(facts.steps),
     ]
     .into_iter()
     .flatten()
@@ -69,12 +73,11 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
-    let drift = facts.simulation.balance.energy_drift;
     // A drift that is no number must not pass.
-    if drift <= DRIFT {
+    if facts.drift <= DRIFT {
         return None;
     }
-    let drift = percent(drift);
+    let drift = percent(facts.drift);
     let message = format!(
         "the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it"
     );
@@ -82,20 +85,27 @@ fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
-    let kept = facts.kept_impulse.filter(|&kept| kept.is_nan() || kept < KEPT)?;
-    let kept = percent(kept);
+    let [least, most] = KEPT;
+    let kept = facts.kept_impulse.filter(|kept| !(least..=most).contains(kept))?;
+    let (shown, advice) = (percent(kept), "refine the mesh or the steps where contact begins");
+    if kept > most {
+        let message = format!(
+            "the admissible contact force has {shown} of the simulated impulse; above 110 % it is not the force of the \
+             simulation: {advice}"
+        );
+        return warning("kept_impulse", format!("{shown} of the contact impulse in the admissible force"), message);
+    }
     let message = format!(
-        "the admissible contact force keeps {kept} of the simulated impulse; below 90 % the estimate is pessimistic: \
-         refine the mesh or the steps where contact begins"
+        "the admissible contact force keeps {shown} of the simulated impulse; below 90 % the estimate is pessimistic: {advice}"
     );
-    warning("kept_impulse", format!("only {kept} of the contact impulse kept"), message)
+    warning("kept_impulse", format!("only {shown} of the contact impulse kept"), message)
 }
 
 fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
     if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() {
         return None;
     }
-    let when = if facts.simulation.interrupted { "before it was interrupted" } else { "before `end`" };
+    let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
     let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
     warning("no_contact", format!("no contact {when}"), message)
 }
@@ -128,4 +138,24 @@ fn mended(facts: &Facts<'_>) -> Option<Warning> {
     let count = facts.problem.mended_elements;
     let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
     if count == 0 { None } else { warning("mended_elements", format!("{count} elements turned round"), message) }
+}
+
+/// Told before a run too: at its end it would be late.
+pub(crate) fn many_steps(steps: usize) -> Option<Warning> {
+    if steps <= MANY_STEPS {
+        return None;
+    }
+    let message = format!("the run has {steps} steps: is `[time] end` as meant, and in seconds?");
+    warning("many_steps", format!("{steps} steps"), message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_a_million_steps_are_a_warning() {
+        assert_eq!(many_steps(MANY_STEPS), None);
+        assert!(many_steps(MANY_STEPS + 1).is_some_and(|w| w.message.contains("1000001 steps")));
+    }
 }

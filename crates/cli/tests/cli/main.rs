@@ -11,3 +11,4 @@ mod interrupt;
 mod mistakes;
 mod picture;
 mod run;
+mod statement;

@@ -4,6 +4,7 @@ use super::Dynamics;
 use crate::ids::NodeId;
 use crate::obstacle::dot;
 use crate::problem::PrescribedComponent;
+use crate::ratio;
 
 /// Energies and works at t_n (J), and the drift of the two balances so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -220,8 +221,4 @@ fn rounding_energy<const D: usize, const N: usize>(dynamics: &Dynamics<'_, D, N>
     let step = (0..dynamics.times.step_count()).map(|n| dynamics.times.step(n)).fold(f64::INFINITY, f64::min);
     let speed = 1e-10 * largest / step;
     problem.mass().iter().sum::<f64>() * speed * speed
-}
-
-fn ratio(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }

@@ -36,17 +36,7 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
 
     /// Puts the solution of P_CA in the place of the normal components at local node `i`.
     pub(crate) fn set_normal(&mut self, i: usize, plane: &Plane<D>, track: &ContactTrack, knot: usize) {
-        if !track.is_altered(knot) {
-            // Not rebuilt from the gap, in which a distant plane would drown the displacement.
-            return;
-        }
-        let (velocity, gap) = track.at(knot);
-        let (_, tangential) = plane.split(&self.displacement[i]);
-        let (_, sliding) = plane.split(&self.velocity[i]);
-        for c in 0..D {
-            self.displacement[i][c] = tangential[c] + (gap - track.undeformed_gap()) * plane.normal()[c];
-            self.velocity[i][c] = sliding[c] + velocity * plane.normal()[c];
-        }
+        settle(&mut self.displacement[i], &mut self.velocity[i], plane, track, knot);
     }
 
     #[inline]
@@ -57,5 +47,26 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     #[inline]
     pub(crate) fn velocity(&self) -> &[[f64; D]; N] {
         &self.velocity
+    }
+}
+
+/// Puts the solution of P_CA in the place of the normal components of one node's motion.
+pub(crate) fn settle<const D: usize>(
+    displacement: &mut [f64; D],
+    velocity: &mut [f64; D],
+    plane: &Plane<D>,
+    track: &ContactTrack,
+    knot: usize,
+) {
+    if !track.is_altered(knot) {
+        // Not rebuilt from the gap, in which a distant plane would drown the displacement.
+        return;
+    }
+    let (speed, gap) = track.at(knot);
+    let (_, tangential) = plane.split(displacement);
+    let (_, sliding) = plane.split(velocity);
+    for c in 0..D {
+        displacement[c] = tangential[c] + (gap - track.undeformed_gap()) * plane.normal()[c];
+        velocity[c] = sliding[c] + speed * plane.normal()[c];
     }
 }

@@ -3,6 +3,7 @@
 
 #[cfg(test)]
 mod fixture;
+mod maps;
 mod near;
 mod prepare;
 mod totals;
@@ -11,6 +12,8 @@ mod window;
 use crate::error::EstimateError;
 use crate::estimate::Estimate;
 use crate::options::Options;
+use crate::request::Request;
+use maps::Maps;
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -18,13 +21,23 @@ use prepare::Preparation;
 use rayon::ThreadPool;
 use window::Window;
 
+/// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
+const BLOCK: usize = 256;
+
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
 /// windows; memory does not grow with their number, but for the elements around candidate nodes
-/// of contact, which wait until their nodes' next contact is known.
+/// of contact, which wait until their nodes' next contact is known, and for the maps that were
+/// requested.
+///
+/// A [`push`](StepSink::push) that fills a window works on all of it before it returns: 8 to 64 steps, some
+/// two million elements times steps, about a second on one core. Whoever wants to stop, or to tell
+/// how far it is, may have to wait that long; [`Options::window`] makes it shorter.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
     pool: ThreadPool,
     preparation: Preparation<'p, D, N>,
     window: Window<'p, D, N>,
@@ -45,23 +58,36 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         Ok(Self {
+            problem,
+            times,
             pool: pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?,
             preparation: Preparation::new(problem, times, &options),
-            window: Window::new(problem, times, &options),
+            window: Window::new(problem, times, &options, Maps::new(Request::default(), problem)?),
         })
+    }
+
+    /// Keeps the maps requested as well; asked before the first step, for of steps already taken there
+    /// are none. Whatever is requested, no other number of the estimate changes.
+    ///
+    /// # Errors
+    /// Steps out of order, beyond the last or not sampled; more maps than memory can hold.
+    pub fn keeping(mut self, request: &Request) -> Result<Self, EstimateError> {
+        request.check(self.times, self.preparation.every())?;
+        self.window.maps = Maps::new(request.clone(), self.problem)?;
+        Ok(self)
     }
 
     /// Ends with the steps taken so far and sums up.
     ///
     /// # Errors
     /// Fewer than two steps, or numbers out of range.
-    pub fn finish(mut self) -> Result<Estimate, EstimateError> {
+    pub fn finish(mut self) -> Result<Estimate<D>, EstimateError> {
         if self.preparation.count() < 2 {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
         }
         self.preparation.finish();
         self.pass_on(true);
-        let estimate = self.window.finish(&self.pool, self.preparation);
+        let estimate = self.window.finish(&self.pool, &self.preparation);
         if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
     }
 

@@ -1,6 +1,8 @@
 //! Elements with a candidate node of contact: their tractions may have two values at an instant,
 //! and their motion is known only when their nodes' next contact is.
 
+use super::maps::{Contribution, Maps};
+use super::totals::trapezoid;
 use crate::element::Element;
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
 use crate::level::{Level, Side};
@@ -10,6 +12,7 @@ use crate::residual::{Residuals, worse};
 use crate::traction::Equilibration;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
 
 /// The pointwise equilibrium of σ_DA is checked at every instant of so many, each element in its turn:
@@ -56,6 +59,10 @@ pub(crate) struct NearElement<const D: usize, const N: usize> {
     start: Option<Provisional<D, N>>,
     queue: VecDeque<Waiting<D, N>>,
     pub(crate) intervals: Vec<NearInterval>,
+    /// ∫η_E dt over them (J s).
+    pub(crate) integral: f64,
+    /// What it contributes at the steps requested.
+    pub(crate) kept: Vec<Contribution>,
     pub(crate) residuals: Residuals,
 }
 
@@ -79,6 +86,8 @@ pub(crate) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             start: None,
             queue: VecDeque::new(),
             intervals: Vec::new(),
+            integral: 0.0,
+            kept: Vec::new(),
             residuals: Residuals::default(),
         })
     };
@@ -89,9 +98,11 @@ pub(crate) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
 #[derive(Clone, Copy)]
 pub(crate) struct Context<'a, 'p, const D: usize, const N: usize> {
     pub(crate) problem: &'p Problem<D, N>,
+    pub(crate) times: &'p TimeGrid,
     pub(crate) equilibration: &'a Equilibration<'p, D, N>,
     pub(crate) choice: Acceleration,
     pub(crate) tracks: &'a [ContactTrack],
+    pub(crate) maps: &'a Maps<D>,
 }
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
@@ -182,8 +193,28 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.check_contact(context, &waiting.stop, &waiting.touching[1]);
             interval.errors[2] = error(&waiting.end, &waiting.stop);
             interval.contact[2] = waiting.stop.contact;
-            self.intervals.push(interval);
+            self.take(context, [start.knot / 2, waiting.stop.knot / 2], waiting.mid.is_some(), interval);
             self.start = Some(waiting.stop);
+        }
+    }
+
+    /// Adds an interval between two steps, and keeps what is requested of it.
+    fn take(&mut self, context: &Context<'_, '_, D, N>, steps: [usize; 2], single: bool, interval: NearInterval) {
+        let [from, to] = steps.map(|n| context.times.instants()[n]);
+        let value = |k: usize| interval.errors[k].total() + interval.contact[k];
+        self.keep(context, steps[0], &interval, 0);
+        self.integral += trapezoid(to - from, value(0), single.then(|| value(1)), value(2));
+        // Until the next interval, if there is one, tells what comes after it.
+        self.keep(context, steps[1], &interval, 2);
+        self.intervals.push(interval);
+    }
+
+    fn keep(&mut self, context: &Context<'_, '_, D, N>, step: usize, interval: &NearInterval, at: usize) {
+        if context.maps.want(step) {
+            self.kept.pop_if(|last| last.step == step);
+            let (element, accumulated) = (self.element, self.integral);
+            let (error, contact) = (interval.errors[at], interval.contact[at]);
+            self.kept.push(Contribution { element, step, error, contact, accumulated });
         }
     }
 

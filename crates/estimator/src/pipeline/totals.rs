@@ -1,11 +1,13 @@
 //! Sums over elements and time, in a fixed order.
 
 use super::near::{NearElement, NearInterval};
-use super::prepare::Preparation;
+use super::prepare::{Impulse, Preparation};
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
+use crate::map::ElementMap;
 use crate::measure::ElementError;
 use crate::residual::Residuals;
 use percute_core::problem::Problem;
+use percute_core::ratio;
 use percute_core::time::TimeGrid;
 
 /// Sums over far elements at the levels and at the knots between them.
@@ -52,58 +54,72 @@ struct Interval {
     samples: [(Parts, f64); 3],
 }
 
+/// What the windows leave.
+pub(crate) struct Worked<const D: usize, const N: usize> {
+    pub(crate) far: FarSums,
+    pub(crate) near: Vec<NearElement<D, N>>,
+    /// Time integral of η_E, and η_E at the end, of far elements.
+    pub(crate) progress: Vec<(f64, f64)>,
+    pub(crate) residuals: Residuals,
+    pub(crate) maps: Vec<ElementMap<D>>,
+}
+
 /// The estimate, from everything that was summed.
 pub(crate) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
-    preparation: Preparation<'_, D, N>,
-    far: FarSums,
-    near: &[NearElement<D, N>],
-    progress: &[(f64, f64)],
-    mut residuals: Residuals,
-) -> Estimate {
+    preparation: &Preparation<'_, D, N>,
+    worked: Worked<D, N>,
+) -> Estimate<D> {
+    let Worked { far, near, progress, mut residuals, maps } = worked;
     let last = preparation.count() - 1;
     let end = times.instants()[last];
-    let intervals = intervals(times, preparation.every(), last, &far, near);
     let mut integral = progress.iter().map(|p| p.0).collect::<Vec<_>>();
-    for element in near {
-        integral[element.element.index()] = near_integral(&intervals, &element.intervals);
+    for element in &near {
+        integral[element.element.index()] = element.integral;
         residuals.merge(&element.residuals);
     }
     preparation.tracks().iter().for_each(|track| track.report(&mut residuals));
     residuals.merge(&preparation.residuals);
 
+    let intervals = intervals(times, preparation.every(), last, &far, &near);
     let over_time = samples(&intervals);
     let worst = over_time.iter().fold(over_time[0], |a, b| if b.parts.total() > a.parts.total() { *b } else { a });
-    let mean = |value: &dyn Fn(&(Parts, f64)) -> f64| {
+    let Impulse { kept, whole } = preparation.impulse;
+    Estimate {
+        error: measures(&intervals, &over_time, worst.parts.total().sqrt(), end),
+        time_of_sup: worst.time,
+        parts: worst.parts,
+        over_time,
+        by_element: integral.into_iter().map(|i| (i / end).sqrt()).collect(),
+        maps,
+        residuals,
+        kept_impulse: (!problem.obstacles().is_empty() && whole > 0.0).then(|| kept / whole),
+        given: preparation.given(),
+        steps: last,
+        end,
+    }
+}
+
+/// The measures of a run up to `end` (s), of which √sup η is known.
+fn measures(intervals: &[Interval], over_time: &[Sample], sup: f64, end: f64) -> ErrorMeasures {
+    let root_mean = |value: &dyn Fn(&(Parts, f64)) -> f64| {
         let each = |i: &Interval| {
             let [a, m, b] = &i.samples;
             trapezoid(i.times[1] - i.times[0], value(a), i.single.then(|| value(m)), value(b))
         };
         (intervals.iter().map(each).sum::<f64>() / end).sqrt()
     };
-    let (sup, mean_error) = (worst.parts.total().sqrt(), mean(&|s| s.0.total()));
+    let mean = root_mean(&|s| s.0.total());
     let reference_sup = over_time.iter().fold(0.0_f64, |m, s| m.max(s.reference)).sqrt();
-    let reference_mean = mean(&|s| s.1);
-    let (kept, whole) = preparation.impulse;
-    Estimate {
-        error: ErrorMeasures {
-            sup,
-            mean: mean_error,
-            relative_sup: ratio(sup, reference_sup),
-            relative_mean: ratio(mean_error, reference_mean),
-            reference_sup,
-            reference_mean,
-        },
-        time_of_sup: worst.time,
-        parts: worst.parts,
-        over_time,
-        by_element: integral.into_iter().map(|i| (i / end).sqrt()).collect(),
-        residuals,
-        kept_impulse: (!problem.obstacles().is_empty() && whole > 0.0).then(|| kept / whole),
-        given: preparation.given(),
-        steps: last,
-        end,
+    let reference_mean = root_mean(&|s| s.1);
+    ErrorMeasures {
+        sup,
+        mean,
+        relative_sup: ratio(sup, reference_sup),
+        relative_mean: ratio(mean, reference_mean),
+        reference_sup,
+        reference_mean,
     }
 }
 
@@ -140,16 +156,6 @@ fn intervals<const D: usize, const N: usize>(
     (0..levels.len() - 1).map(interval).collect()
 }
 
-/// ∫η_E dt of a near element.
-fn near_integral(intervals: &[Interval], own: &[NearInterval]) -> f64 {
-    let each = |(interval, near): (&Interval, &NearInterval)| {
-        let value = |k: usize| near.errors[k].total() + near.contact[k];
-        let length = interval.times[1] - interval.times[0];
-        trapezoid(length, value(0), interval.single.then(|| value(1)), value(2))
-    };
-    intervals.iter().zip(own).map(each).sum()
-}
-
 /// All samples in order of time; an instant appears twice where its two sides differ.
 fn samples(intervals: &[Interval]) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::with_capacity(2 * intervals.len() + 1);
@@ -165,8 +171,4 @@ fn samples(intervals: &[Interval]) -> Vec<Sample> {
         }
     }
     samples
-}
-
-fn ratio(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }

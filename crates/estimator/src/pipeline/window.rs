@@ -3,9 +3,11 @@
 //! Nothing here depends on the number of threads or on where windows end: every number is computed
 //! by one task from its own data, and sums are taken over fixed blocks of elements in order.
 
+use super::BLOCK;
+use super::maps::{Contribution, Maps};
 use super::near::{Context, NearElement, near_elements};
 use super::prepare::Preparation;
-use super::totals::{self, FarSums};
+use super::totals::{self, FarSums, Worked};
 use crate::element::Element;
 use crate::estimate::Estimate;
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
@@ -20,8 +22,6 @@ use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-/// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
-const BLOCK: usize = 256;
 /// Away from contact the pointwise equilibrium of σ_DA is checked at every instant of so many, each
 /// element in its turn: the map that makes it is linear and the same at all instants, while a check
 /// costs more than the measure itself.
@@ -50,11 +50,12 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     far: FarSums,
     /// Time integral of η_E, and η_E at the last level, of far elements.
     progress: Vec<(f64, f64)>,
+    pub(super) maps: Maps<D>,
     residuals: Residuals,
 }
 
 impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options, maps: Maps<D>) -> Self {
         let near = near_elements(problem);
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
@@ -74,6 +75,7 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
             is_near,
             far: FarSums::default(),
             progress: vec![(0.0, 0.0); mesh.element_count()],
+            maps,
             residuals: Residuals::default(),
         }
     }
@@ -87,10 +89,12 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
     }
 
     /// Works on what is left and sums up.
-    pub(super) fn finish(mut self, pool: &ThreadPool, preparation: Preparation<'p, D, N>) -> Estimate {
+    pub(super) fn finish(mut self, pool: &ThreadPool, preparation: &Preparation<'p, D, N>) -> Estimate<D> {
         self.work(pool, preparation.tracks());
-        let residuals = self.residuals;
-        totals::estimate(self.problem, self.times, preparation, self.far, &self.near, &self.progress, residuals)
+        self.near.iter().for_each(|near| self.maps.put(&near.kept));
+        let Self { problem, times, far, near, progress, residuals, .. } = self;
+        let maps = self.maps.finish(problem, &self.equilibration.elements, preparation.tracks());
+        totals::estimate(problem, times, preparation, Worked { far, near, progress, residuals, maps })
     }
 
     /// Works on the levels of the window and keeps the last for the next one.
@@ -102,9 +106,11 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         pool.install(|| {
             self.stresses(first);
             self.stars(first);
+            let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
+            self.maps.begin(problem, times.instants(), equilibration, choice, &self.levels[first..]);
             self.far_elements(first);
-            let context =
-                Context { problem: self.problem, equilibration: &self.equilibration, choice: self.choice, tracks };
+            let (equilibration, maps) = (&self.equilibration, &self.maps);
+            let context = Context { problem, times, equilibration, choice, tracks, maps };
             self.near.par_iter_mut().for_each(|near| near.advance(&context, &self.levels));
         });
         let last = self.levels.len() - 1;
@@ -179,29 +185,38 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
             levels: &self.levels,
             first,
             times: self.times,
+            maps: &self.maps,
         };
         let is_near = &self.is_near;
-        let results: Vec<(FarSums, Residuals)> = blocks
+        let none = || FarSums::new(self.levels.len() - first, self.levels.len() - 1);
+        let results: Vec<FarBlock> = blocks
             .enumerate()
             .map(|(block, (progress, elements))| {
-                let mut sums = FarSums::new(self.levels.len() - first, self.levels.len() - 1);
-                let mut residuals = Residuals::default();
+                let mut found = FarBlock { sums: none(), residuals: Residuals::default(), kept: Vec::new() };
                 for (k, (element, progress)) in elements.iter().zip(progress).enumerate() {
                     let id = block * BLOCK + k;
                     if !is_near[id] {
-                        shared.one_element(ElementId::new(id), element, progress, &mut sums, &mut residuals);
+                        shared.one_element(ElementId::new(id), element, progress, &mut found);
                     }
                 }
-                (sums, residuals)
+                found
             })
             .collect();
-        let mut window = FarSums::new(self.levels.len() - first, self.levels.len() - 1);
-        for (sums, residuals) in &results {
-            window.add(sums);
-            self.residuals.merge(residuals);
+        let mut window = none();
+        for block in &results {
+            window.add(&block.sums);
+            self.residuals.merge(&block.residuals);
+            self.maps.put(&block.kept);
         }
         self.far.extend(window);
     }
+}
+
+/// What a block of far elements leaves in a window.
+struct FarBlock {
+    sums: FarSums,
+    residuals: Residuals,
+    kept: Vec<Contribution>,
 }
 
 /// What the far elements of a window share.
@@ -212,18 +227,12 @@ struct Shared<'a, 'p, const D: usize, const N: usize> {
     levels: &'a [Level<D>],
     first: usize,
     times: &'p TimeGrid,
+    maps: &'a Maps<D>,
 }
 
 impl<const D: usize, const N: usize> Shared<'_, '_, D, N> {
     /// Adds one element's errors at all samples of the window.
-    fn one_element(
-        &self,
-        id: ElementId,
-        element: &Element<D, N>,
-        progress: &mut (f64, f64),
-        sums: &mut FarSums,
-        residuals: &mut Residuals,
-    ) {
+    fn one_element(&self, id: ElementId, element: &Element<D, N>, progress: &mut (f64, f64), found: &mut FarBlock) {
         let measure = ElementMeasure::new(self.problem, element, id, self.choice);
         let error = |balanced: &Balanced<D, N>, knot: &Knot<D>| {
             measure.error(balanced, &element.gather(&knot.increment), &ElementMotion::gather(knot, &element.nodes))
@@ -234,15 +243,15 @@ impl<const D: usize, const N: usize> Shared<'_, '_, D, N> {
             let mut middle = ElementError::default();
             if let (Some(before), Some(mid)) = (&before, self.mid(k)) {
                 middle = error(&Balanced::middle(before, &now), mid);
-                sums.mids[k - 1].add(&middle);
+                found.sums.mids[k - 1].add(&middle);
             }
             if k >= self.first {
-                measure.check_resultants(&now, level.force_scale, residuals);
+                measure.check_resultants(&now, level.force_scale, &mut found.residuals);
                 if (level.index + id.index()).is_multiple_of(CHECK) {
-                    measure.check_stress(&now, level.force_scale, residuals);
+                    measure.check_stress(&now, level.force_scale, &mut found.residuals);
                 }
                 let end = error(&now, &level.knot);
-                sums.levels[k - self.first].add(&end);
+                found.sums.levels[k - self.first].add(&end);
                 if let Some(from) = k.checked_sub(1).map(|k| &self.levels[k]) {
                     let instants = self.times.instants();
                     let length = instants[level.index] - instants[from.index];
@@ -251,6 +260,10 @@ impl<const D: usize, const N: usize> Shared<'_, '_, D, N> {
                         totals::trapezoid(length, progress.1, has_middle.then(|| middle.total()), end.total());
                 }
                 progress.1 = end.total();
+                if self.maps.want(level.index) {
+                    let (step, accumulated) = (level.index, progress.0);
+                    found.kept.push(Contribution { element: id, step, error: end, contact: 0.0, accumulated });
+                }
             }
             before = Some(now);
         }

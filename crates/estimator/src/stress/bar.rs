@@ -34,6 +34,12 @@ impl BarStress {
         0.5 * self.compliance * self.length * square / 30.0
     }
 
+    /// By Simpson's rule, exact for a quadratic.
+    pub(super) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+        let [a, m, b] = self.stress(loading);
+        (a + 4.0 * m + b) / 6.0
+    }
+
     pub(super) fn residuals<const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N>,

@@ -64,6 +64,15 @@ impl StressMap {
         }
     }
 
+    /// Mean over the element of the stress that balances a loading (Pa).
+    pub(crate) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[f64; D]; D] {
+        let [xx, yy, xy] = match self {
+            Self::Bar(map) => [map.mean(loading), 0.0, 0.0],
+            Self::Triangle(map) => map.mean(loading),
+        };
+        std::array::from_fn(|a| std::array::from_fn(|b| if a != b { xy } else { [xx, yy][a] }))
+    }
+
     /// How well the stress satisfies its equations; `floor` is the smallest traction |e|F that
     /// counts.
     pub(crate) fn residuals<const D: usize, const N: usize>(

@@ -96,6 +96,14 @@ impl TriangleStress {
         stress
     }
 
+    /// Mean of (11, 22, 12): a quadratic integrates to the mean of its values in the middles of the
+    /// sides, and the sub-triangles are of one size.
+    pub(super) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; 3] {
+        let stress = self.stress(loading);
+        let middles = |c: usize| (0..3).flat_map(move |sub| (3..6).map(move |node| at(sub, node, c)));
+        std::array::from_fn(|c| middles(c).map(|k| stress[k]).sum::<f64>() / 9.0)
+    }
+
     pub(super) fn residuals<const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N>,

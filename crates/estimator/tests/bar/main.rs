@@ -3,6 +3,8 @@
 // Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../common/mod.rs"]
+mod common;
 mod hand;
 mod strip;
 
@@ -15,7 +17,7 @@ use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Recorder, TrueError, bar_impact_error};
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options, Request};
 use percute_exact::BarImpact;
 
 /// The bar of §7.1.4 of the paper; `fraction` is the gap in steps of flight. The run ends half a
@@ -51,12 +53,12 @@ fn grid(bar: &Bar) -> TimeGrid {
 }
 
 /// The estimate of the program.
-fn estimate(bar: &Bar, options: Options) -> Estimate {
-    percute_estimator::run(&problem(bar), &grid(bar), options, &mut Unobserved).unwrap().1
+fn estimate(bar: &Bar, options: Options) -> Estimate<1> {
+    percute_estimator::run(&problem(bar), &grid(bar), options, &Request::default(), &mut Unobserved).unwrap().1
 }
 
 /// Estimates with both readings, and the true error \[60\].
-fn effectivity(bar: &Bar) -> ([Estimate; 2], TrueError) {
+fn effectivity(bar: &Bar) -> ([Estimate<1>; 2], TrueError) {
     let (problem, times) = (problem(bar), grid(bar));
     let estimator = |contact_force| {
         let options = Options { contact_force, ..Options::default() };

@@ -1,10 +1,11 @@
 //! A strip of triangles with ν = 0 against the bar.
 
+use crate::common::bar_in_mode;
 use percute_core::dynamics::simulate;
 use percute_core::history::History;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -24,15 +25,7 @@ const MODE: BarMode = BarMode {
 };
 
 fn bar(elements: usize) -> BarProblem {
-    let mesh = BarMesh::uniform_bar(MODE.length, elements).unwrap();
-    let displacement = mesh.points().iter().map(|p| [MODE.displacement(p[0], 0.0)]).collect();
-    let mut builder = Problem::builder(mesh)
-        .material(Elastic::bar(MODE.young, MODE.density, MODE.section).unwrap())
-        .initial_displacement(Initial::Nodal(displacement));
-    for group in ["start", "end"] {
-        builder = builder.support(Support { group: group.into(), components: [true], velocity: None });
-    }
-    builder.build().unwrap()
+    bar_in_mode(&MODE, elements, &["start", "end"])
 }
 
 /// The same bar as a strip of `rows` rows of cells of height hy = aspect·hx.
@@ -53,7 +46,7 @@ fn run<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     elements: usize,
     acceleration: Acceleration,
-) -> (History<D>, Estimate) {
+) -> (History<D>, Estimate<D>) {
     let times = TimeGrid::with_step(4.0 * PI / MODE.angular_frequency(), 0.05 * MODE.length / elements as f64 / 2.0);
     let times = times.unwrap();
     let estimator = Estimator::new(problem, &times, Options { acceleration, ..Options::default() }).unwrap();
@@ -63,7 +56,7 @@ fn run<const D: usize, const N: usize>(
 }
 
 /// What the strip has of Σe_E² in its inner rows and columns, scaled to its whole section.
-fn inner(estimate: &Estimate, elements: usize, rows: usize) -> f64 {
+fn inner(estimate: &Estimate<2>, elements: usize, rows: usize) -> f64 {
     let row = |j: usize| &estimate.by_element[2 * j * elements..2 * (j + 1) * elements];
     let sum: f64 = (1..rows - 1).flat_map(|j| &row(j)[4..2 * elements - 4]).map(|e| e * e).sum();
     sum * rows as f64 / (rows - 2) as f64

@@ -1,11 +1,13 @@
-//! Impacts that several tests share.
+//! Problems that several tests share.
 
 #![allow(dead_code)]
 
+use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::obstacle::Plane;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_exact::BarMode;
 
 /// The block of §7.2 of the paper: aluminium, 50 × 40 mm, μ = 0.2, plane stress, v = (400, −400)
 /// m/s, at `gap` (m) from a plane below it.
@@ -16,6 +18,19 @@ pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
         .obstacle(Plane::new([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
+}
+
+/// A bar of equal elements let go from its mode, with these ends fixed.
+pub(crate) fn bar_in_mode(mode: &BarMode, elements: usize, fixed: &[&str]) -> BarProblem {
+    let mesh = BarMesh::uniform_bar(mode.length, elements).unwrap();
+    let displacement = mesh.points().iter().map(|p| [mode.displacement(p[0], 0.0)]).collect();
+    let mut builder = Problem::builder(mesh)
+        .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
+        .initial_displacement(Initial::Nodal(displacement));
+    for group in fixed {
+        builder = builder.support(Support { group: group.to_string(), components: [true], velocity: None });
+    }
+    builder.build().unwrap()
 }
 
 /// The four meshes of the paper's table 1.

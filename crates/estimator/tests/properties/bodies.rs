@@ -3,9 +3,9 @@
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::{Mesh, TriangleMesh};
+use percute_core::mesh::{BarMesh, Mesh, TriangleMesh};
 use percute_core::obstacle::Plane;
-use percute_core::problem::{Builder, Initial, Problem, TriangleProblem};
+use percute_core::problem::{BarProblem, Builder, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use std::f64::consts::TAU;
 
@@ -25,6 +25,17 @@ pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f6
 /// A body of aluminium with a velocity and a plane.
 pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Plane<2>) -> Builder<2, 3> {
     TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
+}
+
+/// A bar of aluminium that a body force presses on a plane at its start again and again.
+pub(crate) fn bouncing_bar(mesh: BarMesh) -> BarProblem {
+    Problem::builder(mesh)
+        .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
+        .initial_velocity(Initial::Uniform([-20.0]))
+        .body_force(gravity([-2e6]))
+        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .build()
+        .unwrap()
 }
 
 /// `count` equal steps of a fraction of the critical one.

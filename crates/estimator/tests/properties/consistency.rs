@@ -21,7 +21,7 @@ fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
     [fast, tilted, falling].into_iter().zip(times).collect()
 }
 
-fn estimates() -> Vec<(Options, Estimate)> {
+fn estimates() -> Vec<(Options, Estimate<2>)> {
     let mut all = Vec::new();
     for (problem, times) in runs() {
         let history = history(&problem, &times);

@@ -1,19 +1,17 @@
 //! The same bits for all numbers of threads and window sizes, beside the run and from a history.
 
-use crate::bodies::{aluminium, gravity, plane_below, steps, thrown};
-use crate::estimating::{estimate, history, reactions};
-use percute_core::material::Elastic;
+use crate::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
+use crate::estimating::{estimate, estimate_with_maps, history, reactions};
 use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
-use percute_core::problem::{Initial, Problem};
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, Given, Options, run};
+use percute_estimator::{AdmissibleFields, ContactForce, ElementMap, Estimate, Given, Options, Request, run};
 use percute_testkit::{disc, random_rectangle};
 
-/// Every number of an estimate.
-fn bits(estimate: &Estimate) -> Vec<u64> {
-    let Estimate { error, time_of_sup, parts, over_time, by_element, residuals, kept_impulse, given, steps, end } =
+/// Every number of an estimate; those of its maps come last.
+fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
+    let Estimate { error, time_of_sup, parts, over_time, by_element, maps, residuals, kept_impulse, given, steps, end } =
         estimate;
     assert_eq!(*given, Given::default());
     let mut numbers = vec![
@@ -36,6 +34,15 @@ fn bits(estimate: &Estimate) -> Vec<u64> {
     numbers.extend(over_time.iter().flat_map(sample));
     numbers.extend(by_element);
     numbers.extend(residuals.entries().map(|entry| entry.1));
+    for ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } in maps {
+        numbers.extend([*step as f64, *time]);
+        [kinetic, elastic, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
+        let Some(AdmissibleFields { displacement, velocity, stress, compatible_stress, acceleration }) = fields else {
+            continue;
+        };
+        [displacement, velocity, acceleration].into_iter().for_each(|field| numbers.extend(field.iter().flatten()));
+        [stress, compatible_stress].into_iter().for_each(|field| numbers.extend(field.iter().flatten().flatten()));
+    }
     numbers.into_iter().map(f64::to_bits).collect()
 }
 
@@ -43,20 +50,25 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
     let history = history(problem, times);
     assert!(reactions(&history) > 3, "{what}");
     // Energies and works that the steps tell are those of the run.
-    let (simulation, _) = run(problem, times, Options::default(), &mut Unobserved).unwrap();
-    let (told, _) = percute_estimator::estimate(problem, &history, Options::default(), &mut Unobserved).unwrap();
+    let none = Request::default();
+    let (simulation, _) = run(problem, times, Options::default(), &none, &mut Unobserved).unwrap();
+    let (told, _) = percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Unobserved).unwrap();
     assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
     for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
         for every in [1, 3] {
             let options =
                 Options { contact_force, every, window: Some(1_000_000), threads: Some(1), ..Options::default() };
-            let expected = bits(&estimate(problem, &history, options));
+            // Maps at the start and the end, and at what lies between on one side of a window or the other.
+            let request = Request { fields: true, ..Request::evenly(times, 9, every) };
+            let expected = bits(&estimate_with_maps(problem, &history, options, &request));
+            let alone = bits(&estimate(problem, &history, options));
+            assert!(alone == expected[..alone.len()] && alone.len() < expected.len(), "{what}: maps change the rest");
             for threads in [1, 2, 3, 8] {
                 for window in [Some(1), Some(7), Some(64), Some(1_000_000), None] {
                     let options = Options { threads: Some(threads), window, ..options };
-                    let replayed = bits(&estimate(problem, &history, options));
+                    let replayed = bits(&estimate_with_maps(problem, &history, options, &request));
                     assert!(replayed == expected, "{what}, replayed: {options:?}");
-                    let (_, beside) = run(problem, times, options, &mut Unobserved).unwrap();
+                    let (_, beside) = run(problem, times, options, &request, &mut Unobserved).unwrap();
                     assert!(bits(&beside) == expected, "{what}, beside the run: {options:?}");
                 }
             }
@@ -66,13 +78,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
 
 #[test]
 fn bar() {
-    let problem = Problem::builder(BarMesh::uniform_bar(0.1, 40).unwrap())
-        .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
-        .initial_velocity(Initial::Uniform([-20.0]))
-        .body_force(gravity([-2e6]))
-        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
-        .build()
-        .unwrap();
+    let problem = bouncing_bar(BarMesh::uniform_bar(0.1, 40).unwrap());
     check("bar", &problem, &steps(&problem, 0.9, 200));
 }
 
@@ -90,7 +96,6 @@ fn block() {
 fn chattering_disc() {
     let mesh = disc(0.02, 0.005).unwrap();
     let plane = plane_below(&mesh, 0.1, 1e-4, 0.3, None);
-    let builder = Problem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform([10.0, -100.0]));
-    let problem = builder.body_force(gravity([0.0, -1e7])).obstacle(plane).build().unwrap();
+    let problem = thrown(mesh, [10.0, -100.0], plane).body_force(gravity([0.0, -1e7])).build().unwrap();
     check("disc", &problem, &steps(&problem, 0.4, 130));
 }

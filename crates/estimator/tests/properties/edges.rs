@@ -9,7 +9,7 @@ use percute_core::observer::Progress;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Options, run};
+use percute_estimator::{Estimate, Options, Request, run};
 use percute_testkit::{random_rectangle, rotated};
 use std::ops::ControlFlow;
 
@@ -135,7 +135,7 @@ fn an_early_end_of_a_driven_body() {
             let early = estimate(&problem, &beginning(&whole, &long, count + 1), options);
             let shorter = estimate(&problem, &beginning(&whole, &short, count + 1), options);
             assert_admissible(&format!("{count} steps"), &early);
-            let before = |e: &Estimate| {
+            let before = |e: &Estimate<2>| {
                 let start = long.instants()[count - 1];
                 e.over_time.iter().filter(|s| s.time < start).copied().collect::<Vec<_>>()
             };
@@ -151,7 +151,7 @@ fn a_run_that_is_stopped() {
     let problem = impact();
     let times = steps(&problem, 0.9, 40);
     let mut stop = |p: Progress| if p.done >= 17 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let (simulation, stopped) = run(&problem, &times, Options::default(), &mut stop).unwrap();
+    let (simulation, stopped) = run(&problem, &times, Options::default(), &Request::default(), &mut stop).unwrap();
     assert!(simulation.interrupted);
     assert_eq!((stopped.steps, stopped.end), (17, times.instants()[17]));
     let whole = history(&problem, &times);

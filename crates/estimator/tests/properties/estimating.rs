@@ -5,7 +5,7 @@ use percute_core::history::{History, StepSource};
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options, Request};
 
 /// Both readings of the contact force under each of the three Γ_DA.
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
@@ -32,15 +32,25 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     history: &History<D>,
     options: Options,
-) -> Estimate {
-    let mut estimator = Estimator::new(problem, history.times(), options).unwrap();
+) -> Estimate<D> {
+    estimate_with_maps(problem, history, options, &Request::default())
+}
+
+/// The same with maps.
+pub(crate) fn estimate_with_maps<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    history: &History<D>,
+    options: Options,
+    request: &Request,
+) -> Estimate<D> {
+    let mut estimator = Estimator::new(problem, history.times(), options).unwrap().keeping(request).unwrap();
     history.replay(&mut estimator).unwrap();
     estimator.finish().unwrap()
 }
 
 /// Every residual is a number and at most 1e-10, the bound of the method: rounding of the longest
 /// sums here leaves some 1e-13.
-pub(crate) fn assert_admissible(what: &str, estimate: &Estimate) {
+pub(crate) fn assert_admissible<const D: usize>(what: &str, estimate: &Estimate<D>) {
     for (name, value) in estimate.residuals.entries() {
         assert!(value <= 1e-10, "{what}: the residual of {name} is {value:e}");
     }

@@ -4,12 +4,9 @@
 //! time and sin(ω_hΔt/2) = ω_0Δt/2 with central differences. So everything follows in closed form.
 //! E_0 is the energy of the mode, x = ωΔt.
 
+use crate::common::bar_in_mode;
 use percute_core::dynamics::simulate;
-use percute_core::load::Support;
-use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
 use percute_estimator::{Acceleration, Estimate, Estimator, Options};
@@ -29,19 +26,8 @@ const MODE: BarMode = BarMode {
 };
 const PERIODS: f64 = 3.0;
 
-fn problem(elements: usize) -> BarProblem {
-    let mesh = BarMesh::uniform_bar(MODE.length, elements).unwrap();
-    let displacement = mesh.points().iter().map(|p| [MODE.displacement(p[0], 0.0)]).collect();
-    Problem::builder(mesh)
-        .material(Elastic::bar(MODE.young, MODE.density, MODE.section).unwrap())
-        .initial_displacement(Initial::Nodal(displacement))
-        .support(Support { group: "start".into(), components: [true], velocity: None })
-        .build()
-        .unwrap()
-}
-
-fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>, Estimate, f64) {
-    let problem = problem(elements);
+fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>, Estimate<1>, f64) {
+    let problem = bar_in_mode(&MODE, elements, &["start"]);
     let end = PERIODS * 2.0 * PI / MODE.angular_frequency();
     // Δt_c = h/c on a uniform bar, eq. [33].
     let times = TimeGrid::with_step(end, courant * MODE.length / elements as f64 / 2.0).unwrap();

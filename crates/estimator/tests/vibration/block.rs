@@ -79,7 +79,7 @@ fn square(problem: &TriangleProblem, mode: &BlockMode, t: f64, u: &[[f64; 2]], v
 }
 
 /// Motion and estimates, one for each Γ_DA, over one period at a Courant number.
-fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>, [Estimate; 3]) {
+fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>, [Estimate<2>; 3]) {
     let step = courant * critical_time_step(problem);
     let times = TimeGrid::with_step(2.0 * PI / mode.angular_frequency(), step).unwrap();
     let estimator =

@@ -6,3 +6,6 @@
 mod bar;
 mod block;
 mod nothing;
+
+#[path = "../common/mod.rs"]
+mod common;

@@ -7,7 +7,7 @@ use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Options};
+use percute_estimator::{Acceleration, ContactForce, Options, Request};
 
 /// Estimates with every reading and option over 40 steps; e_sup (J^½) is at most 1e-12 of the root
 /// of an energy (J) of the motion: rounding of 1e-16, times the some hundred operations on a field
@@ -18,7 +18,8 @@ fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, ener
     for acceleration in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
         for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
             let options = Options { acceleration, contact_force, ..Options::default() };
-            let (_, estimate) = percute_estimator::run(problem, &times, options, &mut Unobserved).unwrap();
+            let (_, estimate) =
+                percute_estimator::run(problem, &times, options, &Request::default(), &mut Unobserved).unwrap();
             let error = estimate.error.sup / energy.sqrt();
             assert!(error < 1e-12, "{acceleration}, {contact_force}: {error}");
         }

@@ -163,7 +163,9 @@ fn chatter_meets_windows_that_penetrate() {
         let end = 250.0 * courant * critical_time_step(&problem);
         let times = TimeGrid::uniform(end, 250).unwrap();
         let before = SHAPED.get();
-        let (_, estimate) = crate::run(&problem, &times, crate::Options::default(), &mut Unobserved).unwrap();
+        let (_, estimate) =
+            crate::run(&problem, &times, crate::Options::default(), &crate::Request::default(), &mut Unobserved)
+                .unwrap();
         assert!(SHAPED.get() > before, "case {k}: no window was solved again");
         // What the method allows.
         assert!(estimate.residuals.penetration_between_knots <= 1e-12, "case {k}");

@@ -3,15 +3,22 @@
 use super::*;
 use crate::kinematic::NormalStep;
 use crate::pipeline::fixture::{SHOWS, impact};
+use crate::request::Request;
 
 /// Runs one element at contact through a single step at whose end its nodes touch, with the normal
 /// motion in `track` for all of them.
 fn checked(track: &ContactTrack) -> Residuals {
-    let (problem, _) = impact();
+    let (problem, times) = impact();
     let equilibration = Equilibration::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
-    let context =
-        Context { problem: &problem, equilibration: &equilibration, choice: Acceleration::Closest, tracks: &tracks };
+    let context = Context {
+        problem: &problem,
+        times: &times,
+        equilibration: &equilibration,
+        choice: Acceleration::Closest,
+        tracks: &tracks,
+        maps: &Maps::new(Request::default(), &problem).unwrap(),
+    };
     let mut near = near_elements(&problem).remove(0);
     let element = &equilibration.elements[near.element.index()];
     let knot = Knot {

@@ -3,11 +3,12 @@
 use super::*;
 use crate::options::ContactForce;
 use crate::pipeline::fixture::{SHOWS, impact, prepared};
+use crate::request::Request;
 
 /// The levels of a run with σ_h and fluxes, nothing changed yet.
 fn window<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> (Window<'p, 2, 3>, Preparation<'p, 2, 3>) {
     let mut preparation = prepared(problem, times, ContactForce::Sharp);
-    let mut window = Window::new(problem, times, &Options::default());
+    let mut window = Window::new(problem, times, &Options::default(), Maps::new(Request::default(), problem).unwrap());
     while let Some(level) = preparation.next_ready(true) {
         window.levels.push(level);
     }
@@ -20,9 +21,11 @@ fn residuals(window: &mut Window<'_, 2, 3>, preparation: &Preparation<'_, 2, 3>)
     window.far_elements(0);
     let context = Context {
         problem: window.problem,
+        times: window.times,
         equilibration: &window.equilibration,
         choice: window.choice,
         tracks: preparation.tracks(),
+        maps: &window.maps,
     };
     window.near.iter_mut().for_each(|near| near.advance(&context, &window.levels));
     let mut residuals = window.residuals;

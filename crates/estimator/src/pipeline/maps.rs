@@ -1,0 +1,141 @@
+//! The maps that were requested, as they fill: nodal motion and element fields when their level is
+//! worked on, contributions as elements get there, the motion at contact when the run is over.
+
+use super::BLOCK;
+use crate::element::Element;
+use crate::kinematic::{ContactTrack, settle};
+use crate::level::Level;
+use crate::map::{AdmissibleFields, ElementMap};
+use crate::measure::{ElementError, ElementMeasure};
+use crate::options::Acceleration;
+use crate::request::{Request, RequestError};
+use crate::traction::Equilibration;
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use rayon::prelude::*;
+
+/// What one element contributes at one requested step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contribution {
+    pub(crate) element: ElementId,
+    pub(crate) step: usize,
+    pub(crate) error: ElementError,
+    /// The contact part (J).
+    pub(crate) contact: f64,
+    /// ∫η_E dt so far (J s).
+    pub(crate) accumulated: f64,
+}
+
+/// The request, and the maps of the steps that have come.
+#[derive(Debug)]
+pub(crate) struct Maps<const D: usize> {
+    request: Request,
+    made: Vec<ElementMap<D>>,
+}
+
+impl<const D: usize> Maps<D> {
+    /// Makes sure that memory can hold what is requested.
+    pub(crate) fn new<const N: usize>(request: Request, problem: &Problem<D, N>) -> Result<Self, RequestError> {
+        let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
+        let fields = if request.fields { 2 * D * nodes + (2 * D * D + D) * elements } else { 0 };
+        let steps = request.steps.len();
+        let bytes = (4 * elements + fields).saturating_mul(size_of::<f64>()).saturating_mul(steps);
+        match Vec::<u8>::new().try_reserve_exact(bytes) {
+            Ok(()) => Ok(Self { request, made: Vec::new() }),
+            Err(_) => Err(RequestError::Memory { bytes, steps }),
+        }
+    }
+
+    /// Whether a step is among those requested.
+    #[inline]
+    pub(crate) fn want(&self, step: usize) -> bool {
+        self.request.steps.binary_search(&step).is_ok()
+    }
+
+    /// Begins the maps of these levels, of which the motion and the tractions are known.
+    pub(crate) fn begin<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        instants: &[f64],
+        equilibration: &Equilibration<'_, D, N>,
+        choice: Acceleration,
+        levels: &[Level<D>],
+    ) {
+        let zeros = vec![0.0; equilibration.elements.len()];
+        for level in levels {
+            if !self.want(level.index) {
+                continue;
+            }
+            let fields = self.request.fields.then(|| fields(problem, equilibration, choice, level));
+            self.made.push(ElementMap {
+                step: level.index,
+                time: instants[level.index],
+                kinetic: zeros.clone(),
+                elastic: zeros.clone(),
+                contact: zeros.clone(),
+                accumulated: zeros.clone(),
+                fields,
+            });
+        }
+    }
+
+    /// Puts what elements contribute in its place.
+    pub(crate) fn put<'c>(&mut self, contributions: impl IntoIterator<Item = &'c Contribution>) {
+        for contribution in contributions {
+            let e = contribution.element.index();
+            if let Ok(k) = self.made.binary_search_by_key(&contribution.step, |map| map.step) {
+                let map = &mut self.made[k];
+                (map.kinetic[e], map.elastic[e]) = (contribution.error.kinetic, contribution.error.elastic);
+                (map.contact[e], map.accumulated[e]) = (contribution.contact, contribution.accumulated);
+            }
+        }
+    }
+
+    /// The maps, once the normal motion of all contact nodes is known.
+    pub(crate) fn finish<const N: usize>(
+        mut self,
+        problem: &Problem<D, N>,
+        elements: &[Element<D, N>],
+        tracks: &[ContactTrack],
+    ) -> Vec<ElementMap<D>> {
+        for map in &mut self.made {
+            let Some(fields) = &mut map.fields else { continue };
+            for (contact, track) in problem.surface().nodes().iter().zip(tracks) {
+                let (i, plane) = (contact.node.index(), &problem.obstacles()[contact.obstacle]);
+                settle(&mut fields.displacement[i], &mut fields.velocity[i], plane, track, 2 * map.step);
+            }
+            let displacement = &fields.displacement;
+            let compatible = |(e, element): (usize, &Element<D, N>)| {
+                problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(displacement)))
+            };
+            fields.compatible_stress = elements.iter().enumerate().map(compatible).collect();
+        }
+        self.made
+    }
+}
+
+/// The motion of all nodes, normal components at contact still those of the simulation, and the
+/// means of σ_DA and Γ_DA/ρ.
+fn fields<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    equilibration: &Equilibration<'_, D, N>,
+    choice: Acceleration,
+    level: &Level<D>,
+) -> AdmissibleFields<D> {
+    let elements = &equilibration.elements;
+    let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];
+    means.par_chunks_mut(BLOCK).zip(elements.par_chunks(BLOCK)).enumerate().for_each(|(block, (means, elements))| {
+        for (k, (mean, element)) in means.iter_mut().zip(elements).enumerate() {
+            let measure = ElementMeasure::new(problem, element, ElementId::new(block * BLOCK + k), choice);
+            *mean = measure.means(equilibration, level);
+        }
+    });
+    let (stress, acceleration) = means.into_iter().unzip();
+    AdmissibleFields {
+        displacement: level.knot.displacement.clone(),
+        velocity: level.knot.velocity.clone(),
+        stress,
+        compatible_stress: Vec::new(),
+        acceleration,
+    }
+}

@@ -1,0 +1,48 @@
+//! How much of the simulation's contact impulse the admissible force keeps.
+
+use crate::contact_force::{self, Interval};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+
+/// Normal impulses so far (Ns).
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Impulse {
+    /// Of the admissible force.
+    pub(crate) kept: f64,
+    /// Of the simulation.
+    pub(crate) whole: f64,
+}
+
+impl Impulse {
+    /// Adds the step from t_n on: the admissible force is linear over it, the simulation has h_n R_n.
+    pub(super) fn add<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        n: usize,
+        interval: &Interval<D>,
+        reaction: &[[f64; D]],
+    ) {
+        let [start, end] =
+            [&interval.start, &interval.end].map(|d| normal_sum(problem, &contact_force::nodal_forces(problem, d)));
+        self.kept += 0.5 * times.step(n) * (start + end);
+        self.whole += times.velocity_step(n) * normal_sum(problem, reaction);
+    }
+
+    /// Adds the simulation's impulse over the last half step, ½Δt_{N−1} R_N.
+    pub(super) fn add_last<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        last: usize,
+        reaction: &[[f64; D]],
+    ) {
+        self.whole += 0.5 * times.step(last - 1) * normal_sum(problem, reaction);
+    }
+}
+
+/// Sum of the normal components of forces on the nodes of the contact surface (N).
+fn normal_sum<const D: usize, const N: usize>(problem: &Problem<D, N>, forces: &[[f64; D]]) -> f64 {
+    let surface = problem.surface().nodes().iter().zip(forces);
+    surface.map(|(contact, f)| problem.obstacles()[contact.obstacle].split(f).0).sum()
+}

@@ -1,0 +1,43 @@
+//! Whether u_CA follows the supports.
+
+use crate::kinematic::Knot;
+use crate::residual::worse;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+
+/// The exact displacement of the prescribed components, carried along the steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SupportCheck {
+    /// One for each prescribed component (m).
+    pub(super) exact: Vec<f64>,
+    /// The longest way of any (m).
+    longest: f64,
+}
+
+impl SupportCheck {
+    /// Goes on to t_n, and returns the largest relative miss of u_CA there.
+    pub(super) fn advance<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        n: usize,
+        knot: &Knot<D>,
+    ) -> f64 {
+        let mut largest = 0.0;
+        for (k, p) in problem.prescribed().iter().enumerate() {
+            let start = problem.initial_displacement()[p.node.index()][p.component];
+            if n == 0 {
+                self.exact.push(start);
+                continue;
+            }
+            let velocity = |m: usize| problem.prescribed_velocity(p, times.instants()[m]);
+            let exact = &mut self.exact[k];
+            *exact += 0.5 * times.step(n - 1) * (velocity(n - 1) + velocity(n));
+            self.longest = self.longest.max(exact.abs());
+            let scale = exact.abs().max(start.abs()).max(1e-12 * self.longest);
+            let miss = (knot.displacement[p.node.index()][p.component] - *exact).abs();
+            largest = worse(largest, if miss == 0.0 { 0.0 } else { miss / scale });
+        }
+        largest
+    }
+}
