@@ -1,10 +1,10 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
+use percute::case::CaseError;
 use percute_core::dynamics::SimulationError;
 use percute_core::mesh::MeshError;
 use percute_core::problem::{Cause, InputError};
 use percute_core::time::TimeError;
-use percute_estimator::reference::ReferenceError;
 use percute_estimator::{EstimateError, RunError};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -104,12 +104,12 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
 pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Simulation(error) => simulation(py, error),
-        RunError::Estimate(EstimateError::Zero { .. }) => input(py, &error.to_string()),
+        RunError::Estimate(EstimateError::Zero { .. } | EstimateError::Request(_)) => input(py, &error.to_string()),
         _ => exception(py, "EstimateError", &error.to_string()),
     }
 }
 
-/// A true error that could not be computed.
-pub(crate) fn reference(py: Python<'_>, error: &ReferenceError) -> PyErr {
+/// A case file that is wrong.
+pub(crate) fn case(py: Python<'_>, error: &CaseError) -> PyErr {
     input(py, &error.to_string())
 }

@@ -2,8 +2,11 @@
 //! `python/percute`.
 
 mod any;
+mod case;
 mod door;
 mod errors;
+mod estimate;
+mod exact;
 mod history;
 mod mesh;
 mod problem;
@@ -19,7 +22,13 @@ mod _percute {
     use std::ffi::OsString;
 
     #[pymodule_export]
+    use super::case::CaseData;
+    #[pymodule_export]
     use super::door::ProgressNow;
+    #[pymodule_export]
+    use super::estimate::{EstimateData, estimate};
+    #[pymodule_export]
+    use super::exact::BarImpactData;
     #[pymodule_export]
     use super::history::{HistoryData, simulate};
     #[pymodule_export]
