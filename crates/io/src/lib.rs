@@ -1,5 +1,21 @@
-//! Files of histories and estimates.
+//! Files of histories and estimates: temporal VTKHDF, which ParaView opens as it is and h5py reads and
+//! writes. The layouts are described in `docs/history.md` and `docs/estimate.md`.
+//!
+//! A history file holds the mesh, the steps, and the statement of the problem as text in the language of
+//! the case files; this crate stores that text and gives it back, but does not read it.
 
+mod create;
+mod error;
+pub mod history;
+mod kind;
 mod library;
+mod mesh;
+mod names;
+mod read;
+mod write;
 
+pub use create::Overwrite;
+pub use error::{FileCause, FileError};
+pub use kind::{Kind, kind};
 pub use library::hdf5_version;
+pub use write::{Case, Provenance};

@@ -1,0 +1,139 @@
+//! New files: made whole under another name, with their room reserved, and only then put in place.
+
+use crate::error::FileCause;
+use crate::library::{alone, detail};
+use hdf5::file::LibraryVersion;
+use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
+use rustix::io::Errno;
+use std::fs::{File, Permissions, TryLockError};
+use std::io;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// What to do with a file that is there already.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overwrite {
+    /// Nothing is lost: an error.
+    #[default]
+    Refuse,
+    /// The new file takes its place, once it can hold all that will come. Whoever reads the old one
+    /// keeps it; one that is being written is not replaced.
+    Replace,
+}
+
+/// A file that has no name yet.
+pub(crate) struct Unnamed {
+    temporary: NamedTempFile,
+    path: PathBuf,
+    /// Holds the lock of the file that is to be replaced.
+    old: Option<File>,
+    overwrite: Overwrite,
+}
+
+impl Unnamed {
+    /// Makes a file with HDF5; `fill` makes what it holds, and `bytes` is how large it will be.
+    pub(crate) fn new<T>(
+        path: &Path,
+        overwrite: Overwrite,
+        bytes: u64,
+        fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>,
+    ) -> Result<(Self, T), FileCause> {
+        let (path, old) = destination(path, overwrite)?;
+        let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+        let temporary = tempfile::Builder::new()
+            .prefix(".percute-")
+            .permissions(Permissions::from_mode(0o666))
+            .tempfile_in(folder)
+            .map_err(|error| no_room(error, folder, bytes))?;
+        // A full disk shows here in most cases, before anything is written.
+        if let Some(free) = free(folder).filter(|free| *free < bytes) {
+            return Err(FileCause::NoSpace { needed: bytes, free });
+        }
+        let made = {
+            let _alone = alone();
+            hdf5::File::with_options()
+                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110))
+                .create(temporary.path())
+                .map_err(|error| refused(&error))
+                .and_then(|file| {
+                    let made = fill(&file)?;
+                    file.close().map_err(|error| refused(&error))?;
+                    Ok(made)
+                })
+        };
+        let made = made.map_err(|cause| match free(folder) {
+            Some(free) if free < bytes => FileCause::NoSpace { needed: bytes, free },
+            _ => cause,
+        })?;
+        let length = temporary.as_file().metadata().map_err(|source| FileCause::Create { source })?.len();
+        match fallocate(temporary.as_file(), FallocateFlags::empty(), 0, length.max(1)) {
+            // Not all file systems can reserve; on those a full disk shows when it is full.
+            Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => {}
+            Err(error) => return Err(no_room(error.into(), folder, bytes.max(length))),
+        }
+        Ok((Self { temporary, path, old, overwrite }, made))
+    }
+
+    /// The file, to be filled further.
+    pub(crate) fn file(&self) -> &File {
+        self.temporary.as_file()
+    }
+
+    /// Where it will be.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Gives the file its name. It stays locked against writers as long as it is open.
+    pub(crate) fn put(self) -> Result<File, FileCause> {
+        // File systems without locks go without.
+        let _ = self.temporary.as_file().try_lock_shared();
+        let put = match self.overwrite {
+            Overwrite::Refuse => self.temporary.persist_noclobber(&self.path),
+            Overwrite::Replace => self.temporary.persist(&self.path),
+        };
+        drop(self.old);
+        put.map_err(|refused| match refused.error {
+            error if error.kind() == io::ErrorKind::AlreadyExists => FileCause::Exists,
+            source => FileCause::Create { source },
+        })
+    }
+}
+
+/// Where the file goes, and the lock of the one that it replaces.
+fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<File>), FileCause> {
+    let Ok(found) = path.symlink_metadata() else { return Ok((path.to_path_buf(), None)) };
+    if overwrite == Overwrite::Refuse {
+        return Err(FileCause::Exists);
+    }
+    // Through a link, its target is what is replaced.
+    let path = if found.is_symlink() { path.canonicalize() } else { Ok(path.to_path_buf()) };
+    let path = path.map_err(|source| FileCause::Create { source })?;
+    if !path.is_file() {
+        return Err(FileCause::NotAFile);
+    }
+    let old = File::open(&path).map_err(|source| FileCause::Create { source })?;
+    match old.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(FileCause::InUse),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok((path, Some(old))),
+    }
+}
+
+/// Bytes free for us in a folder.
+fn free(folder: &Path) -> Option<u64> {
+    let status = fstatvfs(File::open(folder).ok()?).ok()?;
+    status.f_bavail.checked_mul(status.f_frsize)
+}
+
+fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {
+    if source.kind() == io::ErrorKind::StorageFull || source.kind() == io::ErrorKind::QuotaExceeded {
+        return FileCause::NoSpace { needed, free: free(folder).unwrap_or(0) };
+    }
+    FileCause::Create { source }
+}
+
+/// A library error while making the file.
+pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
+    FileCause::Create { source: io::Error::other(detail(error)) }
+}

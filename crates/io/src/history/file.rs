@@ -1,0 +1,298 @@
+//! An open history file.
+
+use super::source::HistorySource;
+use crate::error::{FileCause, FileError};
+use crate::mesh::vectors;
+use crate::read::{Data, Opened, reading};
+use crate::write::{Case, Provenance};
+use percute_core::mesh::Mesh;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A history file of either dimension.
+#[derive(Clone, Debug)]
+pub enum AnyHistoryFile {
+    /// On a mesh of bars.
+    Bar(HistoryFile<1, 2>),
+    /// On a mesh of triangles.
+    Plane(HistoryFile<2, 3>),
+}
+
+impl AnyHistoryFile {
+    /// Number of whole instants in the file.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Bar(file) => file.count(),
+            Self::Plane(file) => file.count(),
+        }
+    }
+
+    /// Whether no more steps were to come.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        match self {
+            Self::Bar(file) => file.is_complete(),
+            Self::Plane(file) => file.is_complete(),
+        }
+    }
+}
+
+/// Device and number of a file: another one under the same name differs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Identity(u64, u64);
+
+impl Identity {
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        path.metadata().ok().map(|found| Self(found.dev(), found.ino()))
+    }
+}
+
+/// What was read when the file was opened.
+#[derive(Debug)]
+pub(super) struct Contents<const D: usize, const N: usize> {
+    pub(super) path: PathBuf,
+    pub(super) identity: Option<Identity>,
+    pub(super) bytes: u64,
+    pub(super) mesh: Mesh<D, N>,
+    pub(super) statement: String,
+    pub(super) case: Option<Case>,
+    pub(super) provenance: Provenance,
+    pub(super) initial_displacement: Vec<[f64; D]>,
+    pub(super) initial_velocity: Vec<[f64; D]>,
+    pub(super) times: TimeGrid,
+    pub(super) count: usize,
+    pub(super) complete: bool,
+    pub(super) contact_nodes: Vec<usize>,
+    pub(super) given: [bool; 2],
+}
+
+/// A history in a file. Steps are read when they are asked for; the file is open only meanwhile.
+#[derive(Clone, Debug)]
+pub struct HistoryFile<const D: usize, const N: usize> {
+    contents: Arc<Contents<D, N>>,
+}
+
+/// Where an array lies in the file, for who maps it into memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NativeArray {
+    /// `displacement`, `velocity`, `acceleration`, `reaction` (64-bit floating point) or `touching` (bytes).
+    pub name: &'static str,
+    /// Its shape: (instants, nodes, 3) for nodal fields, (instants, contact nodes, dimension) for reactions,
+    /// (instants, contact nodes) for touching.
+    pub shape: Vec<usize>,
+    /// Byte offset of its first number; `None` if it is not there in one piece, in this machine's types.
+    pub offset: Option<u64>,
+}
+
+impl<const D: usize, const N: usize> HistoryFile<D, N> {
+    pub(super) fn new(contents: Contents<D, N>) -> Self {
+        Self { contents: Arc::new(contents) }
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.contents.path
+    }
+
+    /// Its size when it was opened (bytes).
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.contents.bytes
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh<D, N> {
+        &self.contents.mesh
+    }
+
+    /// The problem in the language of the case files; mesh, initial fields and times are not in it.
+    #[must_use]
+    pub fn statement(&self) -> &str {
+        &self.contents.statement
+    }
+
+    /// The case file as it was given.
+    #[must_use]
+    pub fn case(&self) -> Option<&Case> {
+        self.contents.case.as_ref()
+    }
+
+    /// Who wrote it.
+    #[must_use]
+    pub fn provenance(&self) -> &Provenance {
+        &self.contents.provenance
+    }
+
+    /// u₀ at the nodes (m): step 0.
+    #[must_use]
+    pub fn initial_displacement(&self) -> &[[f64; D]] {
+        &self.contents.initial_displacement
+    }
+
+    /// v₀ at the nodes (m/s).
+    #[must_use]
+    pub fn initial_velocity(&self) -> &[[f64; D]] {
+        &self.contents.initial_velocity
+    }
+
+    /// All instants that the run was to have (s).
+    #[must_use]
+    pub fn times(&self) -> &TimeGrid {
+        &self.contents.times
+    }
+
+    /// Number of whole instants that were in the file when it was opened, at most N + 1.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.contents.count
+    }
+
+    /// Whether no more steps were to come: the run has ended, or was stopped cleanly.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.contents.complete
+    }
+
+    /// Nodes of the rows of reactions and touching status.
+    #[must_use]
+    pub fn contact_nodes(&self) -> &[usize] {
+        &self.contents.contact_nodes
+    }
+
+    /// Whether the file brings velocities and accelerations of its own.
+    #[must_use]
+    pub fn given(&self) -> [bool; 2] {
+        self.contents.given
+    }
+
+    /// u_n at the nodes (m).
+    ///
+    /// # Errors
+    /// A step that is not in the file, or a file that cannot be read any more.
+    pub fn displacement(&self, n: usize) -> Result<Vec<[f64; D]>, FileError> {
+        Ok(self.nodal("displacement", n)?.unwrap_or_default())
+    }
+
+    /// v_n at the nodes (m/s), if the file brings it.
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::displacement`].
+    pub fn velocity(&self, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
+        self.nodal("velocity", n)
+    }
+
+    /// a_n at the nodes (m/s²), if the file brings it.
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::displacement`].
+    pub fn acceleration(&self, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
+        self.nodal("acceleration", n)
+    }
+
+    fn nodal(&self, name: &str, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
+        let nodes = self.mesh().node_count();
+        self.step(n, |opened| {
+            let Some(data) = opened.root().group("VTKHDF")?.group("PointData")?.optional(name)? else {
+                return Ok(None);
+            };
+            vectors::<D>(&data, data.float_rows(n * nodes..(n + 1) * nodes)?).map(Some)
+        })
+    }
+
+    /// R_n (N) on [`HistoryFile::contact_nodes`].
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::displacement`].
+    pub fn reaction(&self, n: usize) -> Result<Vec<[f64; D]>, FileError> {
+        self.contact(n, "reaction", |data| Ok(data.float_rows(n..n + 1)?.as_chunks::<D>().0.to_vec()))
+    }
+
+    /// Touching status of [`HistoryFile::contact_nodes`] at t_n.
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::displacement`].
+    pub fn touching(&self, n: usize) -> Result<Vec<bool>, FileError> {
+        self.contact(n, "touching", |data| data.flag_rows(n..n + 1))
+    }
+
+    fn contact<T>(
+        &self,
+        n: usize,
+        name: &str,
+        read: impl FnOnce(&Data<'_>) -> Result<Vec<T>, FileCause>,
+    ) -> Result<Vec<T>, FileError> {
+        if self.contact_nodes().is_empty() {
+            return self.step(n, |_| Ok(Vec::new()));
+        }
+        self.step(n, |opened| read(&opened.root().group("percute")?.group("contact")?.data(name)?))
+    }
+
+    fn step<T>(&self, n: usize, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
+        self.again(|opened| {
+            if n >= self.count() {
+                let detail = format!("step {n} is not in the file, which holds {} instants", self.count());
+                return Err(FileCause::Value { name: super::DISPLACEMENT.to_string(), detail });
+            }
+            read(opened)
+        })
+    }
+
+    /// Opens the file again; another one in its place is an error.
+    pub(super) fn again<T>(&self, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
+        let path = self.path();
+        reading(path, |opened| {
+            if Identity::of(path) != self.contents.identity {
+                return Err(FileCause::Replaced);
+            }
+            read(opened)
+        })
+    }
+
+    /// Where the arrays over time lie in the file.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more.
+    pub fn arrays(&self) -> Result<Vec<NativeArray>, FileError> {
+        let (instants, nodes) = (self.times().instants().len(), self.mesh().node_count());
+        self.again(|opened| {
+            let mut arrays = Vec::new();
+            let fields = opened.root().group("VTKHDF")?.group("PointData")?;
+            for name in ["displacement", "velocity", "acceleration"] {
+                if let Some(data) = fields.optional(name)? {
+                    arrays.push(NativeArray {
+                        name,
+                        shape: vec![instants, nodes, 3],
+                        offset: data.native_offset::<f64>()?,
+                    });
+                }
+            }
+            if let Some(contact) = opened.root().group("percute")?.optional_group("contact")? {
+                for name in ["reaction", "touching"] {
+                    let data = contact.data(name)?;
+                    let offset =
+                        if name == "reaction" { data.native_offset::<f64>()? } else { data.native_offset::<u8>()? };
+                    arrays.push(NativeArray { name, shape: data.shape, offset });
+                }
+            }
+            Ok(arrays)
+        })
+    }
+
+    /// The steps for a problem that was built from this file.
+    ///
+    /// # Errors
+    /// A problem on another mesh.
+    pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
+        let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
+        if given != needed {
+            return Err(FileCause::Problem { given, needed }.at(self.path()));
+        }
+        Ok(HistorySource::new(self.clone(), problem))
+    }
+}

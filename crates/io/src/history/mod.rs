@@ -1,0 +1,20 @@
+//! Histories in files.
+
+mod file;
+mod open;
+mod plan;
+mod recover;
+mod rows;
+mod source;
+mod steps;
+mod writer;
+
+pub use file::{AnyHistoryFile, HistoryFile, NativeArray};
+pub use open::open;
+pub use plan::Plan;
+pub use recover::{Recovered, recover};
+pub use source::HistorySource;
+pub use writer::Writer;
+
+/// Path of the displacements in a file.
+const DISPLACEMENT: &str = "VTKHDF/PointData/displacement";

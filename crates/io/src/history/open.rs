@@ -1,0 +1,184 @@
+//! Opens a history file: everything but the steps is read and checked.
+
+use super::DISPLACEMENT;
+use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
+use crate::error::{FileCause, FileError};
+use crate::kind::Kind;
+use crate::mesh::{read, vectors};
+use crate::read::{Data, Opened, Part, reading};
+use crate::write::{Case, Provenance};
+use percute_core::time::TimeGrid;
+use std::path::Path;
+
+/// Opens a history.
+///
+/// # Errors
+/// A file that is missing, locked, damaged, foreign, of another kind or of a later layout; a part that is
+/// missing, or of a wrong type, shape or value.
+pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
+    let path = path.as_ref();
+    let identity = Identity::of(path);
+    reading(path, |opened| {
+        opened.expect(Kind::History)?;
+        match opened.root().group("percute")?.integer_attribute("dimension")? {
+            1 => contents(path, identity, opened).map(AnyHistoryFile::Bar),
+            2 => contents(path, identity, opened).map(AnyHistoryFile::Plane),
+            other => {
+                let detail = format!("{other} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
+                Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
+            }
+        }
+    })
+}
+
+fn contents<const D: usize, const N: usize>(
+    path: &Path,
+    identity: Option<Identity>,
+    opened: &Opened,
+) -> Result<HistoryFile<D, N>, FileCause> {
+    let root = opened.root();
+    let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
+    let mesh = read::<D, N>(opened)?;
+    let nodes = mesh.node_count();
+    let times = times(&vtk)?;
+    let instants = times.instants().len();
+    let (count, complete) = written(&vtk, &ours, instants)?;
+    let mut initial = Vec::new();
+    let mut given = [false; 2];
+    for (at, name) in ["displacement", "velocity", "acceleration"].into_iter().enumerate() {
+        let Some(field) = field(&vtk, name, instants, nodes)? else { continue };
+        if at == 0 {
+            initial = vectors::<D>(&field, field.float_rows(0..nodes)?)?;
+            finite(DISPLACEMENT, &initial)?;
+        } else {
+            given[at - 1] = true;
+        }
+    }
+    if initial.is_empty() {
+        return Err(FileCause::MissingPart { name: DISPLACEMENT.to_string() });
+    }
+    let velocity = ours.data("initial_velocity")?;
+    velocity.expect(&[nodes, D], "(nodes, dimension)")?;
+    let initial_velocity = velocity.floats()?.as_chunks::<D>().0.to_vec();
+    finite(&velocity.name, &initial_velocity)?;
+    let contact_nodes = contact_nodes(&ours, instants, nodes, D)?;
+    let statement = ours.optional_text("problem")?;
+    let statement = statement.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
+    Ok(HistoryFile::new(Contents {
+        path: path.to_path_buf(),
+        identity,
+        bytes: opened.bytes(),
+        mesh,
+        statement,
+        case: case(&ours)?,
+        provenance: provenance(&ours)?,
+        initial_displacement: initial,
+        initial_velocity,
+        times,
+        count,
+        complete,
+        contact_nodes,
+        given,
+    }))
+}
+
+fn times(vtk: &Part<'_>) -> Result<TimeGrid, FileCause> {
+    let values = vtk.group("Steps")?.data("Values")?;
+    values.expect_dimensions(1, "(instants)")?;
+    Ok(TimeGrid::from_instants(values.floats()?)?)
+}
+
+/// Number of whole instants, and whether no more will come.
+fn written(vtk: &Part<'_>, ours: &Part<'_>, instants: usize) -> Result<(usize, bool), FileCause> {
+    let Some(counter) = ours.optional("steps_written")? else {
+        // A file that was written as a whole.
+        let steps = vtk.group("Steps")?;
+        if steps.has_attribute("NSteps") {
+            let told = steps.integer_attribute("NSteps")?;
+            if told != instants as i64 {
+                let detail = format!("{told} steps, but `VTKHDF/Steps/Values` has {instants}");
+                return Err(FileCause::Value { name: "VTKHDF/Steps.NSteps".to_string(), detail });
+            }
+        }
+        return Ok((instants, true));
+    };
+    let count = single(&counter)?;
+    let good = usize::try_from(count).ok().filter(|&count| count <= instants);
+    let Some(count) = good else {
+        let detail = format!("{count} instants, but the file has room for {instants}");
+        return Err(FileCause::Value { name: counter.name, detail });
+    };
+    let complete = match ours.optional("complete")? {
+        Some(flag) => single(&flag)? != 0,
+        None => true,
+    };
+    Ok((count, complete))
+}
+
+fn single(data: &Data<'_>) -> Result<i64, FileCause> {
+    match data.integers()?.as_slice() {
+        [value] => Ok(*value),
+        _ => Err(FileCause::Shape {
+            name: data.name.clone(),
+            given: data.shape.clone(),
+            needed: "a single number".to_string(),
+        }),
+    }
+}
+
+/// A field over time, if it is there: its shape, its type and where VTK looks for its steps.
+fn field<'f>(vtk: &Part<'f>, name: &str, instants: usize, nodes: usize) -> Result<Option<Data<'f>>, FileCause> {
+    let Some(field) = vtk.group("PointData")?.optional(name)? else { return Ok(None) };
+    let rows = instants.checked_mul(nodes).unwrap_or(usize::MAX);
+    field.expect(&[rows, 3], "(instants x nodes, 3), step after step")?;
+    field.check_floats()?;
+    let steps = vtk.group("Steps")?;
+    let offsets = steps.optional_group("PointDataOffsets")?.map(|group| group.optional(name)).transpose()?.flatten();
+    if let Some(offsets) = offsets {
+        offsets.expect(&[instants], "one for each instant")?;
+        let starts = offsets.integers()?;
+        if let Some(n) = (0..instants).find(|&n| starts[n] != (n * nodes) as i64) {
+            let detail = format!("entry {n} is {}; it must be {}", starts[n], n * nodes);
+            return Err(FileCause::Value { name: offsets.name, detail });
+        }
+    }
+    Ok(Some(field))
+}
+
+fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCause> {
+    let wrong = values.iter().enumerate().find_map(|(node, v)| Some((node, *v.iter().find(|x| !x.is_finite())?)));
+    match wrong {
+        Some((node, value)) => Err(FileCause::NotFinite { name: name.to_string(), step: 0, node, value }),
+        None => Ok(()),
+    }
+}
+
+/// Nodes of the rows of the contact data; none where there are no such data.
+fn contact_nodes(ours: &Part<'_>, instants: usize, nodes: usize, dimension: usize) -> Result<Vec<usize>, FileCause> {
+    let Some(contact) = ours.optional_group("contact")? else { return Ok(Vec::new()) };
+    let listed = contact.data("nodes")?;
+    listed.expect_dimensions(1, "(contact nodes)")?;
+    let of_rows = listed.indices(nodes, "nodes")?;
+    let mut sorted = of_rows.clone();
+    sorted.sort_unstable();
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        let detail = format!("node {} stands in it twice", pair[0]);
+        return Err(FileCause::Value { name: listed.name, detail });
+    }
+    let count = of_rows.len();
+    let reaction = contact.data("reaction")?;
+    reaction.expect(&[instants, count, dimension], "(instants, contact nodes, dimension)")?;
+    reaction.check_floats()?;
+    contact.data("touching")?.expect(&[instants, count], "(instants, contact nodes)")?;
+    Ok(of_rows)
+}
+
+pub(crate) fn case(ours: &Part<'_>) -> Result<Option<Case>, FileCause> {
+    let Some(text) = ours.optional_text("case")? else { return Ok(None) };
+    Ok(Some(Case { name: ours.attribute_of("case", "name")?, text }))
+}
+
+pub(crate) fn provenance(ours: &Part<'_>) -> Result<Provenance, FileCause> {
+    let text = |name| ours.any_text_attribute(name);
+    Ok(Provenance { program: text("program")?, architecture: text("architecture")?, system: text("system")? })
+}

@@ -1,0 +1,145 @@
+//! A history file before its run: how large it will be, and what it is made of.
+
+use super::rows::{Places, write_vectors};
+use super::steps::write_steps;
+use super::writer::Writer;
+use crate::create::{Overwrite, Unnamed};
+use crate::error::{FileCause, FileError};
+use crate::kind::Kind;
+use crate::mesh::{write_grid, write_groups};
+use crate::write::{Case, group, numbers, ours, room, statement, unit};
+use hdf5::{Dataset, Group};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::path::Path;
+
+/// What the library needs beside the arrays (bytes): about 11 kB, and some for each group of the mesh.
+/// Measured; a test keeps it.
+const LIBRARY: u64 = 12_000;
+const PER_GROUP: u64 = 300;
+
+/// A history file to come.
+#[derive(Clone, Debug)]
+pub struct Plan<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    statement: String,
+    case: Option<Case>,
+    given: [bool; 2],
+}
+
+impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
+    /// A file for the history of a problem over these instants. `statement` is the problem in the
+    /// language of the case files, from which it can be built again; `case` the case file as given.
+    #[must_use]
+    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
+        Self { problem, times, statement: statement.to_string(), case: case.cloned(), given: [false; 2] }
+    }
+
+    /// Whether the steps bring velocities and accelerations of their own.
+    #[must_use]
+    pub fn with_given(self, velocity: bool, acceleration: bool) -> Self {
+        Self { given: [velocity, acceleration], ..self }
+    }
+
+    /// Size of the file (bytes), exact up to some 10 kB that the HDF5 library takes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let mesh = self.problem.mesh();
+        let (nodes, cells, instants) = (mesh.node_count() as u64, mesh.element_count() as u64, self.instants() as u64);
+        let (d, contact) = (D as u64, self.problem.surface().nodes().len() as u64);
+        let vectors = 1 + self.given.iter().filter(|given| **given).count() as u64;
+        let step = 24 * nodes * vectors + contact * (8 * d + 1);
+        let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
+        let steps = 8 * (6 + vectors);
+        let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
+        let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
+        let groups = PER_GROUP * (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
+        let texts = self.statement.len() + self.case.as_ref().map_or(0, |case| case.name.len() + case.text.len());
+        let fixed = grid + facets + elements + groups + 8 * d * nodes + 8 * contact + texts as u64 + LIBRARY;
+        instants.saturating_mul(step + steps).saturating_add(fixed)
+    }
+
+    fn instants(&self) -> usize {
+        self.times.step_count() + 1
+    }
+
+    /// Makes the file, with room for all steps, and the thread that fills it. The initial displacement
+    /// is in it from the start.
+    ///
+    /// # Errors
+    /// A file that is there already (or, to be replaced, is in use), a folder that is missing or closed,
+    /// a disk without enough room. Nothing is left behind then.
+    pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
+        let path = path.as_ref();
+        self.make(path, overwrite).map_err(|cause| cause.at(path))
+    }
+
+    fn make(&self, path: &Path, overwrite: Overwrite) -> Result<Writer<D>, FileCause> {
+        let create = |source| FileCause::Create { source };
+        let (unnamed, places) = Unnamed::new(path, overwrite, self.bytes(), |file| self.fill(file))?;
+        write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement()).map_err(create)?;
+        let path = unnamed.path().to_path_buf();
+        let file = unnamed.put()?;
+        Writer::new(&path, file, places, self.times.step_count(), self.given).map_err(create)
+    }
+
+    fn fill(&self, file: &Group) -> Result<Places, FileCause> {
+        let mesh = self.problem.mesh();
+        let vtk = write_grid(file, mesh)?;
+        let ours = ours(file, Kind::History, D)?;
+        statement(&ours, &self.statement, self.case.as_ref())?;
+        write_groups(&ours, mesh)?;
+        let velocity = self.problem.initial_velocity();
+        unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
+        let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
+        let complete = numbers(&ours, "complete", &[], &[0_u8])?;
+        let (reaction, touching) = self.contact(&ours)?;
+        let [velocity, acceleration] = self.given;
+        let fields =
+            [("displacement", "m", true), ("velocity", "m/s", velocity), ("acceleration", "m/s2", acceleration)];
+        let data = group(&vtk, "PointData")?;
+        let (mut names, mut places) = (Vec::new(), [None; 3]);
+        for (place, (name, of, _)) in places.iter_mut().zip(fields).filter(|(_, (_, _, there))| *there) {
+            let set = room::<f64>(&data, name, &[self.instants() * mesh.node_count(), 3])?;
+            unit(&set, of)?;
+            *place = Some(offset(&set)?);
+            names.push((name, mesh.node_count()));
+        }
+        write_steps(&vtk, self.times.instants(), 1, &names, &[])?;
+        Ok(Places {
+            displacement: places[0].unwrap_or_default(),
+            velocity: places[1],
+            acceleration: places[2],
+            reaction,
+            touching,
+            steps_written: offset(&steps_written)?,
+            complete: offset(&complete)?,
+            nodes: mesh.node_count(),
+            contact_nodes: self.problem.surface().nodes().len(),
+        })
+    }
+
+    /// Contact data, if any node can touch; where their rows lie.
+    fn contact(&self, ours: &Group) -> Result<(u64, u64), FileCause> {
+        let surface = self.problem.surface().nodes();
+        if surface.is_empty() {
+            return Ok((0, 0));
+        }
+        let contact = group(ours, "contact")?;
+        let nodes: Vec<i64> = surface.iter().map(|c| c.node.index() as i64).collect();
+        numbers(&contact, "nodes", &[nodes.len()], &nodes)?;
+        let (instants, count) = (self.instants(), nodes.len());
+        let reaction = room::<f64>(&contact, "reaction", &[instants, count, D])?;
+        unit(&reaction, "N")?;
+        let touching = room::<u8>(&contact, "touching", &[instants, count])?;
+        Ok((offset(&reaction)?, offset(&touching)?))
+    }
+}
+
+/// Where a data set lies in the file.
+fn offset(set: &Dataset) -> Result<u64, FileCause> {
+    let missing =
+        || FileCause::Create { source: std::io::Error::other("the HDF5 library took no room for a data set") };
+    set.offset().ok_or_else(missing)
+}

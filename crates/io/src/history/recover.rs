@@ -1,0 +1,65 @@
+//! Finishing the file of a run that was killed.
+
+use super::open::open;
+use super::steps::note_steps;
+use crate::error::{FileCause, FileError};
+use crate::library::{alone, detail};
+use std::fs::{File, TryLockError};
+use std::path::Path;
+
+/// What was found in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recovered {
+    /// Whole instants in it.
+    pub count: usize,
+    /// Whether it was complete, so that nothing was to be done.
+    pub was_complete: bool,
+}
+
+/// Finishes a history whose run was killed: VTK then sees all its whole steps, and it counts as complete.
+///
+/// # Errors
+/// A file that is no history, is still being written, or cannot be written to.
+pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
+    let path = path.as_ref();
+    let found = open(path)?;
+    let recovered = Recovered { count: found.count(), was_complete: found.is_complete() };
+    if recovered.was_complete {
+        return Ok(recovered);
+    }
+    let finish = || {
+        let file = File::options().read(true).write(true).open(path);
+        let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
+        // Its writer, if it still lives, holds the file.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(FileCause::InUse);
+        }
+        let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
+        set_steps(path, recovered.count).map_err(failed)?;
+        set_complete(path).map_err(failed)?;
+        file.sync_all().map_err(|error| failed(error.to_string()))
+    };
+    finish().map_err(|cause| cause.at(path))?;
+    Ok(recovered)
+}
+
+/// Notes how many instants VTK may read: the first one at least, as it wants one.
+pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
+    let _alone = alone();
+    let file = writable(path)?;
+    note_steps(&file, count.max(1)).map_err(|cause| cause.to_string())?;
+    file.close().map_err(|error| detail(&error))
+}
+
+fn set_complete(path: &Path) -> Result<(), String> {
+    let _alone = alone();
+    let file = writable(path)?;
+    let complete = file.dataset("percute/complete").and_then(|set| set.write_scalar(&1_u8));
+    complete.map_err(|error| detail(&error))?;
+    file.close().map_err(|error| detail(&error))
+}
+
+/// Opened without a lock: whoever reads the file meanwhile holds one, and only a number changes.
+fn writable(path: &Path) -> Result<hdf5::File, String> {
+    hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path).map_err(|error| detail(&error))
+}

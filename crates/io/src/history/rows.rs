@@ -1,0 +1,83 @@
+//! The rows of a step as bytes at their place in the file.
+
+use crate::mesh::in_space;
+use percute_core::history::Step;
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+
+/// Where the rows of step 0 lie in the file (bytes), and how many nodes they have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Places {
+    pub(super) displacement: u64,
+    pub(super) velocity: Option<u64>,
+    pub(super) acceleration: Option<u64>,
+    pub(super) reaction: u64,
+    pub(super) touching: u64,
+    pub(super) steps_written: u64,
+    pub(super) complete: u64,
+    pub(super) nodes: usize,
+    pub(super) contact_nodes: usize,
+}
+
+/// A step of its own, to be handed from thread to thread.
+#[derive(Debug, Default)]
+pub(super) struct Row<const D: usize> {
+    pub(super) index: usize,
+    displacement: Vec<[f64; D]>,
+    reaction: Vec<[f64; D]>,
+    touching: Vec<u8>,
+    velocity: Vec<[f64; D]>,
+    acceleration: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Row<D> {
+    /// Takes over a step; the room of the last one is used again.
+    pub(super) fn take(&mut self, step: &Step<'_, D>) {
+        self.index = step.index;
+        let fields = [
+            (&mut self.displacement, Some(step.displacement)),
+            (&mut self.reaction, Some(step.reaction)),
+            (&mut self.velocity, step.velocity),
+            (&mut self.acceleration, step.acceleration),
+        ];
+        for (kept, given) in fields {
+            kept.clear();
+            kept.extend_from_slice(given.unwrap_or_default());
+        }
+        self.touching.clear();
+        self.touching.extend(step.touching.iter().map(|&touches| u8::from(touches)));
+    }
+
+    /// Writes the rows of the step, and only then that they are there.
+    pub(super) fn write(&self, file: &File, places: &Places) -> io::Result<()> {
+        let (n, nodes) = (self.index as u64, places.nodes as u64);
+        let contact = places.contact_nodes as u64;
+        let fields = [
+            (Some(places.displacement), &self.displacement),
+            (places.velocity, &self.velocity),
+            (places.acceleration, &self.acceleration),
+        ];
+        for (place, values) in fields {
+            if let Some(place) = place {
+                write_vectors(file, place + n * nodes * 24, values)?;
+            }
+        }
+        if contact > 0 {
+            let reaction = bytes(self.reaction.as_flattened());
+            file.write_all_at(&reaction, places.reaction + n * contact * 8 * D as u64)?;
+            file.write_all_at(&self.touching, places.touching + n * contact)?;
+        }
+        file.write_all_at(&(n + 1).to_ne_bytes(), places.steps_written)
+    }
+}
+
+/// Writes nodal vectors with the three components that ParaView wants.
+pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
+    file.write_all_at(&bytes(&in_space(values)), place)
+}
+
+/// Numbers as they are in memory, which is how HDF5's native types store them.
+fn bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|x| x.to_ne_bytes()).collect()
+}

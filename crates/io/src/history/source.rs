@@ -1,0 +1,167 @@
+//! Steps from a file, as the estimator takes them.
+
+use super::file::HistoryFile;
+use crate::error::{FileCause, FileError};
+use crate::mesh::vectors;
+use crate::read::{Opened, Part};
+use percute_core::history::{SinkError, Step, StepSink, StepSource};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::ops::Range;
+
+/// Bytes of steps that are read at once: enough for the disk, little for memory.
+const BLOCK: usize = 1 << 23;
+
+/// Gives the steps of a history file back, with contact data on the nodes of the problem's surface.
+#[derive(Clone, Debug)]
+pub struct HistorySource<const D: usize, const N: usize> {
+    file: HistoryFile<D, N>,
+    /// For each node of the surface its row in the file; what the file does not list never touches.
+    rows: Vec<Option<usize>>,
+    /// Rows of nodes that cannot touch, with their nodes.
+    strange: Vec<(usize, usize)>,
+}
+
+/// Some steps, one after the other.
+struct Block<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    reaction: Vec<[f64; D]>,
+    touching: Vec<bool>,
+    motion: [Option<Vec<[f64; D]>>; 2],
+}
+
+impl<const D: usize, const N: usize> HistorySource<D, N> {
+    pub(super) fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Self {
+        let mut row_of = vec![None; file.mesh().node_count()];
+        for (row, &node) in file.contact_nodes().iter().enumerate() {
+            row_of[node] = Some(row);
+        }
+        // Taken out, so that what is left is on no obstacle's way.
+        let rows = problem.surface().nodes().iter().map(|c| row_of[c.node.index()].take()).collect();
+        let strange = row_of.iter().enumerate().filter_map(|(node, row)| Some(((*row)?, node))).collect();
+        Self { file, rows, strange }
+    }
+
+    fn block(&self, steps: Range<usize>) -> Result<Block<D>, FileError> {
+        let nodes = self.file.mesh().node_count();
+        let rows = steps.start * nodes..steps.end * nodes;
+        self.file.again(|opened| {
+            self.check_counter(opened)?;
+            let fields = opened.root().group("VTKHDF")?.group("PointData")?;
+            let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
+            let [velocity, acceleration] = motion;
+            let displacement = fields.data("displacement")?;
+            let displacement = vectors(&displacement, displacement.float_rows(rows.clone())?)?;
+            self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
+            let (reaction, touching) = self.contact(opened, steps.clone())?;
+            Ok(Block { displacement, reaction, touching, motion: [velocity?, acceleration?] })
+        })
+    }
+
+    fn check_counter(&self, opened: &Opened) -> Result<(), FileCause> {
+        let Some(counter) = opened.root().group("percute")?.optional("steps_written")? else { return Ok(()) };
+        match counter.integers()?.as_slice() {
+            [count] if *count >= self.file.count() as i64 => Ok(()),
+            other => {
+                let detail = format!("`{}` was {} and is {other:?} now", counter.name, self.file.count());
+                Err(FileCause::Damaged { detail })
+            }
+        }
+    }
+
+    fn motion(
+        &self,
+        fields: &Part<'_>,
+        which: usize,
+        rows: Range<usize>,
+        first: usize,
+    ) -> Result<Option<Vec<[f64; D]>>, FileCause> {
+        if !self.file.given()[which] {
+            return Ok(None);
+        }
+        let data = fields.data(["velocity", "acceleration"][which])?;
+        let values = vectors(&data, data.float_rows(rows)?)?;
+        self.finite(&data.name, &values, first, |at| at)?;
+        Ok(Some(values))
+    }
+
+    /// Reactions and touching status on the surface of the problem.
+    fn contact(&self, opened: &Opened, steps: Range<usize>) -> Result<(Vec<[f64; D]>, Vec<bool>), FileCause> {
+        let listed = self.file.contact_nodes();
+        let count = self.rows.len() * steps.len();
+        if listed.is_empty() {
+            return Ok((vec![[0.0; D]; count], vec![false; count]));
+        }
+        let contact = opened.root().group("percute")?.group("contact")?;
+        let data = contact.data("reaction")?;
+        let values = data.float_rows(steps.clone())?;
+        let reaction = values.as_chunks::<D>().0;
+        let touching = contact.data("touching")?.flag_rows(steps.clone())?;
+        self.finite(&data.name, reaction, steps.start, |row| listed[row])?;
+        for (k, step) in steps.clone().enumerate() {
+            let here = |row: usize| k * listed.len() + row;
+            let touches = |row: usize| touching[here(row)] || reaction[here(row)] != [0.0; D];
+            if let Some(&(_, node)) = self.strange.iter().find(|(row, _)| touches(*row)) {
+                return Err(FileCause::Contact { step, node });
+            }
+        }
+        let at = |k: usize| self.rows.iter().map(move |row| row.map(|row| k * listed.len() + row));
+        let places = || (0..steps.len()).flat_map(at);
+        let on_surface = places().map(|place| place.map_or([0.0; D], |p| reaction[p])).collect();
+        Ok((on_surface, places().map(|place| place.is_some_and(|p| touching[p])).collect()))
+    }
+
+    /// Refuses NaN and infinity; `node` tells which node a row within a step is.
+    fn finite(
+        &self,
+        name: &str,
+        values: &[[f64; D]],
+        first: usize,
+        node: impl Fn(usize) -> usize,
+    ) -> Result<(), FileCause> {
+        let wrong = values.iter().enumerate().find_map(|(at, v)| Some((at, *v.iter().find(|x| !x.is_finite())?)));
+        let Some((at, value)) = wrong else { return Ok(()) };
+        let rows =
+            if name.starts_with("percute") { self.file.contact_nodes().len() } else { self.file.mesh().node_count() };
+        Err(FileCause::NotFinite { name: name.to_string(), step: first + at / rows, node: node(at % rows), value })
+    }
+
+    fn hand_on(&self, block: &Block<D>, steps: Range<usize>, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+        let (nodes, surface) = (self.file.mesh().node_count(), self.rows.len());
+        for (k, index) in steps.enumerate() {
+            let (nodal, contact) = (k * nodes..(k + 1) * nodes, k * surface..(k + 1) * surface);
+            let [velocity, acceleration] = [0, 1].map(|m| block.motion[m].as_ref().map(|v| &v[nodal.clone()]));
+            sink.push(&Step {
+                index,
+                time: self.file.times().instants()[index],
+                displacement: &block.displacement[nodal],
+                reaction: &block.reaction[contact.clone()],
+                touching: &block.touching[contact],
+                velocity,
+                acceleration,
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
+    fn times(&self) -> &TimeGrid {
+        self.file.times()
+    }
+
+    fn count(&self) -> usize {
+        self.file.count()
+    }
+
+    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+        let step = 24 * self.file.mesh().node_count() + 16 * self.file.contact_nodes().len();
+        let size = (BLOCK / step.max(1)).max(1);
+        for start in (0..self.count()).step_by(size) {
+            let steps = start..self.count().min(start + size);
+            let block = self.block(steps.clone())?;
+            self.hand_on(&block, steps, sink)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,183 @@
+//! Takes the steps of a run and writes them beside it.
+
+use super::recover::set_steps;
+use super::rows::{Places, Row};
+use crate::error::{FileCause, FileError};
+use percute_core::history::{SinkError, Step, StepError, StepSink};
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::{FileExt, MetadataExt};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::thread::JoinHandle;
+
+/// Steps that may wait for the disk while the run goes on.
+const WAITING: usize = 2;
+
+/// Writes steps into a history file, in a thread of its own. What was pushed is in the file even when the
+/// process is killed later; a file that was not finished holds all whole steps and is not marked
+/// complete.
+#[derive(Debug)]
+pub struct Writer<const D: usize> {
+    path: PathBuf,
+    file: File,
+    places: Places,
+    last: usize,
+    next: usize,
+    given: [bool; 2],
+    rows: Option<SyncSender<Row<D>>>,
+    used: Receiver<Row<D>>,
+    thread: Option<JoinHandle<Result<(), Failure>>>,
+    failed: Option<Failure>,
+}
+
+/// The step that could not be written.
+#[derive(Debug)]
+struct Failure {
+    step: usize,
+    kind: io::ErrorKind,
+    code: Option<i32>,
+}
+
+impl Failure {
+    fn cause(&self) -> FileCause {
+        let source = self.code.map_or_else(|| self.kind.into(), io::Error::from_raw_os_error);
+        FileCause::Write { step: self.step, source }
+    }
+}
+
+impl<const D: usize> Writer<D> {
+    pub(super) fn new(path: &Path, file: File, places: Places, last: usize, given: [bool; 2]) -> io::Result<Self> {
+        let (rows, taken) = sync_channel(WAITING);
+        let (back, used) = channel();
+        let own = file.try_clone()?;
+        let work = move || write_all(&own, &places, &taken, &back);
+        let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
+        let (rows, thread) = (Some(rows), Some(thread));
+        Ok(Self { path: path.to_path_buf(), file, places, last, next: 0, given, rows, used, thread, failed: None })
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of instants taken so far.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.next
+    }
+
+    /// Waits for the last step, notes for VTK how many there are, marks the file complete and waits for
+    /// the disk. A run that was stopped cleanly ends like this too.
+    ///
+    /// # Errors
+    /// A step that could not be written, or a file that is not there any more.
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.stop();
+        let finished = match &self.failed {
+            Some(failure) => Err(failure.cause()),
+            None => self.complete(),
+        };
+        finished.map_err(|cause| cause.at(&self.path))
+    }
+
+    fn complete(&self) -> Result<(), FileCause> {
+        let failed = |detail: String| FileCause::Finish { detail, steps: self.next };
+        let told = |error: io::Error| failed(error.to_string());
+        self.file.sync_data().map_err(told)?;
+        let mine = self.file.metadata().map_err(told)?;
+        if !self.path.metadata().is_ok_and(|there| (there.dev(), there.ino()) == (mine.dev(), mine.ino())) {
+            return Err(FileCause::Lost);
+        }
+        set_steps(&self.path, self.next).map_err(failed)?;
+        self.file.write_all_at(&[1], self.places.complete).map_err(told)?;
+        self.file.sync_all().map_err(told)
+    }
+
+    /// Lets the thread write what it has and ends it.
+    fn stop(&mut self) {
+        self.rows = None;
+        let ended = self.thread.take().map(JoinHandle::join);
+        match ended {
+            Some(Ok(Err(failure))) => self.failed = Some(failure),
+            Some(Err(_)) => self.failed = Some(Failure { step: self.next, kind: io::ErrorKind::Other, code: None }),
+            Some(Ok(Ok(()))) | None => {}
+        }
+    }
+
+    fn check(&self, step: &Step<'_, D>) -> Result<(), StepError> {
+        let (n, expected, last) = (step.index, self.next, self.last);
+        if n != expected || n > last {
+            return Err(StepError::Order { given: n, expected, last });
+        }
+        for (had, (field, there)) in self
+            .given
+            .into_iter()
+            .zip([("velocity", step.velocity.is_some()), ("acceleration", step.acceleration.is_some())])
+        {
+            if had != there {
+                return Err(StepError::Partly { step: n, field, there });
+            }
+        }
+        let Places { nodes, contact_nodes, .. } = self.places;
+        let lengths = [
+            ("displacement", step.displacement.len(), nodes),
+            ("reaction", step.reaction.len(), contact_nodes),
+            ("touching", step.touching.len(), contact_nodes),
+            ("velocity", step.velocity.map_or(nodes, <[_]>::len), nodes),
+            ("acceleration", step.acceleration.map_or(nodes, <[_]>::len), nodes),
+        ];
+        match lengths.into_iter().find(|(_, given, needed)| given != needed) {
+            Some((field, given, needed)) => Err(StepError::Length { step: n, field, given, needed }),
+            None => Ok(()),
+        }
+    }
+
+    fn send(&mut self, step: &Step<'_, D>) -> Result<(), FileCause> {
+        if let Some(failure) = &self.failed {
+            return Err(failure.cause());
+        }
+        self.check(step)?;
+        let mut row = self.used.try_recv().unwrap_or_default();
+        row.take(step);
+        let sent = self.rows.as_ref().is_some_and(|rows| rows.send(row).is_ok());
+        if !sent {
+            self.stop();
+            let failure =
+                self.failed.get_or_insert(Failure { step: self.next, kind: io::ErrorKind::Other, code: None });
+            return Err(failure.cause());
+        }
+        self.next += 1;
+        Ok(())
+    }
+}
+
+impl<const D: usize> StepSink<D> for Writer<D> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        Ok(self.send(step).map_err(|cause| cause.at(&self.path))?)
+    }
+}
+
+impl<const D: usize> Drop for Writer<D> {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Writes rows as they come, until no more will come or one cannot be written.
+fn write_all<const D: usize>(
+    file: &File,
+    places: &Places,
+    taken: &Receiver<Row<D>>,
+    back: &Sender<Row<D>>,
+) -> Result<(), Failure> {
+    for row in taken {
+        let failure = |error: io::Error| Failure { step: row.index, kind: error.kind(), code: error.raw_os_error() };
+        row.write(file, places).map_err(failure)?;
+        // Nobody takes it back once the run has ended.
+        let _ = back.send(row);
+    }
+    Ok(())
+}

@@ -1,0 +1,44 @@
+//! What kind of file a path names.
+
+use crate::error::{FileCause, FileError};
+use crate::read::Opened;
+use std::fmt;
+use std::path::Path;
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A history.
+    History,
+    /// An estimate.
+    Estimate,
+    /// HDF5 that is not percute's.
+    OtherHdf5,
+    /// Not HDF5 at all.
+    Other,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::History => "a history",
+            Self::Estimate => "an estimate",
+            Self::OtherHdf5 => "an HDF5 file of another program",
+            Self::Other => "no HDF5 file",
+        })
+    }
+}
+
+/// Tells what a file holds, by its first bytes and its attribute `kind`.
+///
+/// # Errors
+/// A file that is missing, cannot be read, is locked, or damaged beyond that.
+pub fn kind(path: impl AsRef<Path>) -> Result<Kind, FileError> {
+    let path = path.as_ref();
+    let found = Opened::new(path).and_then(|opened| opened.kind());
+    match found {
+        Err(FileCause::NotHdf5) => Ok(Kind::Other),
+        Err(FileCause::Foreign { .. }) => Ok(Kind::OtherHdf5),
+        found => found.map_err(|cause| cause.at(path)),
+    }
+}

@@ -1,0 +1,138 @@
+//! The mesh in a file: an unstructured grid as VTKHDF has it, and groups of our own.
+
+use crate::error::FileCause;
+use crate::names::{decoded, encoded};
+use crate::read::{Data, Opened, Part};
+use crate::write::{attribute, group, numbers, unit};
+use hdf5::Group;
+use hdf5::types::FixedAscii;
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+
+/// Bars and triangles as VTK numbers them.
+pub(crate) const fn vtk_type(dimension: usize) -> u8 {
+    if dimension == 1 { 3 } else { 5 }
+}
+
+/// Nodal vectors with three components each, as ParaView wants them.
+pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
+    let mut flat = vec![0.0; 3 * values.len()];
+    for (to, from) in flat.chunks_exact_mut(3).zip(values) {
+        to[..D].copy_from_slice(from);
+    }
+    flat
+}
+
+/// Makes the group `VTKHDF` with the grid. Its `Steps` are for who knows the instants.
+pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Mesh<D, N>) -> Result<Group, FileCause> {
+    let vtk = group(file, "VTKHDF")?;
+    let version = vtk.new_attr::<i64>().shape(2).create("Version").and_then(|a| a.write_raw(&[2_i64, 2]));
+    version.map_err(|error| crate::create::refused(&error))?;
+    let kind = FixedAscii::<16>::from_ascii(b"UnstructuredGrid");
+    attribute(&vtk, "Type", kind.map_err(|_| FileCause::Damaged { detail: "a name".to_string() })?)?;
+    let (nodes, cells) = (mesh.node_count(), mesh.element_count());
+    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", cells), ("NumberOfConnectivityIds", cells * N)] {
+        numbers(&vtk, name, &[1], &[count as i64])?;
+    }
+    unit(&numbers(&vtk, "Points", &[nodes, 3], &in_space(mesh.points()))?, "m")?;
+    let connectivity: Vec<i64> = mesh.cells().iter().flatten().map(|node| node.index() as i64).collect();
+    numbers(&vtk, "Connectivity", &[cells * N], &connectivity)?;
+    let offsets: Vec<i64> = (0..=cells).map(|e| (e * N) as i64).collect();
+    numbers(&vtk, "Offsets", &[cells + 1], &offsets)?;
+    numbers(&vtk, "Types", &[cells], &vec![vtk_type(D); cells])?;
+    Ok(vtk)
+}
+
+/// Makes the groups of facets and elements in the group `percute`.
+pub(crate) fn write_groups<const D: usize, const N: usize>(ours: &Group, mesh: &Mesh<D, N>) -> Result<(), FileCause> {
+    let facets = group(ours, "facet_groups")?;
+    for (name, members) in mesh.facet_groups() {
+        let of =
+            |facet: &percute_core::ids::FacetId| mesh.facets()[facet.index()].nodes.map(|node| node.index() as i64);
+        let nodes: Vec<i64> = members.iter().flat_map(of).collect();
+        numbers(&facets, &encoded(name), &[members.len(), D], &nodes)?;
+    }
+    let elements = group(ours, "element_groups")?;
+    for (name, members) in mesh.element_groups() {
+        let members: Vec<i64> = members.iter().map(|element| element.index() as i64).collect();
+        numbers(&elements, &encoded(name), &[members.len()], &members)?;
+    }
+    Ok(())
+}
+
+/// Reads the mesh: points, elements and groups, with their order and orientation.
+pub(crate) fn read<const D: usize, const N: usize>(opened: &Opened) -> Result<Mesh<D, N>, FileCause> {
+    let root = opened.root();
+    let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
+    let points = vtk.data("Points")?;
+    points.expect_dimensions(2, "(nodes, 3)")?;
+    let nodes = points.shape[0];
+    let points = vectors::<D>(&points, points.floats()?)?;
+    let cells = cells::<N>(&vtk, D, nodes)?;
+    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", cells.len())] {
+        let Some(data) = vtk.optional(name)? else { continue };
+        if let Some(other) = data.integers()?.into_iter().find(|&n| n != count as i64) {
+            let detail = format!("{other} does not fit the mesh, which has {count}");
+            return Err(FileCause::Value { name: data.name, detail });
+        }
+    }
+    let mut facets = FacetGroups::new();
+    for_each_group(&ours, "facet_groups", |name, members| {
+        let count = members.shape.first().copied().unwrap_or(0);
+        members.expect(&[count, D], "the nodes of each facet")?;
+        let of = members.indices(nodes, "nodes")?;
+        facets.insert(name, of.as_chunks::<D>().0.to_vec());
+        Ok(())
+    })?;
+    let mut elements = ElementGroups::new();
+    for_each_group(&ours, "element_groups", |name, members| {
+        members.expect_dimensions(1, "(elements)")?;
+        elements.insert(name, members.indices(cells.len(), "elements")?);
+        Ok(())
+    })?;
+    Ok(Mesh::new(points, &cells, &facets, &elements)?)
+}
+
+fn for_each_group(
+    ours: &Part<'_>,
+    kind: &str,
+    mut take: impl FnMut(String, &Data<'_>) -> Result<(), FileCause>,
+) -> Result<(), FileCause> {
+    let Some(groups) = ours.optional_group(kind)? else { return Ok(()) };
+    groups.names()?.iter().try_for_each(|link| take(decoded(link), &groups.data(link)?))
+}
+
+fn cells<const N: usize>(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Result<Vec<[usize; N]>, FileCause> {
+    let connectivity = vtk.data("Connectivity")?;
+    connectivity.expect_dimensions(1, "(elements x nodes of each)")?;
+    let count = connectivity.shape[0] / N;
+    connectivity.expect(&[count * N], &format!("{N} nodes for each element"))?;
+    let types = vtk.data("Types")?;
+    types.expect(&[count], "one type for each element")?;
+    let needed = i64::from(vtk_type(dimension));
+    if let Some(other) = types.integers()?.into_iter().find(|&t| t != needed) {
+        let shape = if dimension == 1 { "VTK_LINE" } else { "VTK_TRIANGLE" };
+        let detail =
+            format!("an element has the type {other}; in dimension {dimension} all must be {needed} ({shape})");
+        return Err(FileCause::Value { name: types.name, detail });
+    }
+    let offsets = vtk.data("Offsets")?;
+    offsets.expect(&[count + 1], "one more than elements")?;
+    let offsets_given = offsets.integers()?;
+    if let Some(at) = (0..=count).find(|&e| offsets_given[e] != (e * N) as i64) {
+        let detail = format!("entry {at} is {}; it must be {}", offsets_given[at], at * N);
+        return Err(FileCause::Value { name: offsets.name, detail });
+    }
+    Ok(connectivity.indices(nodes, "nodes")?.as_chunks::<N>().0.to_vec())
+}
+
+/// Vectors of `D` components from the three that are stored: those beyond must be zero.
+pub(crate) fn vectors<const D: usize>(data: &Data<'_>, values: Vec<f64>) -> Result<Vec<[f64; D]>, FileCause> {
+    data.expect(&[data.shape[0], 3], "three components")?;
+    let (stored, _) = values.as_chunks::<3>();
+    if let Some(at) = stored.iter().position(|v| v[D..].iter().any(|x| *x != 0.0)) {
+        let detail =
+            format!("row {at} is {:?}; components beyond the dimension of the problem, {D}, must be 0", stored[at]);
+        return Err(FileCause::Value { name: data.name.clone(), detail });
+    }
+    Ok(stored.iter().map(|v| std::array::from_fn(|c| v[c])).collect())
+}

@@ -1,0 +1,378 @@
+//! Reading with HDF5: every size is checked against what is stored before memory is taken for it.
+
+use crate::error::{FileCause, FileError};
+use crate::kind::Kind;
+use crate::library::{alone, damaged};
+use hdf5::dataset::Layout;
+use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
+use hdf5::{Container, Dataset, Group, H5Type, Hyperslab, Selection, SliceOrIndex};
+use std::fs::{File, TryLockError};
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::MutexGuard;
+
+/// First bytes of an HDF5 file.
+const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
+/// Deflate makes at most 1032 bytes from one; other filters of HDF5 make less.
+const MOST_EXPANSION: u64 = 1032;
+
+/// The latest layout of histories and estimates known here.
+pub(crate) const LAYOUT: i64 = 1;
+
+/// A file open for reading. The library is ours as long as it lives.
+pub(crate) struct Opened {
+    file: hdf5::File,
+    bytes: u64,
+    /// Dropped last: the file is closed by then.
+    _alone: MutexGuard<'static, ()>,
+}
+
+impl Opened {
+    pub(crate) fn new(path: &Path) -> Result<Self, FileCause> {
+        let alone = alone();
+        let bytes = look(path)?;
+        let file = hdf5::File::open(path).map_err(damaged)?;
+        Ok(Self { file, bytes, _alone: alone })
+    }
+
+    /// Bytes of the file.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    pub(crate) fn root(&self) -> Part<'_> {
+        Part { group: (*self.file).clone(), name: String::new(), file_bytes: self.bytes, _file: &self.file }
+    }
+
+    /// History or estimate; whatever is neither is an error that says what is there.
+    pub(crate) fn kind(&self) -> Result<Kind, FileCause> {
+        let root = self.root();
+        let Some(ours) = root.optional_group("percute")? else {
+            return Err(FileCause::Foreign { holds: root.contents()? });
+        };
+        match ours.text_attribute("kind")?.as_str() {
+            "history" => Ok(Kind::History),
+            "estimate" => Ok(Kind::Estimate),
+            other => {
+                let detail = format!("\"{other}\" is no kind of file known here");
+                Err(FileCause::Value { name: "percute.kind".to_string(), detail })
+            }
+        }
+    }
+
+    /// Refuses what is of another kind or of a later layout.
+    pub(crate) fn expect(&self, wanted: Kind) -> Result<(), FileCause> {
+        let found = self.kind()?;
+        if found != wanted {
+            return Err(FileCause::WrongKind { found, wanted });
+        }
+        let layout = self.root().group("percute")?.integer_attribute("layout")?;
+        match layout {
+            1..=LAYOUT => Ok(()),
+            _ if layout > LAYOUT => Err(FileCause::NewerLayout { found: layout, known: LAYOUT }),
+            _ => {
+                let detail = format!("there is no layout {layout}");
+                Err(FileCause::Value { name: "percute.layout".to_string(), detail })
+            }
+        }
+    }
+}
+
+/// Looks at a file without HDF5, whose words for what goes wrong here are poor. Returns its size.
+fn look(path: &Path) -> Result<u64, FileCause> {
+    let refused = |source: io::Error| match source.kind() {
+        io::ErrorKind::NotFound => FileCause::Missing,
+        _ => FileCause::Read { source },
+    };
+    let found = path.metadata().map_err(refused)?;
+    if !found.is_file() {
+        return Err(FileCause::NotAFile);
+    }
+    let mut file = File::open(path).map_err(refused)?;
+    if let Err(TryLockError::WouldBlock) = file.try_lock_shared() {
+        return Err(FileCause::InUse);
+    }
+    let mut first = [0; 8];
+    match file.read_exact(&mut first) {
+        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(refused(error)),
+        // A block of the user's own before the signature is possible, but nobody's histories have one.
+        _ if first != SIGNATURE => Err(FileCause::NotHdf5),
+        _ => Ok(found.len()),
+    }
+}
+
+/// A group of the file.
+pub(crate) struct Part<'f> {
+    group: Group,
+    name: String,
+    file_bytes: u64,
+    _file: &'f hdf5::File,
+}
+
+impl<'f> Part<'f> {
+    fn path(&self, name: &str) -> String {
+        if self.name.is_empty() { name.to_string() } else { format!("{}/{name}", self.name) }
+    }
+
+    pub(crate) fn optional_group(&self, name: &str) -> Result<Option<Part<'f>>, FileCause> {
+        if !self.group.link_exists(name) {
+            return Ok(None);
+        }
+        let group = self.group.group(name).map_err(damaged)?;
+        Ok(Some(Part { group, name: self.path(name), file_bytes: self.file_bytes, _file: self._file }))
+    }
+
+    pub(crate) fn group(&self, name: &str) -> Result<Part<'f>, FileCause> {
+        self.optional_group(name)?.ok_or_else(|| FileCause::MissingPart { name: self.path(name) })
+    }
+
+    pub(crate) fn optional(&self, name: &str) -> Result<Option<Data<'f>>, FileCause> {
+        if !self.group.link_exists(name) {
+            return Ok(None);
+        }
+        let set = self.group.dataset(name).map_err(damaged)?;
+        Data::new(set, self.path(name), self.file_bytes, self._file).map(Some)
+    }
+
+    pub(crate) fn data(&self, name: &str) -> Result<Data<'f>, FileCause> {
+        self.optional(name)?.ok_or_else(|| FileCause::MissingPart { name: self.path(name) })
+    }
+
+    /// Names of what the group holds.
+    pub(crate) fn names(&self) -> Result<Vec<String>, FileCause> {
+        let names = self.group.member_names().map_err(damaged)?;
+        // The library takes names for UTF-8 without a look.
+        if names.iter().any(|name| std::str::from_utf8(name.as_bytes()).is_err()) {
+            return Err(FileCause::Damaged { detail: format!("`{}` holds a name that is not UTF-8", self.name) });
+        }
+        Ok(names)
+    }
+
+    /// What is in a file that is not ours.
+    fn contents(&self) -> Result<String, FileCause> {
+        let mut names = self.names()?;
+        names.sort();
+        Ok(match names.as_slice() {
+            [] => "it is empty".to_string(),
+            names if names.iter().any(|n| n == "VTKHDF") => "it is VTKHDF, but has no group `percute`".to_string(),
+            [first] => format!("it holds `{first}`"),
+            [first, second] => format!("it holds `{first}` and `{second}`"),
+            [first, second, ..] => format!("it holds `{first}`, `{second}` and more"),
+        })
+    }
+
+    fn attribute(&self, name: &str) -> Result<(hdf5::Attribute, String, TypeDescriptor), FileCause> {
+        let path = format!("{}.{name}", self.name);
+        let attribute = self.group.attr(name).map_err(|_| FileCause::MissingPart { name: path.clone() })?;
+        if attribute.size() != 1 {
+            return Err(FileCause::Shape { name: path, given: attribute.shape(), needed: "one value".to_string() });
+        }
+        let kind = attribute.dtype().and_then(|t| t.to_descriptor()).map_err(damaged)?;
+        Ok((attribute, path, kind))
+    }
+
+    pub(crate) fn has_attribute(&self, name: &str) -> bool {
+        self.group.attr(name).is_ok()
+    }
+
+    pub(crate) fn integer_attribute(&self, name: &str) -> Result<i64, FileCause> {
+        let (attribute, path, kind) = self.attribute(name)?;
+        if !matches!(kind, TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_)) {
+            return Err(FileCause::Type { name: path, given: kind.to_string(), needed: "an integer" });
+        }
+        Ok(attribute.read_raw::<i64>().map_err(damaged)?[0])
+    }
+
+    pub(crate) fn text_attribute(&self, name: &str) -> Result<String, FileCause> {
+        let (attribute, path, kind) = self.attribute(name)?;
+        text(&attribute, &kind, path)
+    }
+
+    /// A text attribute, empty where there is none.
+    pub(crate) fn any_text_attribute(&self, name: &str) -> Result<String, FileCause> {
+        if self.has_attribute(name) { self.text_attribute(name) } else { Ok(String::new()) }
+    }
+
+    /// A text, if it is there.
+    pub(crate) fn optional_text(&self, name: &str) -> Result<Option<String>, FileCause> {
+        let Some(data) = self.optional(name)? else { return Ok(None) };
+        if data.shape.iter().product::<usize>() != 1 {
+            return Err(FileCause::Shape { name: data.name, given: data.shape, needed: "one text".to_string() });
+        }
+        text(&data.set, &data.kind, data.name).map(Some)
+    }
+
+    /// An attribute of a data set of the group.
+    pub(crate) fn attribute_of(&self, data: &str, name: &str) -> Result<String, FileCause> {
+        let set = self.group.dataset(data).map_err(damaged)?;
+        let Ok(attribute) = set.attr(name) else { return Ok(String::new()) };
+        let kind = attribute.dtype().and_then(|t| t.to_descriptor()).map_err(damaged)?;
+        if attribute.size() != 1 {
+            return Ok(String::new());
+        }
+        text(&attribute, &kind, format!("{}.{name}", self.path(data)))
+    }
+}
+
+/// A single text of either length.
+fn text(stored: &Container, kind: &TypeDescriptor, name: String) -> Result<String, FileCause> {
+    /// Longest text of fixed length that is taken: names, not documents.
+    const MOST: usize = 256;
+    type Ascii = hdf5::types::FixedAscii<MOST>;
+    type Unicode = hdf5::types::FixedUnicode<MOST>;
+    let bytes = match kind {
+        TypeDescriptor::VarLenUnicode => one::<VarLenUnicode>(stored)?.as_bytes().to_vec(),
+        TypeDescriptor::VarLenAscii => one::<VarLenAscii>(stored)?.as_bytes().to_vec(),
+        TypeDescriptor::FixedUnicode(..=MOST) => one::<Unicode>(stored)?.as_bytes().to_vec(),
+        TypeDescriptor::FixedAscii(..=MOST) => one::<Ascii>(stored)?.as_bytes().to_vec(),
+        _ => return Err(FileCause::Type { name, given: kind.to_string(), needed: "a text of variable length" }),
+    };
+    String::from_utf8(bytes).map_err(|_| FileCause::Value { name, detail: "the text is not UTF-8".to_string() })
+}
+
+fn one<T: H5Type>(stored: &Container) -> Result<T, FileCause> {
+    let mut values = stored.read_raw::<T>().map_err(damaged)?;
+    values.pop().ok_or_else(|| FileCause::Damaged { detail: "an empty text".to_string() })
+}
+
+/// A data set whose shape is known to be filled by what is stored.
+pub(crate) struct Data<'f> {
+    set: Dataset,
+    pub(crate) name: String,
+    pub(crate) shape: Vec<usize>,
+    kind: TypeDescriptor,
+    _file: &'f hdf5::File,
+}
+
+impl<'f> Data<'f> {
+    fn new(set: Dataset, name: String, file_bytes: u64, file: &'f hdf5::File) -> Result<Self, FileCause> {
+        let shape = set.get_shape().map_err(damaged)?;
+        let datatype = set.dtype().map_err(damaged)?;
+        let kind = datatype.to_descriptor().map_err(damaged)?;
+        let chunk = set.chunk().unwrap_or_default();
+        let stored = set.storage_size();
+        let most = match set.layout() {
+            Layout::Chunked => stored.saturating_mul(MOST_EXPANSION),
+            _ => stored,
+        };
+        let size = |shape: &[usize]| {
+            let each = shape.iter().try_fold(1_u64, |n, &d| n.checked_mul(d as u64))?;
+            each.checked_mul(datatype.size() as u64)
+        };
+        let fits = |shape: &[usize]| size(shape).is_some_and(|bytes| bytes <= most);
+        // Not even the product of an empty shape may overflow: HDF5 multiplies too.
+        let sane = shape.iter().try_fold(1_usize, |n, &d| n.checked_mul(d.max(1))).is_some();
+        if stored > file_bytes || !fits(&shape) || !sane || (!chunk.is_empty() && stored > 0 && !fits(&chunk)) {
+            return Err(FileCause::Hollow { name, given: shape, stored: stored.min(file_bytes) });
+        }
+        Ok(Self { set, name, shape, kind, _file: file })
+    }
+
+    fn refuse_type<T>(&self, needed: &'static str) -> Result<T, FileCause> {
+        Err(FileCause::Type { name: self.name.clone(), given: self.kind.to_string(), needed })
+    }
+
+    /// Refuses another shape; `needed` describes the right one.
+    pub(crate) fn expect(&self, shape: &[usize], needed: &str) -> Result<(), FileCause> {
+        if self.shape == shape {
+            return Ok(());
+        }
+        let needed = format!("{shape:?}, {needed}");
+        Err(FileCause::Shape { name: self.name.clone(), given: self.shape.clone(), needed })
+    }
+
+    /// Refuses another number of dimensions.
+    pub(crate) fn expect_dimensions(&self, count: usize, needed: &str) -> Result<(), FileCause> {
+        if self.shape.len() == count {
+            return Ok(());
+        }
+        Err(FileCause::Shape { name: self.name.clone(), given: self.shape.clone(), needed: needed.to_string() })
+    }
+
+    pub(crate) fn floats(&self) -> Result<Vec<f64>, FileCause> {
+        self.check_floats()?;
+        self.all()
+    }
+
+    /// Whole rows, a row being what one number of the first dimension holds.
+    pub(crate) fn float_rows(&self, rows: Range<usize>) -> Result<Vec<f64>, FileCause> {
+        self.check_floats()?;
+        self.rows(rows)
+    }
+
+    pub(crate) fn check_floats(&self) -> Result<(), FileCause> {
+        match self.kind {
+            TypeDescriptor::Float(_) | TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => Ok(()),
+            _ => self.refuse_type("floating-point numbers"),
+        }
+    }
+
+    pub(crate) fn integers(&self) -> Result<Vec<i64>, FileCause> {
+        match self.kind {
+            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => self.all(),
+            _ => self.refuse_type("integers"),
+        }
+    }
+
+    /// Indices below `count`.
+    pub(crate) fn indices(&self, count: usize, of: &str) -> Result<Vec<usize>, FileCause> {
+        let values = self.integers()?;
+        let good = |&v: &i64| usize::try_from(v).ok().filter(|&v| v < count);
+        if let Some(at) = values.iter().position(|v| good(v).is_none()) {
+            let detail = format!("entry {at} is {}, but there are {count} {of}, counted from 0", values[at]);
+            return Err(FileCause::Value { name: self.name.clone(), detail });
+        }
+        Ok(values.iter().filter_map(good).collect())
+    }
+
+    /// Rows of 0 and 1, or of booleans as h5py has them.
+    pub(crate) fn flag_rows(&self, rows: Range<usize>) -> Result<Vec<bool>, FileCause> {
+        match self.kind {
+            // Never as `bool`: other bytes than 0 and 1 must not become one.
+            TypeDescriptor::Boolean | TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
+                let values: Vec<i64> = self.rows(rows)?;
+                if let Some(wrong) = values.iter().find(|v| !(0..=1).contains(*v)) {
+                    let detail = format!("{wrong} is neither 0 nor 1");
+                    return Err(FileCause::Value { name: self.name.clone(), detail });
+                }
+                Ok(values.into_iter().map(|v| v == 1).collect())
+            }
+            _ => self.refuse_type("integers 0 and 1, or booleans"),
+        }
+    }
+
+    fn all<T: H5Type>(&self) -> Result<Vec<T>, FileCause> {
+        self.room::<T>(self.shape.iter().product())?;
+        self.set.read_raw().map_err(damaged)
+    }
+
+    fn rows<T: H5Type>(&self, rows: Range<usize>) -> Result<Vec<T>, FileCause> {
+        let row: usize = self.shape[1..].iter().product();
+        self.room::<T>(rows.len().saturating_mul(row))?;
+        let mut slab = vec![SliceOrIndex::from(rows)];
+        slab.extend(self.shape[1..].iter().map(|_| SliceOrIndex::from(..)));
+        let selection = Selection::from(Hyperslab::from(slab));
+        let values = self.set.read_slice::<T, _, ndarray::IxDyn>(selection).map_err(damaged)?;
+        Ok(values.into_raw_vec_and_offset().0)
+    }
+
+    /// Asks for the memory that the library is about to take, so that there not being as much is an error.
+    fn room<T>(&self, count: usize) -> Result<(), FileCause> {
+        let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
+        let large = |_| FileCause::TooLarge { name: self.name.clone(), bytes };
+        Vec::<T>::new().try_reserve_exact(count).map_err(large)
+    }
+
+    /// Offset in the file, if the data lie there in one piece as numbers of type `T`, as they are in memory.
+    pub(crate) fn native_offset<T: H5Type>(&self) -> Result<Option<u64>, FileCause> {
+        let native = hdf5::Datatype::from_type::<T>().map_err(damaged)?;
+        let same = self.set.dtype().map_err(damaged)? == native;
+        Ok(self.set.offset().filter(|_| same && self.set.layout() == Layout::Contiguous))
+    }
+}
+
+/// Runs what reads a file, and joins its errors to the path.
+pub(crate) fn reading<T>(path: &Path, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
+    Opened::new(path).and_then(|opened| read(&opened)).map_err(|cause| cause.at(path))
+}

@@ -1,0 +1,123 @@
+//! Parts of a new file: data sets in one piece, with their room taken at once, and attributes.
+
+use crate::create::refused;
+use crate::error::FileCause;
+use crate::kind::Kind;
+use crate::read::LAYOUT;
+use hdf5::dataset::{AllocTime, FillTime, Layout};
+use hdf5::plist::link_create::CharEncoding;
+use hdf5::types::VarLenUnicode;
+use hdf5::{Dataset, Group, H5Type, Location};
+
+/// A case file as it was given: provenance only.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// Who wrote a file, and on what; empty where the file does not say.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Provenance {
+    /// Program and version.
+    pub program: String,
+    /// Instruction set, as in `x86_64`.
+    pub architecture: String,
+    /// Operating system.
+    pub system: String,
+}
+
+impl Provenance {
+    /// This program on this machine.
+    fn here() -> Self {
+        Self {
+            program: concat!("percute ", env!("CARGO_PKG_VERSION")).to_string(),
+            architecture: std::env::consts::ARCH.to_string(),
+            system: std::env::consts::OS.to_string(),
+        }
+    }
+}
+
+type Made<T> = Result<T, FileCause>;
+
+/// A group inside another.
+pub(crate) fn group(parent: &Group, name: &str) -> Made<Group> {
+    parent.create_group(name).map_err(|error| refused(&error))
+}
+
+/// Room for numbers that come later.
+pub(crate) fn room<T: H5Type>(parent: &Group, name: &str, shape: &[usize]) -> Made<Dataset> {
+    let set = parent
+        .new_dataset::<T>()
+        .shape(shape)
+        .alloc_time(Some(AllocTime::Early))
+        .fill_time(FillTime::Never)
+        .no_chunk()
+        .layout(Layout::Contiguous)
+        .char_encoding(CharEncoding::Utf8)
+        .create(name);
+    set.map_err(|error| refused(&error))
+}
+
+/// Numbers, in the order of memory.
+pub(crate) fn numbers<T: H5Type>(parent: &Group, name: &str, shape: &[usize], values: &[T]) -> Made<Dataset> {
+    let set = room::<T>(parent, name, shape)?;
+    if !values.is_empty() {
+        set.write_raw(values).map_err(|error| refused(&error))?;
+    }
+    Ok(set)
+}
+
+/// A text.
+pub(crate) fn text(parent: &Group, name: &str, value: &str) -> Made<Dataset> {
+    let set = parent.new_dataset::<VarLenUnicode>().create(name).map_err(|error| refused(&error))?;
+    set.write_scalar(&unicode(name, value)?).map_err(|error| refused(&error))?;
+    Ok(set)
+}
+
+/// A text attribute.
+pub(crate) fn text_attribute(of: &Location, name: &str, value: &str) -> Made<()> {
+    let attribute = of.new_attr::<VarLenUnicode>().create(name).map_err(|error| refused(&error))?;
+    attribute.write_scalar(&unicode(name, value)?).map_err(|error| refused(&error))
+}
+
+fn unicode(name: &str, value: &str) -> Made<VarLenUnicode> {
+    let wrong = |_| FileCause::Value { name: name.to_string(), detail: "a text must not hold NUL".to_string() };
+    value.parse().map_err(wrong)
+}
+
+/// An attribute of one number.
+pub(crate) fn attribute<T: H5Type>(of: &Location, name: &str, value: T) -> Made<()> {
+    let made = of.new_attr::<T>().create(name).and_then(|attribute| attribute.write_scalar(&value));
+    made.map_err(|error| refused(&error))
+}
+
+/// The unit of a data set.
+pub(crate) fn unit(set: &Dataset, unit: &str) -> Made<()> {
+    text_attribute(set, "unit", unit)
+}
+
+/// The group of percute with what it says about the file as a whole.
+pub(crate) fn ours(file: &Group, kind: Kind, dimension: usize) -> Made<Group> {
+    let ours = group(file, "percute")?;
+    text_attribute(&ours, "kind", if kind == Kind::History { "history" } else { "estimate" })?;
+    attribute(&ours, "layout", LAYOUT)?;
+    attribute(&ours, "dimension", dimension as i64)?;
+    let Provenance { program, architecture, system } = Provenance::here();
+    for (name, value) in [("program", program), ("architecture", architecture), ("system", system)] {
+        text_attribute(&ours, name, &value)?;
+    }
+    Ok(ours)
+}
+
+/// The statement of the problem and the case file.
+pub(crate) fn statement(ours: &Group, statement: &str, case: Option<&Case>) -> Made<()> {
+    text(ours, "problem", statement)?;
+    if let Some(case) = case {
+        let set = text(ours, "case", &case.text)?;
+        text_attribute(&set, "name", &case.name)?;
+    }
+    Ok(())
+}
