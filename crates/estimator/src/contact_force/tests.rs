@@ -185,3 +185,64 @@ fn sharp_is_statically_equivalent() {
         assert!((made - given).abs() < 1e-10, "{made} against {given}");
     }
 }
+
+/// Two edges, 1 m wide each, that meet at their lowest point; each rises by `slope` (rad). Left and right
+/// end, then the middle, as positions in the surface.
+fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
+    let rise = slope.tan();
+    let points = vec![[-1.0, rise], [0.0, 0.0], [1.0, rise], [0.0, 2.0]];
+    let mesh = TriangleMesh::new(points, &[[0, 1, 3], [1, 2, 3]], &Default::default(), &Default::default()).unwrap();
+    let problem = Problem::builder(mesh)
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .obstacle(Plane::new([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .build()
+        .unwrap();
+    let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
+    let places = [at(0), at(2), at(1)];
+    (problem, places)
+}
+
+/// The paper's densities at the ends of the left and of the right edge, outer node first; the right end has
+/// just arrived if `arriving`. All reactions are 1 N.
+fn paper_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
+    let (problem, [left, right, middle]) = kinked(slope);
+    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
+    let mut before = now.clone();
+    before.touching[right] = !arriving;
+    let reading = Reading::new(ContactForce::Paper, &problem);
+    let density = reading.interval(&problem, Some(&before), &now, &now, Some(&now)).start;
+    [left, right].map(|outer| {
+        let f = problem.surface().facets().iter().position(|f| f.nodes.contains(&outer)).unwrap();
+        [outer, middle].map(|node| {
+            let p = problem.surface().facets()[f].nodes.iter().position(|&n| n == node).unwrap();
+            density[f][p][1]
+        })
+    })
+}
+
+/// Edges that meet at 44° are neighbours: their middle node has the halves of both as its tributary
+/// length, and loses its force, on both, if the node at either far end does not keep its own.
+#[test]
+fn edges_that_meet_smoothly_are_neighbours() {
+    let slope = 22.0_f64.to_radians();
+    // 1 N over half an edge at the ends, over two halves in the middle; rounding of a few operations.
+    let (end, middle) = (2.0 * slope.cos(), slope.cos());
+    for (arriving, expected) in [(false, [[end, middle]; 2]), (true, [[end, 0.0], [0.0, 0.0]])] {
+        for (made, wanted) in paper_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
+            assert!((made - wanted).abs() <= 1e-14 * wanted, "{made} instead of {wanted}");
+        }
+    }
+}
+
+/// At 46° each edge is on its own: its half is the tributary length, and what happens at the far end of the
+/// other does not matter.
+#[test]
+fn edges_that_meet_at_a_corner_are_not() {
+    let slope = 23.0_f64.to_radians();
+    let alone = 2.0 * slope.cos();
+    for (arriving, expected) in [(false, [[alone; 2]; 2]), (true, [[alone; 2], [0.0; 2]])] {
+        for (made, wanted) in paper_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
+            assert!((made - wanted).abs() <= 1e-14 * wanted, "{made} instead of {wanted}");
+        }
+    }
+}

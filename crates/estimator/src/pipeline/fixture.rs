@@ -19,16 +19,33 @@ fn steps(problem: &TriangleProblem) -> TimeGrid {
     TimeGrid::uniform(20.0 * 0.9 * critical_time_step(problem), 20).unwrap()
 }
 
-/// A block that strikes and slides.
-pub(super) fn impact() -> (TriangleProblem, TimeGrid) {
-    let problem = Problem::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
+/// A block thrown on a plane, with rollers on these sides.
+fn thrown(velocity: [f64; 2], friction: f64, rollers: &[&str]) -> (TriangleProblem, TimeGrid) {
+    let mut builder = Problem::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
-        .initial_velocity(Initial::Uniform([400.0, -400.0]))
-        .obstacle(Plane::new([0.0, -6e-4], [0.0, 1.0], 0.2, None).unwrap())
-        .build()
-        .unwrap();
+        .initial_velocity(Initial::Uniform(velocity))
+        .obstacle(Plane::new([0.0, -6e-4], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap());
+    for group in rollers {
+        builder = builder.support(Support { group: group.to_string(), components: [true, false], velocity: None });
+    }
+    let problem = builder.build().unwrap();
     let times = steps(&problem);
     (problem, times)
+}
+
+/// A block that strikes and slides.
+pub(super) fn impact() -> (TriangleProblem, TimeGrid) {
+    thrown([400.0, -400.0], 0.2, &[])
+}
+
+/// A block that strikes and sticks: friction holds what slides there.
+pub(super) fn sticking() -> (TriangleProblem, TimeGrid) {
+    thrown([40.0, -400.0], 0.9, &[])
+}
+
+/// A block that strikes, its left side guided along the normal of the plane.
+pub(super) fn guided() -> (TriangleProblem, TimeGrid) {
+    thrown([0.0, -400.0], 0.2, &["left"])
 }
 
 /// A block whose top is driven; no plane.
@@ -51,10 +68,20 @@ pub(super) fn prepared<'p>(
     times: &'p TimeGrid,
     contact_force: ContactForce,
 ) -> Preparation<'p, 2, 3> {
+    prepared_until(problem, times, contact_force, times.step_count())
+}
+
+/// Its steps up to one of them.
+pub(super) fn prepared_until<'p>(
+    problem: &'p TriangleProblem,
+    times: &'p TimeGrid,
+    contact_force: ContactForce,
+    last: usize,
+) -> Preparation<'p, 2, 3> {
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
     let mut preparation = Preparation::new(problem, times, &Options { contact_force, ..Options::default() });
-    for n in 0..history.len() {
+    for n in 0..=last {
         let step = history.step(n).unwrap();
         preparation.check(&step).unwrap();
         preparation.push(&step);

@@ -31,9 +31,10 @@ const BLOCK: usize = 256;
 /// of contact, which wait until their nodes' next contact is known, and for the maps that were
 /// requested.
 ///
-/// A [`push`](StepSink::push) that fills a window works on all of it before it returns: 8 to 64 steps, some
-/// two million elements times steps, about a second on one core. Whoever wants to stop, or to tell
-/// how far it is, may have to wait that long; [`Options::window`] makes it shorter.
+/// A [`push`](StepSink::push) that fills a window works on all of it before it returns, and so does
+/// [`finish`](Estimator::finish) on the last one. Whoever wants to stop may have to wait that long: with
+/// the default window about a second on one core for up to 250 000 elements, and in proportion to them
+/// beyond, for a window has 8 steps at least. [`Options::window`] makes it shorter.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

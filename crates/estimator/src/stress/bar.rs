@@ -82,6 +82,13 @@ mod tests {
         assert!(r.divergence < 1e-14 && r.edges < 1e-14);
     }
 
+    /// ∫(1 + 2x + 3x²) over [0, 2] is 14.
+    #[test]
+    fn mean_of_a_quadratic() {
+        let (map, loading) = balanced();
+        assert!((map.mean(&loading) - 7.0).abs() < 1e-14);
+    }
+
     fn balanced() -> (BarStress, Loading<1, 2>) {
         let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
         (map, Loading { traction: [[[17.0]], [[-1.0]]], volume: [[2.0], [14.0]] })

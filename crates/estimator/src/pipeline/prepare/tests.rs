@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::options::ContactForce;
-use crate::pipeline::fixture::{SHOWS, driven, impact, prepared};
+use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
 use percute_core::problem::Initial;
 
 /// u_CA and u̇_CA that start elsewhere.
@@ -66,5 +66,93 @@ fn both_readings_are_checked_at_every_step() {
         let preparation = prepared(&problem, &times, reading);
         assert!(preparation.residuals.largest() < 1e-13);
         assert!(preparation.impulse.kept > 0.0);
+    }
+}
+
+/// ∫[b(−w, F) + w·F] over an edge of the plane y = const, by the rule of the rectangle's middle at so many
+/// points that a kink in one of them costs 1e-6 (W).
+fn power(length: f64, friction: f64, force: [[f64; 2]; 2], sliding: [f64; 2]) -> f64 {
+    let count = 1000;
+    let at = |k: usize| {
+        let s = (k as f64 + 0.5) / count as f64;
+        let line = |a: f64, b: f64| a + s * (b - a);
+        let w = line(sliding[0], sliding[1]);
+        friction * line(force[0][1], force[1][1]) * w.abs() + line(force[0][0], force[1][0]) * w
+    };
+    (0..count).map(at).sum::<f64>() * length / count as f64
+}
+
+/// The contact part against a sum by hand, step by step, where friction holds the nodes: they turn
+/// back, so that w_t changes its sign within edges, and the force is inside the cone.
+#[test]
+fn the_contact_part_step_by_step() {
+    let (problem, times) = sticking();
+    for reading in [ContactForce::Sharp, ContactForce::Paper] {
+        let preparation = prepared(&problem, &times, reading);
+        let levels = &preparation.levels;
+        let (mut turning, mut inside) = (0, 0);
+        for (f, facet) in problem.surface().facets().iter().enumerate() {
+            let mut sum = 0.0;
+            for n in 0..times.step_count() {
+                let (now, next, mid) = (&levels[n], &levels[n + 1], levels[n + 1].mid.as_ref().unwrap());
+                let nodes = facet.nodes.map(|k| problem.surface().nodes()[k].node.index());
+                let mut power = |knot: &Knot<2>, force: [[f64; 2]; 2]| {
+                    let sliding = nodes.map(|i| knot.velocity[i][0]);
+                    let pressed = force.iter().any(|f| f[1] > 0.0);
+                    turning += usize::from(pressed && sliding[0] * sliding[1] < 0.0);
+                    inside += usize::from(force.iter().any(|f| f[1] > 0.0 && f[0].abs() < 0.5 * f[1]));
+                    power(facet.area, 0.9, force, sliding)
+                };
+                let (start, end) = (now.density_after[f], next.density_before[f]);
+                let middle = [0, 1].map(|p| [0, 1].map(|c| 0.5 * (start[p][c] + end[p][c])));
+                let [a, m, b] = [power(&now.knot, start), power(mid, middle), power(&next.knot, end)];
+                // 2∫: twice the trapezoids of two half steps.
+                let half = 0.5 * times.step(n);
+                let found = next.contact[f];
+                let close = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b.abs();
+                assert!(close(found[0], sum + half * (a + m)), "{reading}, step {n}: {} ", found[0]);
+                sum += half * (a + m) + half * (m + b);
+                assert!(close(found[1], sum), "{reading}, step {n}: {} instead of {sum}", found[1]);
+            }
+            assert!(sum > 0.0, "{reading}");
+        }
+        assert!(turning > 3 && inside > 3, "{reading}: {turning}, {inside}");
+    }
+}
+
+/// Friction cannot move a node along a guide, whatever force acts on it.
+#[test]
+fn a_guided_node_keeps_its_tangential_motion() {
+    let (problem, times) = guided();
+    for reading in [ContactForce::Sharp, ContactForce::Paper] {
+        let preparation = prepared(&problem, &times, reading);
+        let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
+        let node = problem.surface().nodes()[at].node.index();
+        let pulled = |d: &crate::contact_force::Densities<2>| {
+            let force = crate::contact_force::nodal_forces(&problem, d)[at];
+            usize::from(force[0] != 0.0 && force[1] > 0.0)
+        };
+        let count: usize =
+            preparation.levels.iter().map(|l| pulled(&l.density_before) + pulled(&l.density_after)).sum();
+        assert!(count > 3, "{reading}: {count}");
+        for level in &preparation.levels {
+            assert_eq!([level.acceleration[node][0], level.acceleration_before[at][0]], [0.0; 2], "{reading}");
+        }
+    }
+}
+
+/// A phase that is open at the last step goes on: the paper's force is there at t_N if the node touched
+/// at t_{N−1} too, whatever was before.
+#[test]
+fn an_open_phase_has_its_force_at_the_last_step() {
+    let (problem, times) = impact();
+    let whole = prepared(&problem, &times, ContactForce::Paper);
+    let first = whole.levels.iter().position(|level| level.surface.touching.contains(&true)).unwrap();
+    assert!(whole.levels[first].surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
+    for (last, acts) in [(first, false), (first + 1, true), (first + 2, true)] {
+        let ended = prepared_until(&problem, &times, ContactForce::Paper, last);
+        let pressed = |d: &crate::contact_force::Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
+        let level = ended.levels.back().unwrap();
+        assert_eq!((level.index, pressed(&level.density_before)), (last, acts));
     }
 }
