@@ -1,18 +1,16 @@
 //! Case files.
 
 use crate::any::{Any, each};
-use crate::problem::ProblemData;
 use crate::{door, errors};
 use percute::case::{Case, CaseOf, Source};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct CaseData {
-    case: Any<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>,
+    pub(crate) case: Any<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>,
 }
 
 #[pymethods]
@@ -27,19 +25,6 @@ impl CaseData {
                 Case::Plane(case) => Any::Plane(case),
             },
         })
-    }
-
-    fn problem(&self) -> ProblemData {
-        let problem = match &self.case {
-            Any::Bar(case) => Any::Bar(Arc::new(case.problem.clone())),
-            Any::Plane(case) => Any::Plane(Arc::new(case.problem.clone())),
-        };
-        ProblemData::new(problem)
-    }
-
-    /// The instants (s).
-    fn times(&self) -> Vec<f64> {
-        each!(&self.case, case => case.times.instants().to_vec())
     }
 
     /// Arguments of `estimate` that the case states.

@@ -1,11 +1,14 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
+use percute::Failure;
 use percute::case::CaseError;
 use percute_core::dynamics::SimulationError;
+use percute_core::history::{MemoryError, SinkError};
 use percute_core::mesh::MeshError;
 use percute_core::problem::{Cause, InputError};
 use percute_core::time::TimeError;
 use percute_estimator::{EstimateError, RunError};
+use percute_io::{FileCause, FileError};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -90,13 +93,12 @@ fn cause(cause: &Cause) -> String {
 /// A simulation that failed.
 pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
     match error {
-        SimulationError::StartsTooNear { obstacle, .. } => {
-            input(py, &format!("`obstacles[{obstacle}].point`: {error}"))
-        }
-        SimulationError::Sink { cause, .. } if cause.is::<percute_core::history::MemoryError>() => {
-            PyMemoryError::new_err(format!("{cause}: give `store` the name of a file"))
-        }
-        _ => exception(py, "SimulationError", &error.to_string()),
+        SimulationError::StartsTooNear { obstacle, .. } => input(py, &format!("`obstacles[{obstacle}].point`: {error}")),
+        SimulationError::Sink { cause, .. } => match cause.downcast_ref::<MemoryError>() {
+            Some(MemoryError::Full { .. }) => PyMemoryError::new_err(format!("{cause}: give `store` the name of one")),
+            _ => steps(py, cause),
+        },
+        SimulationError::Unstable { .. } => exception(py, "SimulationError", &error.to_string()),
     }
 }
 
@@ -105,7 +107,47 @@ pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Simulation(error) => simulation(py, error),
         RunError::Estimate(EstimateError::Zero { .. } | EstimateError::Request(_)) => input(py, &error.to_string()),
-        _ => exception(py, "EstimateError", &error.to_string()),
+        RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
+        RunError::Source(cause) => steps(py, cause),
+    }
+}
+
+/// Steps that could not be handed on or read.
+pub(crate) fn steps(py: Python<'_>, error: &SinkError) -> PyErr {
+    match error.downcast_ref::<FileError>() {
+        Some(error) => file(py, error),
+        None => exception(py, "EstimateError", &error.to_string()),
+    }
+}
+
+/// A file that could not be made, written or read.
+pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
+    let name = match &error.cause {
+        FileCause::Missing => "MissingFileError",
+        FileCause::Exists => {
+            let message = format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
+            return exception(py, "ExistingFileError", &message);
+        }
+        FileCause::NotAFile
+        | FileCause::InUse
+        | FileCause::Create { .. }
+        | FileCause::NoSpace { .. }
+        | FileCause::Write { .. }
+        | FileCause::Finish { .. }
+        | FileCause::Lost
+        | FileCause::Read { .. }
+        | FileCause::Replaced
+        | FileCause::TooLarge { .. } => "StorageError",
+        _ => "FileFormatError",
+    };
+    exception(py, name, &error.to_string())
+}
+
+/// A stored history that cannot be used.
+pub(crate) fn failure(py: Python<'_>, error: &Failure) -> PyErr {
+    match error {
+        Failure::File(error) => file(py, error),
+        other => exception(py, "FileFormatError", &other.to_string()),
     }
 }
 

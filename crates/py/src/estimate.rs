@@ -1,6 +1,7 @@
 //! Estimates of histories.
 
-use crate::any::{Any, each};
+use crate::any::{Any, each, map};
+use crate::problem::ProblemData;
 use crate::history::HistoryData;
 use crate::run::{Run, Stoppable};
 use crate::{door, errors, view};
@@ -8,7 +9,6 @@ use numpy::{PyArray1, PyArrayDyn};
 use percute::case::Instants;
 use percute::report::{Report, Subject};
 use percute_core::dynamics::{Simulation, critical_time_step};
-use percute_core::history::StepSource;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -84,13 +84,13 @@ fn estimate_one<const D: usize, const N: usize>(
 ) -> PyResult<Arc<Made<D, N>>> {
     // An `every` of zero is for the estimator to refuse.
     let every = options.every.max(1);
-    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(run.history.times(), every));
+    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(run.times(), every));
     let request = Request { steps, fields };
     let start = Instant::now();
     let work = {
         let run = run.clone();
         move |mut watch: door::Watch| {
-            let source = Stoppable { source: &run.history, watch: watch.clone() };
+            let source = Stoppable { source: run.source(), watch: watch.clone() };
             percute_estimator::estimate(&run.problem, &source, options, &request, &mut watch)
         }
     };
@@ -101,14 +101,19 @@ fn estimate_one<const D: usize, const N: usize>(
 
 impl<const D: usize, const N: usize> Made<D, N> {
     fn report(&self, name: &str) -> Report {
-        let (problem, times) = (&*self.run.problem, self.run.history.times());
-        let subject = Subject { name, problem, times, critical_step: critical_time_step(problem), held: None };
+        let (problem, times) = (&*self.run.problem, self.run.times());
+        let held = self.run.file().map(|_| self.run.count());
+        let subject = Subject { name, problem, times, critical_step: critical_time_step(problem), held };
         Report::new(&subject, self.options, &self.simulation, self.estimate.clone(), self.seconds)
     }
 }
 
 #[pymethods]
 impl EstimateData {
+    fn problem(&self) -> ProblemData {
+        ProblemData::new(map!(&self.made, m => m.run.problem.clone()))
+    }
+
     /// The measures: those of `percute.Estimate` that are single numbers.
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (error, time_of_sup, steps, end, kept) = each!(&self.made, m => {
@@ -185,7 +190,7 @@ impl EstimateData {
 
     /// Each map as its arguments.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| map(py, m, i)).collect())
+        each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
     }
 
     /// The document of `percute run --json`.
@@ -199,7 +204,7 @@ impl EstimateData {
 }
 
 /// One map.
-fn map<'py, const D: usize, const N: usize>(
+fn one_map<'py, const D: usize, const N: usize>(
     py: Python<'py>,
     made: &Arc<Made<D, N>>,
     at: usize,

@@ -135,8 +135,8 @@ impl BarImpactData {
 }
 
 fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: door::Watch) -> Result<TrueError, String> {
-    let mut recorder = Recorder::new(&run.problem, run.history.times());
-    let source = Stoppable { source: &run.history, watch };
+    let mut recorder = Recorder::new(&run.problem, run.times());
+    let source = Stoppable { source: run.source(), watch };
     source.replay(&mut recorder).map_err(|error| error.to_string())?;
     bar_impact_error(&run.problem, &recorder.finish(), exact).map_err(|error: ReferenceError| error.to_string())
 }

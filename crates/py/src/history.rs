@@ -1,71 +1,26 @@
 //! Histories: simulated, shown as arrays, put together again.
 
-use crate::any::{Any, AnyProblem, each, map};
+use crate::any::{AnyProblem, each, map};
 use crate::door::Watch;
 use crate::problem::ProblemData;
-use crate::run::{AnyRun, Growing, Run};
-use crate::{door, errors, time, view};
-use numpy::{PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
+use crate::run::{AnyRun, Run};
+use crate::{door, errors, view};
+use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
-use percute_core::history::{History, Step, StepSink, StepSource};
+use percute_core::history::{History, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_io::FileError;
+use percute_io::history::HistoryFile;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A history of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct HistoryData {
     pub(crate) run: AnyRun,
-}
-
-/// Simulates and keeps all steps in memory. What is raised on the way has what was done as its `history`.
-#[pyfunction]
-pub(crate) fn simulate(
-    py: Python<'_>,
-    problem: &ProblemData,
-    end: Option<f64>,
-    courant: Option<f64>,
-    step: Option<f64>,
-    steps: Option<Vec<f64>>,
-    progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<HistoryData> {
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let run = match &problem.problem {
-        Any::Bar(problem) => simulate_one(py, problem, &times, progress, Any::Bar)?,
-        Any::Plane(problem) => simulate_one(py, problem, &times, progress, Any::Plane)?,
-    };
-    Ok(HistoryData { run })
-}
-
-fn simulate_one<const D: usize, const N: usize>(
-    py: Python<'_>,
-    problem: &Arc<Problem<D, N>>,
-    times: &TimeGrid,
-    progress: Option<&Bound<'_, PyAny>>,
-    either: fn(Arc<Run<D, N>>) -> AnyRun,
-) -> PyResult<AnyRun> {
-    let growing = Growing::new(times);
-    let work = {
-        let (problem, times, mut sink) = (problem.clone(), times.clone(), growing.clone());
-        move |mut watch: Watch| percute_core::dynamics::simulate(&problem, &times, &mut sink, &mut watch)
-    };
-    let outcome = door::through(py, progress, work);
-    let kept = growing.take();
-    let run = |history, balance| either(Arc::new(Run::new(problem.clone(), history, balance)));
-    let error = match outcome.map(|done| done.map_err(|error| errors::simulation(py, &error))) {
-        Ok(Ok(simulation)) => {
-            let history = kept.ok_or_else(|| errors::percute_error(py, "internal error: no history"))?;
-            return Ok(run(history, Some(simulation.balance_over_time)));
-        }
-        Ok(Err(error)) | Err(error) => error,
-    };
-    if let Some(history) = kept {
-        // An exception that takes no attributes is raised all the same.
-        let _ = error.value(py).setattr("history", HistoryData { run: run(history, None) });
-    }
-    Err(error)
 }
 
 #[pymethods]
@@ -104,35 +59,65 @@ impl HistoryData {
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         each!(&self.run, run => {
-            let instants = run.history.times().instants().len();
-            view::view(py, run, |r| r.history.times().instants(), &[instants])
+            let instants = run.times().instants().len();
+            view::view(py, run, |r| r.times().instants(), &[instants])
         })
     }
 
     /// Number of instants held.
     #[getter]
     fn count(&self) -> usize {
-        each!(&self.run, run => run.history.count())
+        each!(&self.run, run => run.count())
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        each!(&self.run, run => run.complete)
+        each!(&self.run, run => run.count() == run.times().instants().len())
     }
 
+    /// Nodes of the rows of reactions and touching status.
     #[getter]
+    fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        each!(&self.run, run => view::column(py, &run.contact_nodes(), |n| *n as i64))
+    }
+
+    /// The file that holds the steps, or none.
+    #[getter]
+    fn path(&self) -> Option<PathBuf> {
+        each!(&self.run, run => run.file().map(|file| file.path().to_path_buf()))
+    }
+
+    /// Name, shape and first byte of each array in the file that can be mapped into memory.
+    fn arrays(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Vec<usize>, u64)>> {
+        each!(&self.run, run => {
+            let Some(file) = run.file().cloned() else { return Ok(Vec::new()) };
+            let arrays = door::through(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
+            Ok(arrays.into_iter().filter_map(|a| Some((a.name, a.shape, a.offset?))).collect())
+        })
+    }
+
+    /// From memory as it is; from a file a copy.
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.run, run => view::field(py, run, |r| r.history.displacement(), &run.shape()))
+        each!(&self.run, run => match run.memory() {
+            Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::displacement), &run.shape()),
+            None => view::field(py, &read(py, run, HistoryFile::displacement)?, Vec::as_slice, &run.shape()),
+        })
     }
 
-    #[getter]
+    /// Likewise.
     fn reaction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.run, run => view::field(py, run, |r| r.history.reaction(), &run.contact_shape()))
+        each!(&self.run, run => match run.memory() {
+            Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::reaction), &run.contact_shape()),
+            None => view::field(py, &read(py, run, HistoryFile::reaction)?, Vec::as_slice, &run.contact_shape()),
+        })
     }
 
-    #[getter]
+    /// Likewise.
     fn touching<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        each!(&self.run, run => view::view(py, run, |r| r.history.touching(), &run.contact_shape()))
+        each!(&self.run, run => match run.memory() {
+            Some(_) => view::view(py, run, |r| r.memory().map_or(&[], History::touching), &run.contact_shape()),
+            None => view::view(py, &read(py, run, HistoryFile::touching)?, Vec::as_slice, &run.contact_shape()),
+        })
     }
 
     /// Velocity and acceleration, derived now.
@@ -140,7 +125,7 @@ impl HistoryData {
         each!(&self.run, run => {
             let worker = run.clone();
             let derived = door::through(py, None, move |watch| worker.motion(watch))?;
-            let motion = Arc::new(derived.map_err(|error| errors::percute_error(py, &error.to_string()))?);
+            let motion = Arc::new(derived.map_err(|error| errors::steps(py, &error))?);
             Ok([
                 view::field(py, &motion, |m| &m.velocity, &run.shape())?,
                 view::field(py, &motion, |m| &m.acceleration, &run.shape())?,
@@ -153,7 +138,7 @@ impl HistoryData {
         each!(&self.run, run => {
             let worker = run.clone();
             let kept = door::through(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
-            columns(py, &kept.map_err(|error| errors::percute_error(py, &error.to_string()))?)
+            columns(py, &kept.map_err(|error| errors::steps(py, &error))?)
         })
     }
 }
@@ -162,6 +147,26 @@ impl HistoryData {
     fn any_problem(&self) -> AnyProblem {
         map!(&self.run, run => run.problem.clone())
     }
+}
+
+/// Reads a field at all instants of a file, one after the other.
+fn read<const D: usize, const N: usize, T: Send + 'static>(
+    py: Python<'_>,
+    run: &Arc<Run<D, N>>,
+    field: fn(&HistoryFile<D, N>, usize) -> Result<Vec<T>, FileError>,
+) -> PyResult<Arc<Vec<T>>> {
+    let run = run.clone();
+    let work = move |watch: Watch| {
+        let mut rows = Vec::new();
+        for n in 0..run.count() {
+            match run.file() {
+                Some(file) if !watch.0.stopped() => rows.extend(field(file, n)?),
+                _ => break,
+            }
+        }
+        Ok(rows)
+    };
+    door::through(py, None, work)?.map(Arc::new).map_err(|error| errors::file(py, &error))
 }
 
 /// An array for each quantity of the balance.

@@ -11,6 +11,7 @@ mod history;
 mod mesh;
 mod problem;
 mod run;
+mod simulate;
 mod statement;
 mod time;
 mod view;
@@ -30,11 +31,13 @@ mod _percute {
     #[pymodule_export]
     use super::exact::BarImpactData;
     #[pymodule_export]
-    use super::history::{HistoryData, simulate};
+    use super::history::HistoryData;
     #[pymodule_export]
     use super::mesh::MeshData;
     #[pymodule_export]
     use super::problem::ProblemData;
+    #[pymodule_export]
+    use super::simulate::{open_history, simulate, simulate_case};
 
     /// Adds what is no function.
     #[pymodule_init]

@@ -2,20 +2,29 @@
 
 use crate::any::Any;
 use crate::door::Watch;
+use percute::history::Stored;
 use percute_core::dynamics::{Balance, Balancing, Kinematics};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_io::FileError;
+use percute_io::history::{HistoryFile, HistorySource};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
 /// A history and the problem it solves; it never changes.
 pub(crate) struct Run<const D: usize, const N: usize> {
     pub(crate) problem: Arc<Problem<D, N>>,
-    pub(crate) history: History<D>,
-    /// Whether it is what was planned, to the end.
-    pub(crate) complete: bool,
+    pub(crate) steps: Steps<D, N>,
     balance: OnceLock<Vec<Balance>>,
+}
+
+/// Where the steps are.
+pub(crate) enum Steps<const D: usize, const N: usize> {
+    /// In memory.
+    Memory(History<D>),
+    /// In a file, from which they are read as they are needed.
+    File(HistoryFile<D, N>, HistorySource<D, N>),
 }
 
 /// A run of either dimension, shared.
@@ -29,18 +38,67 @@ pub(crate) struct Motion<const D: usize> {
 
 impl<const D: usize, const N: usize> Run<D, N> {
     pub(crate) fn new(problem: Arc<Problem<D, N>>, history: History<D>, balance: Option<Vec<Balance>>) -> Self {
-        let complete = history.len() == history.times().instants().len();
-        Self { problem, history, complete, balance: balance.map_or_else(OnceLock::new, OnceLock::from) }
+        let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
+        Self { problem, steps: Steps::Memory(history), balance }
+    }
+
+    /// A history in a file.
+    pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
+        let source = stored.file.source(&stored.problem)?;
+        let steps = Steps::File(stored.file, source);
+        Ok(Self { problem: Arc::new(stored.problem), steps, balance: OnceLock::new() })
+    }
+
+    /// The steps, one after the other.
+    pub(crate) fn source(&self) -> &dyn StepSource<D> {
+        match &self.steps {
+            Steps::Memory(history) => history,
+            Steps::File(_, source) => source,
+        }
+    }
+
+    /// The file, if that is where the steps are.
+    pub(crate) fn file(&self) -> Option<&HistoryFile<D, N>> {
+        match &self.steps {
+            Steps::Memory(_) => None,
+            Steps::File(file, _) => Some(file),
+        }
+    }
+
+    /// The history in memory, if that is where it is.
+    pub(crate) fn memory(&self) -> Option<&History<D>> {
+        match &self.steps {
+            Steps::Memory(history) => Some(history),
+            Steps::File(..) => None,
+        }
+    }
+
+    /// The instants planned.
+    pub(crate) fn times(&self) -> &TimeGrid {
+        self.source().times()
+    }
+
+    /// Number of instants held.
+    pub(crate) fn count(&self) -> usize {
+        self.source().count()
+    }
+
+    /// Nodes of the rows of reactions and touching status.
+    pub(crate) fn contact_nodes(&self) -> Vec<usize> {
+        match self.file() {
+            Some(file) => file.contact_nodes().to_vec(),
+            None => self.problem.surface().nodes().iter().map(|c| c.node.index()).collect(),
+        }
     }
 
     /// Instants and nodes.
     pub(crate) fn shape(&self) -> [usize; 2] {
-        [self.history.count(), self.problem.mesh().node_count()]
+        [self.count(), self.problem.mesh().node_count()]
     }
 
     /// Instants and nodes of the contact surface.
     pub(crate) fn contact_shape(&self) -> [usize; 2] {
-        [self.history.count(), self.problem.surface().nodes().len()]
+        [self.count(), self.contact_nodes().len()]
     }
 
     /// Energies and works at every step, computed once.
@@ -48,17 +106,17 @@ impl<const D: usize, const N: usize> Run<D, N> {
         if let Some(balance) = self.balance.get() {
             return Ok(balance);
         }
-        let mut balancing = Balancing::new(&self.problem, self.history.times());
-        Stoppable { source: &self.history, watch }.replay(&mut balancing)?;
+        let mut balancing = Balancing::new(&self.problem, self.times());
+        Stoppable { source: self.source(), watch }.replay(&mut balancing)?;
         Ok(self.balance.get_or_init(|| balancing.finish()))
     }
 
     /// v_n and a_n by the scheme, or as the history brings them.
     pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
-        let kinematics = Kinematics::new(&self.problem, self.history.times());
+        let kinematics = Kinematics::new(&self.problem, self.times());
         let motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
         let mut deriving = Deriving { kinematics, motion };
-        Stoppable { source: &self.history, watch }.replay(&mut deriving)?;
+        Stoppable { source: self.source(), watch }.replay(&mut deriving)?;
         Ok(deriving.motion)
     }
 }
