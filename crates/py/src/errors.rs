@@ -93,7 +93,9 @@ fn cause(cause: &Cause) -> String {
 /// A simulation that failed.
 pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
     match error {
-        SimulationError::StartsTooNear { obstacle, .. } => input(py, &format!("`obstacles[{obstacle}].point`: {error}")),
+        SimulationError::StartsTooNear { obstacle, .. } => {
+            input(py, &format!("`obstacles[{obstacle}].point`: {error}"))
+        }
         SimulationError::Sink { cause, .. } => match cause.downcast_ref::<MemoryError>() {
             Some(MemoryError::Full { .. }) => PyMemoryError::new_err(format!("{cause}: give `store` the name of one")),
             _ => steps(py, cause),
@@ -125,7 +127,8 @@ pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
     let name = match &error.cause {
         FileCause::Missing => "MissingFileError",
         FileCause::Exists => {
-            let message = format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
+            let message =
+                format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
             return exception(py, "ExistingFileError", &message);
         }
         FileCause::NotAFile

@@ -1,8 +1,8 @@
 //! Estimates of histories.
 
 use crate::any::{Any, each, map};
-use crate::problem::ProblemData;
 use crate::history::HistoryData;
+use crate::problem::ProblemData;
 use crate::run::{Run, Stoppable};
 use crate::{door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
