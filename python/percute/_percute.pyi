@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from os import PathLike
+from pathlib import Path
 from typing import Any, TypedDict, final
 
 import numpy as np
@@ -18,7 +19,9 @@ __all__ = [
     "__version__",
     "command",
     "estimate",
+    "open_history",
     "simulate",
+    "simulate_case",
 ]
 
 __version__: str
@@ -115,8 +118,6 @@ class HistoryData:
         displacement: _Floats,
         reaction: _Floats,
         touching: NDArray[np.bool_],
-        velocity: _Floats | None,
-        acceleration: _Floats | None,
     ) -> HistoryData: ...
     @property
     def problem(self) -> ProblemData: ...
@@ -127,10 +128,12 @@ class HistoryData:
     @property
     def complete(self) -> bool: ...
     @property
+    def contact_nodes(self) -> _Integers: ...
+    @property
+    def path(self) -> Path | None: ...
+    def arrays(self) -> list[tuple[str, list[int], int]]: ...
     def displacement(self) -> _Floats: ...
-    @property
     def reaction(self) -> _Floats: ...
-    @property
     def touching(self) -> NDArray[np.bool_]: ...
     def motion(self) -> list[_Floats]: ...
     def balance(self) -> dict[str, _Floats]: ...
@@ -152,10 +155,8 @@ class EstimateData:
 @final
 class CaseData:
     def __new__(cls, name: str, text: str) -> CaseData: ...
-    def problem(self) -> ProblemData: ...
-    def times(self) -> list[float]: ...
     def options(self) -> dict[str, Any]: ...
-    def outputs(self) -> tuple[str | None, str | None]: ...
+    def outputs(self) -> tuple[Path | None, Path | None]: ...
 
 @final
 class BarImpactData:
@@ -177,12 +178,15 @@ class BarImpactData:
 def command(arguments: Sequence[str]) -> int: ...
 def simulate(
     problem: ProblemData,
-    end: float | None,
-    courant: float | None,
-    step: float | None,
-    steps: Sequence[float] | None,
+    times: tuple[float | None, float | None, float | None, Sequence[float] | None],
+    store: str | PathLike[str] | None,
+    overwrite: bool,
     progress: _Tell,
 ) -> HistoryData: ...
+def simulate_case(
+    case: CaseData, store: str | PathLike[str] | None, overwrite: bool, progress: _Tell
+) -> HistoryData: ...
+def open_history(path: str | PathLike[str]) -> HistoryData: ...
 def estimate(
     history: HistoryData,
     contact_force: str,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -232,8 +232,11 @@ class Estimate:
         if n < 0:
             raise InputError(f"`n` is {n}; it must be 0 or more")
         mesh = self.problem.mesh
-        centroid = lambda element: tuple(mesh.points[mesh.cells[element]].mean(axis=0).tolist())  # noqa: E731
-        return [WorstElement(element, error, centroid(element)) for element, error in self._data.worst_elements(n)]
+        worst = []
+        for element, error in self._data.worst_elements(n):
+            centroid = mesh.points[mesh.cells[element]].mean(axis=0)
+            worst.append(WorstElement(element, error, tuple(centroid.tolist())))
+        return worst
 
     def to_json(self) -> str:
         """Give the document that ``percute run --json`` prints, described in ``docs/json.md``."""
@@ -286,7 +289,7 @@ class Estimate:
         return self
 
 
-def _whole(name: str, value: int | None) -> int | None:
+def _whole(name: str, value: int | np.integer[Any] | None) -> int | None:
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
@@ -347,12 +350,13 @@ def estimate(
     if not isinstance(history, History):
         raise InputError(f"`history` is {history!r}; it must be a History")
     wanted: int | list[float] | None
-    if instants is None or (isinstance(instants, int) and not isinstance(instants, bool)):
+    if instants is None or (isinstance(instants, int | np.integer)):
         wanted = _whole("instants", instants)
     else:
-        wanted = np.atleast_1d(numbers("instants", instants, most=1)).tolist()
-        if not all(0 <= time < np.inf for time in wanted):
-            raise InputError(f"`instants` is {wanted}; times must be finite and not negative (s)")
+        times = np.atleast_1d(numbers("instants", instants, most=1))
+        if not np.all(np.isfinite(times) & (times >= 0)):
+            raise InputError(f"`instants` is {times}; times must be finite and not negative (s)")
+        wanted = times.tolist()
     every, threads, window = _whole("every", every) or 1, _whole("threads", threads), _whole("window", window)
     with shown(progress) as tell:
         data = _percute.estimate(

@@ -8,11 +8,85 @@ from pathlib import Path
 from percute import _percute
 from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate
-from percute.history import simulate
-from percute.problem import Problem
-from percute.progress import ProgressOption
+from percute.history import History, absolute, history_of_the_exception
+from percute.progress import ProgressOption, shown
 
-__all__ = ["run"]
+__all__ = ["open", "run"]
+
+
+def open(path: str | os.PathLike[str]) -> History:
+    """Open a history.
+
+    Parameters
+    ----------
+    path : str or path
+        A history file: of percute, or of another program that follows ``docs/history.md``.
+
+    Returns
+    -------
+    History
+        Its arrays are views of the file, which must not change as long as they are in use.
+
+    Raises
+    ------
+    MissingFileError
+        There is no such file.
+    FileFormatError
+        It is no history, damaged, newer than this program, or its contents contradict each other.
+    StorageError
+        It cannot be read, or another program is writing it.
+    """
+    return History._of(_percute.open_history(os.path.abspath(path)), name=os.fspath(path))
+
+
+def run(
+    case: str | os.PathLike[str],
+    *,
+    store: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    threads: int | None = None,
+    window: int | None = None,
+    progress: ProgressOption = None,
+) -> Estimate:
+    """Run a case: simulate it and estimate the error, as ``percute run`` does.
+
+    Parameters
+    ----------
+    case : str or path
+        Name of a case file, or the text of a case (several lines of TOML).
+    store : str or path, optional
+        A file for the history; by default the one that the case names in ``[output]``, else it is kept in memory.
+    overwrite : bool, default: False
+        Whether a file that exists already is replaced.
+    threads, window : int, optional
+        As for `estimate`.
+    progress : bool or callable, optional
+        As for `simulate`.
+
+    Returns
+    -------
+    Estimate
+        With the simulation as its ``history``.
+
+    Raises
+    ------
+    InputError
+        The case is wrong; the message has the line.
+    MissingFileError, StorageError
+        The case cannot be read, or the history cannot be written.
+    SimulationError, EstimateError, KeyboardInterrupt
+        As for `simulate` and `estimate`.
+    """
+    name, text = _read(case)
+    read = _percute.CaseData(name, text)
+    file = store if store is not None else read.outputs()[0]
+    with shown(progress) as tell, history_of_the_exception():
+        history = History._of(_percute.simulate_case(read, absolute(file), overwrite, tell), name=name)
+        try:
+            return estimate(history, **read.options(), threads=threads, window=window, progress=tell)
+        except BaseException as error:
+            error.history = history  # type: ignore[attr-defined]
+            raise
 
 
 def _read(case: str | os.PathLike[str]) -> tuple[str, str]:

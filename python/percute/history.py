@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.errors import InputError
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.statement import numbers
@@ -52,15 +56,17 @@ class History:
 
     _data: _percute.HistoryData
     _problem: Problem | None
+    _name: str
 
     def __init__(self) -> None:
         raise TypeError("histories are made by percute.simulate, percute.run and percute.open")
 
     @classmethod
-    def _of(cls, data: _percute.HistoryData, problem: Problem | None = None) -> History:
+    def _of(cls, data: _percute.HistoryData, problem: Problem | None = None, name: str = "") -> History:
         history = cls.__new__(cls)
         history._data = data
         history._problem = problem
+        history._name = name
         return history
 
     @property
@@ -78,22 +84,46 @@ class History:
     @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        return self._data.displacement
+        mapped = self._mapped("displacement", np.dtype("<f8"))
+        return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
 
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
-        return self._data.reaction
+        mapped = self._mapped("reaction", np.dtype("<f8"))
+        return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
-        return self._data.touching
+        mapped = self._mapped("touching", np.dtype("u1"))
+        # Any byte but 0 says yes; as a bool of numpy only 1 may.
+        if mapped is None or mapped.max(initial=0) > 1:
+            return self._data.touching()
+        return mapped.view(np.bool_)
+
+    def _mapped(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any] | None:
+        """Map an array of the file into memory; None if there is none that can be."""
+        path = self.path
+        for known, shape, offset in self._arrays if path is not None else ():
+            if known == name and path is not None and 0 not in shape:
+                return np.memmap(path, dtype, "r", offset, tuple(shape))[: len(self)]
+        return None
+
+    @cached_property
+    def _arrays(self) -> Sequence[tuple[str, list[int], int]]:
+        return self._data.arrays()
 
     @cached_property
     def contact_nodes(self) -> NDArray[np.int64]:
-        """Nodes that may touch a plane, shape (contact nodes,): those of ``reaction`` and ``touching``."""
-        return self.problem.contact_nodes
+        """Nodes of the rows of ``reaction`` and ``touching``, shape (contact nodes,)."""
+        return self._data.contact_nodes
+
+    @cached_property
+    def path(self) -> Path | None:
+        """The file that holds the steps; None if they are in memory."""
+        path = self._data.path
+        return None if path is None else Path(path)
 
     @cached_property
     def _motion(self) -> Sequence[NDArray[np.float64]]:
@@ -153,8 +183,10 @@ class History:
         return f"<percute.History: {held}{planned}, {nodes} nodes, {dimension}D>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        arrays = (self.displacement, self.reaction, self.touching)
-        return _rebuild, (self.problem, self._data.times.tolist(), *(array.copy() for array in arrays))
+        if self.path is not None:
+            return _reopen, (str(self.path),)
+        arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
+        return _rebuild, (self.problem, self._data.times.tolist(), *arrays)
 
     def __copy__(self) -> History:
         return self
@@ -163,8 +195,20 @@ class History:
         return self
 
 
-def _rebuild(problem: Problem, times: list[float], *arrays: Any) -> History:
-    return History._of(_percute.HistoryData.from_arrays(problem._data, times, *arrays, None, None), problem)
+def _reopen(path: str) -> History:
+    return History._of(_percute.open_history(path), name=path)
+
+
+def _rebuild(
+    problem: Problem,
+    times: list[float],
+    displacement: NDArray[np.float64],
+    reaction: NDArray[np.float64],
+    touching: NDArray[np.bool_],
+) -> History:
+    return History._of(
+        _percute.HistoryData.from_arrays(problem._data, times, displacement, reaction, touching), problem
+    )
 
 
 def simulate(
@@ -174,6 +218,8 @@ def simulate(
     courant: float | None = None,
     step: float | None = None,
     steps: ArrayLike | None = None,
+    store: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
     progress: ProgressOption = None,
 ) -> History:
     """Simulate by central differences with a lumped mass and contact multipliers, eq. [28] to [38].
@@ -190,6 +236,11 @@ def simulate(
         Time step (s). The run has equal steps of at most about this length and ends at T exactly.
     steps : (n,) floats
         Time steps (s), one by one.
+    store : str or path, optional
+        A file, such as ``"block.vtkhdf"``, to which the steps are written as they come, instead of keeping them in memory; see
+        ``docs/history.md``. Its size is known at the start, and room for it is taken at once.
+    overwrite : bool, default: False
+        Whether a file that exists already is replaced.
     progress : bool or callable, optional
         With True, progress is shown on a terminal or in a notebook. A function is called with a `Progress` about twenty
         times a second; an exception that it raises stops the run.
@@ -204,16 +255,32 @@ def simulate(
         An argument is wrong; or the start is too near to a plane.
     SimulationError
         The run became unstable.
+    ExistingFileError, StorageError
+        The file exists already or cannot be written; the steps before that are in it.
     KeyboardInterrupt
         After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``.
     """
+    if not isinstance(problem, Problem):
+        raise InputError(f"`problem` is {problem!r}; it must be a Problem")
     lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
-    with shown(progress) as tell:
-        try:
-            data = _percute.simulate(problem._data, end, courant, step, lengths, tell)
-        except BaseException as error:
-            done = getattr(error, "history", None)
-            if isinstance(done, _percute.HistoryData):
-                error.history = History._of(done, problem)  # type: ignore[attr-defined]
-            raise
-    return History._of(data, problem)
+    times = (end, courant, step, lengths)
+    with shown(progress) as tell, history_of_the_exception(problem):
+        data = _percute.simulate(problem._data, times, absolute(store), overwrite, tell)
+    return History._of(data, problem, "" if store is None else os.fspath(store))
+
+
+def absolute(store: str | os.PathLike[str] | None) -> str | None:
+    """Give a name that stays good when the working directory changes."""
+    return None if store is None else os.path.abspath(store)
+
+
+@contextmanager
+def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
+    """Make a `History` of the data that hangs on an exception."""
+    try:
+        yield
+    except BaseException as error:
+        done = getattr(error, "history", None)
+        if isinstance(done, _percute.HistoryData):
+            error.history = History._of(done, problem)  # type: ignore[attr-defined]
+        raise

@@ -11,6 +11,7 @@ from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
 
     from percute.estimation import Estimate
     from percute.history import History
@@ -20,7 +21,6 @@ __all__ = ["plot_field", "plot_map", "plot_over_time"]
 
 Floats = NDArray[np.float64]
 
-ERROR = "viridis"
 FIELD = "viridis"
 SIGNED = "RdBu_r"
 
@@ -51,17 +51,23 @@ def _draw_body(axes: Axes, points: Floats, cells: Any, values: Floats, label: st
     factor, prefix = _prefix(points)
     x, y = points.T / factor
     limit = float(np.abs(values).max()) or 1.0
-    limits = {"vmin": -limit, "vmax": limit} if colours == SIGNED else {"vmin": min(0.0, float(values.min()))}
-    style: dict[str, Any] = {"cmap": colours, "rasterized": True, **limits}
+    low, high = (-limit, limit) if colours == SIGNED else (min(0.0, float(values.min())), limit)
+    drawn: ScalarMappable
     if len(values) == len(cells):
-        drawn = axes.tripcolor(x, y, cells, facecolors=values, edgecolors="face", linewidth=0.2, **style)
+        # Without smoothed edges: the body shines through between smoothed neighbours.
+        drawn = axes.tripcolor(
+            x, y, facecolors=values, triangles=cells, cmap=colours, vmin=low, vmax=high, antialiased=False, rasterized=True
+        )
     else:
-        drawn = axes.tripcolor(x, y, cells, values, shading="gouraud", **style)
+        drawn = axes.tripcolor(
+            x, y, values, triangles=cells, cmap=colours, vmin=low, vmax=high, shading="gouraud", rasterized=True
+        )
     axes.set_aspect("equal")
     axes.margins(0.05)
     axes.set_xlabel(f"x ({prefix}m)")
     axes.set_ylabel(f"y ({prefix}m)")
-    axes.figure.colorbar(drawn, ax=axes, label=label)
+    # As high as the body, whatever its shape.
+    axes.figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
 
 
 def _draw_bar(axes: Axes, points: Floats, cells: Any, values: Floats, label: str) -> None:
@@ -83,12 +89,12 @@ def _draw_bar(axes: Axes, points: Floats, cells: Any, values: Floats, label: str
 def plot_map(estimate: Estimate, axes: Axes | None) -> Axes:
     """Draw e_E of each element (J^½), eq. [20]."""
     axes = _axes(axes)
-    mesh, label = estimate.problem.mesh, "error of the element, e_E (J$^{1/2}$)"
+    mesh, label = estimate.problem.mesh, "error of the element, $e_E$ (J$^{1/2}$)"
     if mesh.dimension == 1:
         _draw_bar(axes, mesh.points, mesh.cells, estimate.by_element, label)
     else:
-        _draw_body(axes, mesh.points, mesh.cells, estimate.by_element, label, ERROR)
-    axes.set_title(f"error {estimate.relative_sup:.3g} of the reference, at most".replace(", at most", " at the sup"))
+        _draw_body(axes, mesh.points, mesh.cells, estimate.by_element, label, FIELD)
+    axes.set_title(f"largest error {estimate.sup:.4g} J$^{{1/2}}$, {estimate.relative_sup:.3g} of the reference")
     return axes
 
 

@@ -104,7 +104,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let (problem, times) = (&*self.run.problem, self.run.times());
         let held = self.run.file().map(|_| self.run.count());
         let subject = Subject { name, problem, times, critical_step: critical_time_step(problem), held };
-        Report::new(&subject, self.options, &self.simulation, self.estimate.clone(), self.seconds)
+        Report::new(&subject, self.options, &self.simulation, &self.estimate, self.seconds)
     }
 }
 

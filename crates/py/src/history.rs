@@ -27,7 +27,6 @@ pub(crate) struct HistoryData {
 impl HistoryData {
     /// A history put together from its arrays; `times` are the instants planned.
     #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
     fn from_arrays(
         py: Python<'_>,
         problem: &ProblemData,
@@ -35,16 +34,12 @@ impl HistoryData {
         displacement: PyReadonlyArray3<'_, f64>,
         reaction: PyReadonlyArray3<'_, f64>,
         touching: PyReadonlyArray2<'_, bool>,
-        velocity: Option<PyReadonlyArray3<'_, f64>>,
-        acceleration: Option<PyReadonlyArray3<'_, f64>>,
     ) -> PyResult<Self> {
         let times = TimeGrid::from_instants(times).map_err(|error| errors::time(py, &error))?;
-        let fields = [Some(&displacement), Some(&reaction), velocity.as_ref(), acceleration.as_ref()];
-        let rows = fields.map(|field| field.map(|f| f.as_slice()).transpose());
-        let [displacement, reaction, velocity, acceleration] = rows;
         let given = Given {
             count: touching.as_array().nrows(),
-            fields: [displacement?, reaction?, velocity?, acceleration?],
+            displacement: displacement.as_slice()?,
+            reaction: reaction.as_slice()?,
             touching: touching.as_slice()?,
         };
         Ok(Self { run: map!(&problem.problem, p => Arc::new(given.run(py, p, &times)?)) })
@@ -188,10 +183,11 @@ fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyD
     Ok(columns)
 }
 
-/// Arrays of a history: displacement, reaction, velocity, acceleration.
+/// Arrays of a history.
 struct Given<'a> {
     count: usize,
-    fields: [Option<&'a [f64]>; 4],
+    displacement: &'a [f64],
+    reaction: &'a [f64],
     touching: &'a [bool],
 }
 
@@ -203,24 +199,24 @@ impl Given<'_> {
         times: &TimeGrid,
     ) -> PyResult<Run<D, N>> {
         let mut history = History::new(times);
-        let contact = problem.surface().nodes().len();
-        for index in 0..self.count {
-            let rows = |field: usize, nodes: usize| {
-                self.fields[field]
-                    .map(|f| f.as_chunks::<D>().0.get(index * nodes..(index + 1) * nodes).unwrap_or_default())
-            };
-            let nodes = problem.mesh().node_count();
+        let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
+        for (index, &time) in times.instants().iter().enumerate().take(self.count) {
             let step = Step {
                 index,
-                time: times.instants().get(index).copied().unwrap_or(f64::NAN),
-                displacement: rows(0, nodes).unwrap_or_default(),
-                reaction: rows(1, contact).unwrap_or_default(),
-                touching: self.touching.get(index * contact..(index + 1) * contact).unwrap_or_default(),
-                velocity: rows(2, nodes),
-                acceleration: rows(3, nodes),
+                time,
+                displacement: rows(self.displacement.as_chunks().0, index, nodes),
+                reaction: rows(self.reaction.as_chunks().0, index, contact),
+                touching: rows(self.touching, index, contact),
+                velocity: None,
+                acceleration: None,
             };
             history.push(&step).map_err(|error| errors::input(py, &error.to_string()))?;
         }
         Ok(Run::new(problem.clone(), history, None))
     }
+}
+
+/// The rows of one step; too few if the array ends before.
+fn rows<T>(array: &[T], step: usize, count: usize) -> &[T] {
+    array.get(step * count..(step + 1) * count).unwrap_or_default()
 }
