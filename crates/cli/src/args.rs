@@ -1,6 +1,8 @@
 //! The arguments of the command.
 
+use crate::case::Instants;
 use clap::{Args, Parser, Subcommand};
+use percute_estimator::{Acceleration, ContactForce};
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C; the summary of the steps done is still printed).";
@@ -22,6 +24,14 @@ pub struct Arguments {
 pub enum Command {
     /// Simulate a case and estimate its error
     Run(RunArguments),
+    /// Simulate a case and store its history, to be estimated later
+    Simulate(SimulateArguments),
+    /// Estimate the error of a stored history
+    Estimate(EstimateArguments),
+    /// Tell what a case, a history or an estimate file holds
+    Info(InfoArguments),
+    /// Finish the history file of a run that was killed
+    Recover(RecoverArguments),
 }
 
 /// Arguments of `percute run`.
@@ -29,18 +39,118 @@ pub enum Command {
 pub struct RunArguments {
     /// The case file (TOML)
     pub case: PathBuf,
+    /// Store the history, all steps, in this file (.vtkhdf) [default: as in the case, or nowhere]
+    #[arg(long, value_name = "FILE")]
+    pub history: Option<PathBuf>,
+    /// Store the estimate, element by element, in this file (.vtkhdf) [default: as in the case, or nowhere]
+    #[arg(long, value_name = "FILE")]
+    pub estimate: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub maps: MapArguments,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub print: PrintArguments,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub work: WorkArguments,
+}
+
+/// Arguments of `percute simulate`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SimulateArguments {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// The file of the history (.vtkhdf) [default: as in the case, or named after it in the working directory]
+    #[arg(long, value_name = "FILE")]
+    pub history: Option<PathBuf>,
+    /// Replace a history that is there
+    #[arg(long)]
+    pub force: bool,
+    /// No progress and no warnings on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `percute estimate`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct EstimateArguments {
+    /// The history (.vtkhdf)
+    pub history: PathBuf,
+    /// Store the estimate, element by element, in this file (.vtkhdf)
+    #[arg(long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// How contact reactions are read: sharp or paper [default: as stored in the history]
+    #[arg(long, value_name = "NAME")]
+    pub contact_force: Option<ContactForce>,
+    /// Choice of the admissible acceleration: closest, rigid or weak [default: as stored in the history]
+    #[arg(long, value_name = "NAME")]
+    pub acceleration: Option<Acceleration>,
+    /// Sample the error at every k-th step [default: as stored in the history]
+    #[arg(long, value_name = "K", value_parser = steps)]
+    pub every: Option<usize>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub maps: MapArguments,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub print: PrintArguments,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub work: WorkArguments,
+}
+
+/// Arguments of `percute info`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct InfoArguments {
+    /// A case, a history or an estimate file
+    pub file: PathBuf,
+    /// Print one JSON document
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `percute recover`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RecoverArguments {
+    /// The history (.vtkhdf)
+    pub history: PathBuf,
+}
+
+/// What an estimate file holds.
+#[derive(Clone, Debug, Default, Args)]
+pub struct MapArguments {
+    /// Instants of the estimate file: how many, or their times in s, separated by commas [default: up to 50]
+    #[arg(long, value_name = "N|TIMES", value_parser = instants)]
+    pub instants: Option<Instants>,
+    /// Store the admissible fields in the estimate file too
+    #[arg(long)]
+    pub fields: bool,
+}
+
+/// What is printed and drawn.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PrintArguments {
     /// Print one JSON document instead of the summary
     #[arg(long)]
     pub json: bool,
-    /// Draw the error of each element on the mesh; the name must end in .svg
+    /// Draw the error of each element on the mesh; the name must end in .svg, and a file of that name is replaced
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
+}
+
+/// How the work is done; nothing of it changes the result.
+#[derive(Clone, Debug, Default, Args)]
+pub struct WorkArguments {
+    /// Replace files that are there
+    #[arg(long)]
+    pub force: bool,
     /// Number of threads [default: one for each core]; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
     /// How many steps are estimated at once [default: as many as fit into a modest memory]; the
     /// result does not depend on it
-    #[arg(long, value_name = "N", value_parser = window)]
+    #[arg(long, value_name = "N", value_parser = steps)]
     pub window: Option<usize>,
     /// No progress and no warnings on standard error; warnings stay in summary and JSON
     #[arg(long)]
@@ -51,8 +161,19 @@ fn threads(text: &str) -> Result<usize, String> {
     whole(text, MOST_THREADS).ok_or_else(|| format!("must be a whole number from 1 to {MOST_THREADS}"))
 }
 
-fn window(text: &str) -> Result<usize, String> {
+fn steps(text: &str) -> Result<usize, String> {
     whole(text, usize::MAX).ok_or_else(|| "must be a whole number of steps, 1 or more".to_string())
+}
+
+fn instants(text: &str) -> Result<Instants, String> {
+    if let Some(count) = whole(text, usize::MAX) {
+        return Ok(Instants::Count(count));
+    }
+    let time = |entry: &str| entry.trim().parse::<f64>().ok().filter(|t| t.is_finite() && *t >= 0.0);
+    let times: Option<Vec<f64>> = text.split(',').map(time).collect();
+    let wrong = || "must be a whole number, 1 or more, or times in s, such as 0,1e-6,2.5e-6".to_string();
+    // A lone 0 is a count that is too small.
+    times.filter(|_| text.parse::<usize>().is_err()).map(Instants::Times).ok_or_else(wrong)
 }
 
 fn whole(text: &str, most: usize) -> Option<usize> {
@@ -73,7 +194,17 @@ mod tests {
     fn numbers_of_threads_and_steps() {
         assert_eq!(threads("3"), Ok(3));
         assert!(threads("0").is_err() && threads("-1").is_err() && threads("1025").is_err() && threads("two").is_err());
-        assert_eq!(window("5000"), Ok(5000));
-        assert!(window("0").is_err());
+        assert_eq!(steps("5000"), Ok(5000));
+        assert!(steps("0").is_err());
+    }
+
+    #[test]
+    fn instants_are_a_number_or_times() {
+        assert_eq!(instants("7"), Ok(Instants::Count(7)));
+        assert_eq!(instants("1e-6"), Ok(Instants::Times(vec![1e-6])));
+        assert_eq!(instants("0, 2.5e-6,1"), Ok(Instants::Times(vec![0.0, 2.5e-6, 1.0])));
+        for wrong in ["", "0", "-1", "nan", "1,", "inf,1", "many"] {
+            assert!(instants(wrong).is_err(), "{wrong}");
+        }
     }
 }

@@ -1,7 +1,10 @@
 //! Why a command failed, and with which exit code.
 
-use crate::case::CaseError;
-use percute_estimator::RunError;
+use crate::case::{CaseError, Unsayable};
+use percute_core::dynamics::SimulationError;
+use percute_core::history::SinkError;
+use percute_estimator::{EstimateError, RunError};
+use percute_io::{FileCause, FileError};
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -9,7 +12,7 @@ use thiserror::Error;
 pub const DONE: u8 = 0;
 /// Exit code of a command that failed though its input was good.
 pub const FAILED: u8 = 1;
-/// Exit code of bad input: the case file or the arguments.
+/// Exit code of bad input: the case file, the history or the arguments.
 pub const BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C.
 pub const INTERRUPTED: u8 = 130;
@@ -34,9 +37,25 @@ pub enum Failure {
     /// Simulation or estimate failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The picture cannot be written.
-    #[error("--picture: cannot write {file}: {cause}", file = .file.display())]
-    Picture {
+    /// A history or estimate file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A history that does not fit its own problem.
+    #[error("{file}: {cause}", file = .file.display())]
+    History {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        cause: EstimateError,
+    },
+    /// A problem that cannot be written down.
+    #[error(transparent)]
+    Unsayable(#[from] Unsayable),
+    /// A file that cannot be written.
+    #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
+    Unwritable {
+        /// The argument or key that names it.
+        what: &'static str,
         /// The file.
         file: PathBuf,
         /// Why.
@@ -52,16 +71,57 @@ impl Failure {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Case(_) | Self::Unreadable { .. } | Self::Argument(_) => BAD_INPUT,
-            Self::Run(_) | Self::Picture { .. } | Self::Output(_) => FAILED,
+            Self::Case(_) | Self::Unreadable { .. } | Self::Argument(_) | Self::History { .. } | Self::Unsayable(_) => {
+                BAD_INPUT
+            }
+            Self::File(error) => file_code(&error.cause),
+            Self::Run(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
         }
+    }
+
+    /// What became of a sink that did not take a step: it stands for itself.
+    pub(crate) fn from_sink(error: SinkError, otherwise: impl FnOnce(SinkError) -> RunError) -> Self {
+        let error = match error.downcast::<FileError>() {
+            Ok(error) => return Self::File(*error),
+            Err(error) => error,
+        };
+        match error.downcast::<EstimateError>() {
+            Ok(error) => Self::Run(RunError::Estimate(*error)),
+            Err(error) => Self::Run(otherwise(error)),
+        }
+    }
+}
+
+impl From<SimulationError> for Failure {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Sink { step, cause } => {
+                Self::from_sink(cause, |cause| SimulationError::Sink { step, cause }.into())
+            }
+            error => Self::Run(error.into()),
+        }
+    }
+}
+
+/// What the system does not let happen is no fault of the input.
+fn file_code(cause: &FileCause) -> u8 {
+    match cause {
+        FileCause::InUse
+        | FileCause::Create { .. }
+        | FileCause::NoSpace { .. }
+        | FileCause::Write { .. }
+        | FileCause::Finish { .. }
+        | FileCause::Lost
+        | FileCause::Read { .. }
+        | FileCause::Replaced
+        | FileCause::TooLarge { .. } => FAILED,
+        _ => BAD_INPUT,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::dynamics::SimulationError;
 
     #[test]
     fn a_run_that_fails_is_not_bad_input() {
@@ -73,9 +133,18 @@ mod tests {
             longest_step: 2e-7,
             critical_step: 1e-7,
         };
-        let failure = Failure::Run(RunError::Simulation(unstable));
+        let failure = Failure::from(unstable);
         assert_eq!(failure.exit_code(), FAILED);
         assert!(failure.to_string().contains("unstable at step 3"), "{failure}");
         assert_eq!(Failure::Argument("--threads".into()).exit_code(), BAD_INPUT);
+    }
+
+    #[test]
+    fn a_step_that_could_not_be_stored_names_its_file() {
+        let full = FileCause::Write { step: 4, source: std::io::Error::from_raw_os_error(28) };
+        let failure = Failure::from(SimulationError::Sink { step: 4, cause: full.at("a.vtkhdf".as_ref()).into() });
+        assert_eq!(failure.exit_code(), FAILED);
+        let said = failure.to_string();
+        assert!(said.starts_with("a.vtkhdf: step 4 could not be written") && !said.contains("handed on"), "{said}");
     }
 }

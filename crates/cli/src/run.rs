@@ -1,44 +1,76 @@
-//! A case simulated and estimated.
+//! A case simulated, and estimated beside the run.
 
-use crate::case::{Case, CaseOf};
+use crate::case::CaseOf;
 use crate::failure::Failure;
-use crate::report::Report;
+use percute_core::dynamics::{Simulation, SimulationError, simulate};
+use percute_core::history::StepSink;
 use percute_core::observer::Observer;
-use percute_estimator::{Options, Request, RunError};
-use std::time::Instant;
+use percute_estimator::{Estimate, Estimator, Options, Request};
+use percute_io::history::Writer;
 
-/// What a run takes from its caller rather than from the case: nothing of it changes the result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Settings {
-    /// Number of threads; one for each core by default.
-    pub threads: Option<usize>,
-    /// How many steps are estimated at once.
-    pub window: Option<usize>,
-}
-
-/// Simulates a case and estimates its error. If the observer breaks, the report is that of the
-/// steps done.
+/// Simulates a case, stores its history if there is a file for it, and estimates its error. If the
+/// observer breaks, the file holds the steps done and the estimate is theirs.
 ///
 /// # Errors
-/// A start that the simulation refuses (the input's fault), an unstable run, a failed estimate.
-pub fn run(case: &Case, settings: Settings, observer: &mut dyn Observer) -> Result<Report, Failure> {
-    match case {
-        Case::Bar(case) => run_one(case, settings, observer),
-        Case::Plane(case) => run_one(case, settings, observer),
+/// A start that the simulation refuses (the input's fault; its history file is removed), an unstable
+/// run, a history that cannot be written, a failed estimate.
+pub fn run<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    options: Options,
+    request: &Request,
+    history: Option<Writer<D>>,
+    observer: &mut dyn Observer,
+) -> Result<(Simulation, Estimate<D>), Failure> {
+    let estimator = Estimator::new(&case.problem, &case.times, options).and_then(|e| e.keeping(request));
+    let mut estimator = estimator.map_err(percute_estimator::RunError::from)?;
+    let simulation = stored(case, history, &mut estimator, observer)?;
+    Ok((simulation, estimator.finish().map_err(percute_estimator::RunError::from)?))
+}
+
+/// Simulates a case and stores its history. If the observer breaks, the file holds the steps done.
+///
+/// # Errors
+/// As [`run`].
+pub fn simulate_only<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    history: Writer<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, Failure> {
+    stored(case, Some(history), &mut percute_core::history::Discard, observer)
+}
+
+/// Hands every step to the file, if there is one, and to `sink`.
+fn stored<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    history: Option<Writer<D>>,
+    sink: &mut dyn StepSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, Failure> {
+    // The file first: a step that cannot be estimated is still worth having.
+    let mut sinks = (history, sink);
+    let simulation = simulate(&case.problem, &case.times, &mut sinks, observer);
+    let (history, _) = sinks;
+    match simulation {
+        Ok(simulation) => {
+            history.map_or(Ok(()), Writer::finish)?;
+            Ok(simulation)
+        }
+        Err(error) => Err(refused(case, history, error)),
     }
 }
 
-fn run_one<const D: usize, const N: usize>(
+/// A start that is refused leaves no file behind.
+fn refused<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
-    settings: Settings,
-    observer: &mut dyn Observer,
-) -> Result<Report, Failure> {
-    let options = Options { threads: settings.threads, window: settings.window, ..case.options };
-    let start = Instant::now();
-    let ended = percute_estimator::run(&case.problem, &case.times, options, &Request::default(), observer);
-    let (simulation, estimate) = ended.map_err(|error| match &error {
-        RunError::Simulation(cause) => case.refused_start(cause).map_or(Failure::Run(error), Failure::Case),
-        RunError::Estimate(_) | RunError::Source(_) => Failure::Run(error),
-    })?;
-    Ok(Report::new(&case.subject(), options, &simulation, estimate, start.elapsed().as_secs_f64()))
+    history: Option<Writer<D>>,
+    error: SimulationError,
+) -> Failure {
+    let Some(mistake) = case.refused_start(&error) else { return error.into() };
+    if let Some(history) = history {
+        let file = history.path().to_path_buf();
+        drop(history);
+        // What cannot be removed does no harm: it says itself how few steps it holds.
+        let _ = std::fs::remove_file(file);
+    }
+    mistake.into()
 }

@@ -30,7 +30,7 @@ pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Acceleration, ContactForce, Options, UnknownName};
-pub use pipeline::Estimator;
+pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};
 pub use residual::Residuals;

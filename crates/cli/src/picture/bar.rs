@@ -1,9 +1,7 @@
 //! The error of each element of a bar, over its length.
 
 use super::DrawError;
-use super::canvas::{
-    AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px,
-};
+use super::canvas::{AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px};
 use crate::report::Report;
 use percute_core::ids::ElementId;
 use percute_core::problem::BarProblem;

@@ -3,7 +3,7 @@
 use super::Drawn;
 use crate::failure::Failure;
 use crate::report::Report;
-use std::fs::OpenOptions;
+use crate::writable;
 use std::path::Path;
 
 /// Makes sure before the work that a picture can be written at its end. A file that is there is
@@ -19,16 +19,12 @@ pub fn check_path(file: &Path) -> Result<(), Failure> {
             "--picture {file}: only SVG can be written; give a name that ends in .svg"
         )));
     }
-    let fail = |cause: std::io::Error| Failure::Picture { file: file.to_path_buf(), cause: cause.to_string() };
-    // Not the target of a link: a link to nothing must not be taken for a new file and removed.
-    let new = match std::fs::symlink_metadata(file) {
-        Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
-        Ok(_) => return Err(fail(std::io::Error::other("it is no regular file"))),
-        Err(_) => true,
+    let fail = |cause: std::io::Error| Failure::Unwritable {
+        what: "--picture",
+        file: file.to_path_buf(),
+        cause: cause.to_string(),
     };
-    // Appending nothing changes nothing.
-    OpenOptions::new().append(true).create(true).open(file).map_err(fail)?;
-    if new { std::fs::remove_file(file).map_err(fail) } else { Ok(()) }
+    writable::check(file).map_err(fail)
 }
 
 /// Draws a picture and writes it; a file that is there is replaced.
@@ -36,7 +32,7 @@ pub fn check_path(file: &Path) -> Result<(), Failure> {
 /// # Errors
 /// A picture that cannot be drawn or written.
 pub fn write(body: &impl Drawn, report: &Report, file: &Path) -> Result<(), Failure> {
-    let fail = |cause: String| Failure::Picture { file: file.to_path_buf(), cause };
+    let fail = |cause: String| Failure::Unwritable { what: "--picture", file: file.to_path_buf(), cause };
     let svg = body.draw(report).map_err(|error| fail(error.to_string()))?;
     std::fs::write(file, svg).map_err(|cause| fail(cause.to_string()))
 }
@@ -60,6 +56,6 @@ mod tests {
     fn other_formats_and_missing_folders_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         assert!(matches!(check_path(&folder.path().join("map.png")), Err(Failure::Argument(_))));
-        assert!(matches!(check_path(&folder.path().join("none/map.svg")), Err(Failure::Picture { .. })));
+        assert!(matches!(check_path(&folder.path().join("none/map.svg")), Err(Failure::Unwritable { .. })));
     }
 }

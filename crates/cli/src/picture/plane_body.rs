@@ -1,9 +1,7 @@
 //! The error of each triangle, on the mesh.
 
 use super::DrawError;
-use super::canvas::{
-    AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px,
-};
+use super::canvas::{AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px};
 use super::frame::Frame;
 use crate::report::Report;
 use percute_core::ids::ElementId;

@@ -2,8 +2,8 @@
 
 use super::warnings::{Facts, warnings};
 use super::{
-    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, Given, LargestResidual, Measures, ObstacleSummary, OptionsUsed,
-    OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
+    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, Given, LargestResidual, Measures, ObstacleSummary,
+    OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
 };
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
@@ -21,11 +21,11 @@ impl Report {
         subject: &Subject<'_, D, N>,
         options: Options,
         simulation: &Simulation,
-        estimate: Estimate<D>,
+        estimate: &Estimate<D>,
         seconds: f64,
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
-        let (largest_residual, problem) = (largest_residual(&estimate), problem_summary(subject));
+        let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let (softest, size) = (softest(subject.problem), subject.problem.mesh().size());
         let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
@@ -50,14 +50,14 @@ impl Report {
             error: measures(&estimate.error),
             parts: parts(&estimate.parts),
             time_of_sup: estimate.time_of_sup,
-            worst_elements: worst(subject.problem.mesh(), &estimate),
+            worst_elements: worst(subject.problem.mesh(), estimate),
             residuals: estimate.residuals.entries().to_vec(),
             largest_residual,
             balance: balance_summary(&simulation.balance),
             balance_over_time: balance_over_time(&simulation.balance_over_time, times.instants()),
             kept_impulse,
             over_time: over_time(&estimate.over_time),
-            by_element: estimate.by_element,
+            by_element: estimate.by_element.clone(),
             seconds,
         }
     }

@@ -15,7 +15,7 @@ use percute_core::time::TimeGrid;
 use serde::{Serialize, Serializer};
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
-const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 1;
 /// Residuals above this mean that a field is not admissible.
 pub(crate) const ADMISSIBLE: f64 = 1e-10;
 

@@ -26,6 +26,16 @@ pub(crate) fn percent(fraction: f64) -> String {
     format!("{} %", short(100.0 * fraction, 3))
 }
 
+/// A size in the unit that suits it.
+pub(crate) fn bytes(count: u64) -> String {
+    let units = ["bytes", "kB", "MB", "GB", "TB", "PB", "EB"];
+    let exponent = (0..units.len()).rev().find(|&i| count >= 1000_u64.pow(i as u32)).unwrap_or(0);
+    if exponent == 0 {
+        return format!("{count} bytes");
+    }
+    format!("{} {}", short(count as f64 / 1000.0_f64.powi(exponent as i32), 3), units[exponent])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -38,5 +48,11 @@ mod tests {
         assert_eq!(short(f64::NAN, 4), "NaN");
         assert_eq!(percent(0.0751), "7.51 %");
         assert_eq!([0.05, 1.3e-5, 2500.0, 0.0].map(|x| trimmed(x, 4)), ["0.05", "1.3e-5", "2500", "0"]);
+    }
+
+    #[test]
+    fn sizes_have_three_digits() {
+        let shown = [0, 999, 1000, 1_234_567, 56_700_000_000, u64::MAX].map(bytes);
+        assert_eq!(shown, ["0 bytes", "999 bytes", "1.00 kB", "1.23 MB", "56.7 GB", "18.4 EB"]);
     }
 }

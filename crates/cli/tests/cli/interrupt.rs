@@ -1,13 +1,14 @@
 //! Ctrl-C.
 
-use crate::common::{BLOCK, Bench};
+use crate::common::{BLOCK, Bench, stderr, stdout};
+use crate::history::result;
 use std::process::{Child, Command, Output, Stdio};
 
 /// Starts a run that would take far longer than any test.
 fn start(bench: &Bench, arguments: &[&str]) -> Child {
     let program = assert_cmd::cargo::cargo_bin!("percute");
     let mut command = Command::new(program);
-    command.current_dir(bench.path("")).args(["run", "case.toml"]).args(arguments);
+    command.current_dir(bench.path("")).args(arguments);
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -19,12 +20,21 @@ fn ticks(child: &Child) -> u64 {
     fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
 }
 
-/// Lets it compute for a while, then sends what Ctrl-C sends.
-fn interrupt(child: Child) -> Output {
-    // By its processor time, not by the clock: on a busy machine it may not have begun.
-    while ticks(&child) < 30 {
+/// Lets it compute for a while: by its processor time, not by the clock, as on a busy machine it may not
+/// have begun.
+fn wait_until(child: &Child, used: u64) {
+    while ticks(child) < used {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
+}
+
+/// Sends what Ctrl-C sends, after a while.
+fn interrupt(child: Child) -> Output {
+    wait_until(&child, 30);
+    send_interrupt(child)
+}
+
+fn send_interrupt(child: Child) -> Output {
     let sent = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
     assert!(sent.success());
     child.wait_with_output().unwrap()
@@ -37,7 +47,7 @@ fn endless() -> Bench {
 #[test]
 fn ctrl_c_prints_the_summary_of_the_steps_done() {
     let bench = endless();
-    let output = interrupt(start(&bench, &["--quiet"]));
+    let output = interrupt(start(&bench, &["run", "case.toml", "--quiet"]));
     let summary = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(130), "{summary}");
     assert!(summary.contains("INTERRUPTED at step "), "{summary}");
@@ -47,9 +57,80 @@ fn ctrl_c_prints_the_summary_of_the_steps_done() {
 #[test]
 fn ctrl_c_leaves_a_whole_json_document() {
     let bench = endless();
-    let output = interrupt(start(&bench, &["--json"]));
+    let output = interrupt(start(&bench, &["run", "case.toml", "--json"]));
     assert_eq!(output.status.code(), Some(130));
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["interrupted"], true);
     assert!(document["steps"].as_u64().unwrap() < document["steps_planned"].as_u64().unwrap());
+}
+
+/// A simulation of some seconds, with a history of 0.8 GB, most of which is never filled.
+fn long() -> Bench {
+    let steps = BLOCK.replace("end = 5e-6\ncourant = 0.9", "end = 0.5\nstep = 5e-7");
+    Bench::new(&steps)
+}
+
+/// Starts a simulation and waits until its file is there and some steps are in it.
+fn simulating(bench: &Bench) -> Child {
+    let child = start(bench, &["simulate", "case.toml", "--quiet"]);
+    while !bench.path("case.vtkhdf").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    // A few steps take microseconds; this is a tenth of a second of work.
+    wait_until(&child, ticks(&child) + 10);
+    child
+}
+
+#[test]
+fn ctrl_c_finishes_the_history_of_a_simulation() {
+    let bench = long();
+    let output = send_interrupt(simulating(&bench));
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stdout(&output).contains("INTERRUPTED at step "), "{}", stdout(&output));
+    let info = stdout(&bench.percute(&["info", "case.vtkhdf", "--json"]));
+    let info: serde_json::Value = serde_json::from_str(&info).unwrap();
+    let (steps, planned) = (info["steps"].as_u64().unwrap(), info["time"]["steps_planned"].as_u64().unwrap());
+    assert!(info["complete"] == true && 0 < steps && steps < planned, "{info}");
+    let output = bench.percute(&["estimate", "case.vtkhdf", "--every", "1000"]);
+    assert_eq!(output.status.code(), Some(0), "the estimate itself was not interrupted: {}", stderr(&output));
+    assert!(
+        stdout(&output).contains(&format!("INCOMPLETE history of {steps} of {planned} steps")),
+        "{}",
+        stdout(&output)
+    );
+}
+
+#[test]
+fn ctrl_c_keeps_history_and_estimate_of_the_steps_done() {
+    let bench = endless_with_file();
+    let output = interrupt(start(&bench, &["run", "case.toml", "--history", "h.vtkhdf", "--json"]));
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    let later = bench.percute(&["estimate", "h.vtkhdf", "--json"]);
+    assert_eq!(later.status.code(), Some(0), "{}", stderr(&later));
+    assert!(result(&stdout(&later)) == result(&stdout(&output)));
+}
+
+/// A run whose estimate takes half a minute.
+fn endless_with_file() -> Bench {
+    Bench::new(&BLOCK.replace("end = 5e-6", "end = 5e-3").replace("nx = 5, ny = 4", "nx = 20, ny = 16"))
+}
+
+#[test]
+fn a_killed_simulation_leaves_a_history_to_recover() {
+    let bench = long();
+    let mut child = simulating(&bench);
+    let busy = bench.percute(&["recover", "case.vtkhdf"]);
+    assert_eq!(busy.status.code(), Some(1), "its run goes on: {}", stderr(&busy));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
+    assert!(info.contains("NOT FINISHED"), "{info}");
+    let estimate = ["estimate", "case.vtkhdf", "--json", "--every", "1000"];
+    let before = bench.percute(&estimate);
+    assert_eq!(before.status.code(), Some(0), "{}", stderr(&before));
+    let recovered = bench.percute(&["recover", "case.vtkhdf"]);
+    assert_eq!(recovered.status.code(), Some(0), "{}", stderr(&recovered));
+    assert!(stdout(&recovered).contains("is finished now and holds "), "{}", stdout(&recovered));
+    assert!(stdout(&bench.percute(&["info", "case.vtkhdf"])).contains("; complete"));
+    assert!(result(&stdout(&before)) == result(&stdout(&bench.percute(&estimate))));
 }

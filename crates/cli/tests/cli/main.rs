@@ -5,6 +5,7 @@
 
 mod common;
 mod examples;
+mod history;
 mod house;
 #[cfg(target_os = "linux")]
 mod interrupt;

@@ -163,7 +163,9 @@ fn read(text: &str) -> Case {
 fn as_good_as_the_case<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: Options) {
     same(problem, &options);
     let (problem_again, options_again) = again(problem, &options);
-    let estimate = |problem, options| percute_estimator::run(problem, times, options, &Request::default(), &mut Unobserved).unwrap();
+    let estimate = |problem, options| {
+        percute_estimator::run(problem, times, options, &Request::default(), &mut Unobserved).unwrap()
+    };
     assert_eq!(estimate(problem, options), estimate(&problem_again, options_again));
 }
 

@@ -20,6 +20,7 @@ use percute_core::time::TimeGrid;
 use prepare::Preparation;
 use rayon::ThreadPool;
 use window::Window;
+pub use window::memory;
 
 /// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
 const BLOCK: usize = 256;

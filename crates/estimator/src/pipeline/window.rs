@@ -9,7 +9,7 @@ use super::near::{Context, NearElement, near_elements};
 use super::prepare::Preparation;
 use super::totals::{self, FarSums, Worked};
 use crate::element::Element;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Sample};
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
 use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
@@ -32,6 +32,34 @@ const MODEST_MEMORY: usize = 1 << 30;
 const LEVELS: std::ops::RangeInclusive<usize> = 8..=64;
 /// Elements times levels that are worked on between two looks at whether to stop: about a second.
 const WORK: usize = 2_000_000;
+
+/// Memory of one level (bytes).
+fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
+    let mesh = problem.mesh();
+    8 * D * (8 * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
+}
+
+/// Number of intervals worked on at once.
+fn size<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
+    let wanted = (WORK / problem.mesh().element_count()).clamp(*LEVELS.start(), *LEVELS.end());
+    options.window.unwrap_or_else(|| wanted.min(MODEST_MEMORY / bytes_of_level(problem)).max(1))
+}
+
+/// About how much memory (bytes) an estimate takes beside its problem: its levels and what it keeps of
+/// each element and sample. What elements around contact nodes wait for is not foreseen.
+#[must_use]
+pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
+    let levels = size(problem, options).min(times.step_count()).saturating_add(1);
+    // Elements are prepared twice, for the levels' forces and for the stars.
+    let element = 2 * size_of::<Element<D, N>>() + 8 * N * (D + 1) + size_of::<ElementError>();
+    // At the level and half way to the next.
+    let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
+    let steps = times.step_count() / options.every.max(1) + 1;
+    levels
+        .saturating_mul(bytes_of_level(problem))
+        .saturating_add(element.saturating_mul(problem.mesh().element_count()))
+        .saturating_add(step.saturating_mul(steps))
+}
 
 /// Levels in work, and what has been summed so far.
 #[derive(Debug)]
@@ -59,22 +87,18 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         let near = near_elements(problem);
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
-        let mesh = problem.mesh();
-        let numbers = D * (8 * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count());
-        let wanted = (WORK / mesh.element_count()).clamp(*LEVELS.start(), *LEVELS.end());
-        let fitting = wanted.min(MODEST_MEMORY / (8 * numbers)).max(1);
         Self {
             problem,
             times,
             equilibration: Equilibration::new(problem),
             choice: options.acceleration,
-            size: options.window.unwrap_or(fitting),
+            size: size(problem, options),
             levels: Vec::new(),
             carried: false,
             near,
             is_near,
             far: FarSums::default(),
-            progress: vec![(0.0, 0.0); mesh.element_count()],
+            progress: vec![(0.0, 0.0); problem.mesh().element_count()],
             maps,
             residuals: Residuals::default(),
         }

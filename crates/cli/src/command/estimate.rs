@@ -1,0 +1,68 @@
+//! `percute estimate`.
+
+use super::Console;
+use super::outputs::{Output, check, with_work};
+use super::result::{Given, give};
+use super::run::request;
+use crate::args::EstimateArguments;
+use crate::failure::Failure;
+use crate::history::{AnyStored, Stored, open};
+use crate::picture::Drawn;
+use crate::progress::Watch;
+use crate::report::Report;
+use percute_core::problem::Problem;
+use percute_estimator::{Options, Request};
+use std::time::Instant;
+
+pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    let output = arguments.output.as_deref().map(|file| Output { what: "--output", file });
+    let picture = arguments.print.picture.as_deref();
+    check(("history", &arguments.history), &[output], picture, arguments.work.force)?;
+    match open(&arguments.history)? {
+        AnyStored::Bar(stored) => estimate(&stored, output, arguments, console),
+        AnyStored::Plane(stored) => estimate(&stored, output, arguments, console),
+    }
+}
+
+fn estimate<const D: usize, const N: usize>(
+    stored: &Stored<D, N>,
+    output: Option<Output<'_>>,
+    arguments: &EstimateArguments,
+    console: &mut Console<'_>,
+) -> Result<u8, Failure>
+where
+    Problem<D, N>: Drawn,
+{
+    let EstimateArguments { maps, print, work, .. } = arguments;
+    let options = with_work(options(stored.options, arguments), work.threads, work.window);
+    let instants = maps.instants.clone().unwrap_or_default();
+    let times = stored.file.times();
+    let request = request(output, || Request { steps: instants.steps(times, options.every), fields: maps.fields });
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let start = Instant::now();
+    let (simulation, estimate) = stored.estimate(options, &request, watch)?;
+    watch.clear();
+    let seconds = start.elapsed().as_secs_f64();
+    let report = Report::new(&stored.subject(), options, &simulation, &estimate, seconds);
+    let given = Given {
+        problem: &stored.problem,
+        times,
+        options,
+        case: None,
+        estimate: &estimate,
+        report: &report,
+        told: false,
+        interrupted: simulation.interrupted,
+    };
+    give(&given, print, output, work, console)
+}
+
+/// The options stored in the history, with those of the command line instead where there are any.
+fn options(stored: Options, arguments: &EstimateArguments) -> Options {
+    Options {
+        contact_force: arguments.contact_force.unwrap_or(stored.contact_force),
+        acceleration: arguments.acceleration.unwrap_or(stored.acceleration),
+        every: arguments.every.unwrap_or(stored.every),
+        ..stored
+    }
+}

@@ -1,0 +1,40 @@
+//! `percute info`.
+
+use super::{Console, case};
+use crate::args::InfoArguments;
+use crate::case::Case;
+use crate::failure::{DONE, Failure};
+use crate::history::{AnyStored, open};
+use crate::info::{Info, of_case, of_history};
+use percute_io::{Kind, kind};
+use std::path::Path;
+
+pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    let info = read(&arguments.file)?;
+    console.print(&if arguments.json { info.to_json()? } else { info.summary() })?;
+    Ok(DONE)
+}
+
+fn read(file: &Path) -> Result<Info, Failure> {
+    let found = kind(file)?;
+    if found == Kind::Other {
+        return of_text(file);
+    }
+    Ok(match open(file)? {
+        AnyStored::Bar(stored) => of_history(&stored),
+        AnyStored::Plane(stored) => of_history(&stored),
+    })
+}
+
+/// A case, unless it is no text at all.
+fn of_text(file: &Path) -> Result<Info, Failure> {
+    let text = std::fs::read(file).is_ok_and(|bytes| std::str::from_utf8(&bytes).is_ok());
+    if !text {
+        let file = file.display();
+        return Err(Failure::Argument(format!("{file}: this is neither a case file nor a history or estimate file")));
+    }
+    Ok(match case(file)? {
+        Case::Bar(case) => of_case(&case)?,
+        Case::Plane(case) => of_case(&case)?,
+    })
+}

@@ -1,0 +1,98 @@
+//! From arguments to exit code.
+
+mod estimate;
+mod info;
+mod outputs;
+mod recover;
+mod result;
+mod run;
+mod simulate;
+
+use crate::args::{Arguments, Command};
+use crate::case::{Case, Source};
+use crate::failure::{BAD_INPUT, DONE, FAILED, Failure};
+use crate::report::Warning;
+use clap::Parser;
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::Path;
+
+/// Where a command prints, and what may stop it.
+pub struct Console<'a> {
+    /// Standard output: the result and nothing else.
+    pub out: &'a mut dyn Write,
+    /// Standard error: warnings and errors.
+    pub err: &'a mut dyn Write,
+    /// Whether to show progress on the process's standard error.
+    pub progress: bool,
+    /// Asked at each step; the run stops cleanly when it says yes.
+    pub interrupted: &'a dyn Fn() -> bool,
+}
+
+/// Runs the command with these arguments, the program's name first, and returns its exit code.
+pub fn command_line<I>(arguments: I, console: &mut Console<'_>) -> u8
+where
+    I: IntoIterator,
+    I::Item: Into<OsString> + Clone,
+{
+    let outcome = match Arguments::try_parse_from(arguments) {
+        Ok(Arguments { command }) => match command {
+            Command::Run(arguments) => run::command(&arguments, console),
+            Command::Simulate(arguments) => simulate::command(&arguments, console),
+            Command::Estimate(arguments) => estimate::command(&arguments, console),
+            Command::Info(arguments) => info::command(&arguments, console),
+            Command::Recover(arguments) => recover::command(&arguments, console),
+        },
+        Err(error) => return clap_says(&error, console),
+    };
+    outcome.unwrap_or_else(|failure| {
+        // If standard error is gone too, the exit code is all that is left to say it.
+        let _ = writeln!(console.err, "error: {failure}");
+        failure.exit_code()
+    })
+}
+
+/// Prints clap's help, version or error.
+fn clap_says(error: &clap::Error, console: &mut Console<'_>) -> u8 {
+    let wrong = error.use_stderr();
+    let printed = if wrong { write!(console.err, "{error}") } else { write!(console.out, "{error}") };
+    match (wrong, printed) {
+        (true, _) => BAD_INPUT,
+        (false, Ok(())) => DONE,
+        (false, Err(_)) => FAILED,
+    }
+}
+
+impl Console<'_> {
+    /// Prints a result.
+    fn print(&mut self, text: &str) -> Result<(), Failure> {
+        writeln!(self.out, "{}", text.trim_end())?;
+        self.out.flush()?;
+        Ok(())
+    }
+
+    /// Says something beside the result; what cannot be said must not cost it.
+    fn say(&mut self, text: &str) {
+        let _ = writeln!(self.err, "{text}");
+    }
+
+    /// Says warnings.
+    fn warn<'w>(&mut self, warnings: impl IntoIterator<Item = &'w Warning>) {
+        warnings.into_iter().for_each(|warning| self.say(&format!("warning: {}", warning.message)));
+    }
+}
+
+/// Reads and checks a case file.
+fn case(file: &Path) -> Result<Case, Failure> {
+    Ok(Case::parse(read(file)?)?)
+}
+
+/// Reads a text; one that is no UTF-8 is refused with the line where it stops being so.
+fn read(file: &Path) -> Result<Source, Failure> {
+    let bytes = std::fs::read(file).map_err(|cause| Failure::Unreadable { file: file.to_path_buf(), cause })?;
+    let name = file.display().to_string();
+    String::from_utf8(bytes).map(|text| Source::new(&name, text)).map_err(|error| {
+        let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        Failure::Argument(format!("{name}:{line}: this is no UTF-8 text"))
+    })
+}

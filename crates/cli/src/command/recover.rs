@@ -1,0 +1,25 @@
+//! `percute recover`.
+
+use super::Console;
+use crate::args::RecoverArguments;
+use crate::failure::{DONE, Failure};
+use percute_io::history::{AnyHistoryFile, open, recover};
+
+pub(super) fn command(arguments: &RecoverArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    let file = &arguments.history;
+    let recovered = recover(file)?;
+    let planned = match open(file)? {
+        AnyHistoryFile::Bar(found) => found.times().step_count(),
+        AnyHistoryFile::Plane(found) => found.times().step_count(),
+    };
+    let (shown, steps) = (file.display(), recovered.count.saturating_sub(1));
+    let held = format!("{steps} of {planned} planned steps");
+    console.print(&match (recovered.was_complete, recovered.count) {
+        (true, _) => format!("{shown} was finished by its run and holds {held}; nothing was changed"),
+        (false, 0) => {
+            format!("{shown}: the run was killed before it wrote its first step; there is nothing to estimate")
+        }
+        (false, _) => format!("{shown} is finished now and holds {held}"),
+    })?;
+    Ok(DONE)
+}

@@ -1,0 +1,49 @@
+//! What a run and the estimate of a history have in common: report, picture, estimate file.
+
+use super::Console;
+use super::outputs::{Output, overwrite};
+use crate::args::{PrintArguments, WorkArguments};
+use crate::case::{Source, statement};
+use crate::failure::{DONE, Failure, INTERRUPTED};
+use crate::picture::{self, Drawn};
+use crate::report::{Report, summary};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Estimate, Options};
+
+/// What is to be given to the user.
+pub(super) struct Given<'a, const D: usize, const N: usize> {
+    pub(super) problem: &'a Problem<D, N>,
+    pub(super) times: &'a TimeGrid,
+    pub(super) options: Options,
+    pub(super) case: Option<&'a Source>,
+    pub(super) estimate: &'a Estimate<D>,
+    pub(super) report: &'a Report,
+    /// Whether the number of steps was warned of before the work.
+    pub(super) told: bool,
+    pub(super) interrupted: bool,
+}
+
+/// Warns, prints, draws and stores.
+pub(super) fn give<const D: usize, const N: usize>(
+    given: &Given<'_, D, N>,
+    print: &PrintArguments,
+    stored: Option<Output<'_>>,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<u8, Failure>
+where
+    Problem<D, N>: Drawn,
+{
+    let report = given.report;
+    if !work.quiet {
+        console.warn(report.warnings.iter().filter(|warning| !(given.told && warning.name == "many_steps")));
+    }
+    let json = report.to_json()?;
+    // The result first: a file that cannot be written must not cost it.
+    console.print(&if print.json { json.clone() } else { summary(report) })?;
+    if let Some(file) = &print.picture {
+        picture::write(given.problem, report, file)?;
+    }
+    Ok(if given.interrupted { INTERRUPTED } else { DONE })
+}

@@ -1,0 +1,76 @@
+//! `percute run`.
+
+use super::outputs::{Output, begin_history, check, chosen, with_work};
+use super::result::{Given, give};
+use super::{Console, case};
+use crate::args::RunArguments;
+use crate::case::{Case, CaseOf};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::picture::Drawn;
+use crate::progress::Watch;
+use crate::report::{Report, many_steps};
+use crate::run::run;
+use percute_core::problem::Problem;
+use percute_estimator::{EstimateError, Request, RunError};
+use std::time::Instant;
+
+pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    match case(&arguments.case)? {
+        Case::Bar(case) => run_case(&case, arguments, console),
+        Case::Plane(case) => run_case(&case, arguments, console),
+    }
+}
+
+fn run_case<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    arguments: &RunArguments,
+    console: &mut Console<'_>,
+) -> Result<u8, Failure>
+where
+    Problem<D, N>: Drawn,
+{
+    let RunArguments { maps, print, work, .. } = arguments;
+    let history =
+        chosen(["--history", "[output] history"], arguments.history.as_deref(), case.output.history.as_deref());
+    let stored =
+        chosen(["--estimate", "[output] estimate"], arguments.estimate.as_deref(), case.output.estimate.as_deref());
+    check(("case file", &arguments.case), &[history, stored], print.picture.as_deref(), work.force)?;
+    let options = with_work(case.options, work.threads, work.window);
+    let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
+    let request = request(stored, || Request {
+        steps: instants.steps(&case.times, options.every),
+        fields: maps.fields || case.output.fields,
+    });
+    let early = many_steps(case.times.step_count()).filter(|_| !work.quiet);
+    console.warn(&early);
+    let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let start = Instant::now();
+    let (simulation, estimate) = match run(case, options, &request, history, watch) {
+        // Nothing can be estimated from a run stopped at its very start.
+        Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
+            console.say(&format!("interrupted: {error}"));
+            return Ok(INTERRUPTED);
+        }
+        other => other?,
+    };
+    watch.clear();
+    let seconds = start.elapsed().as_secs_f64();
+    let report = Report::new(&case.subject(), options, &simulation, &estimate, seconds);
+    let given = Given {
+        problem: &case.problem,
+        times: &case.times,
+        options,
+        case: Some(&case.source),
+        estimate: &estimate,
+        report: &report,
+        told: early.is_some(),
+        interrupted: simulation.interrupted,
+    };
+    give(&given, print, stored, work, console)
+}
+
+/// Maps are kept for a file only.
+pub(super) fn request(file: Option<Output<'_>>, wanted: impl FnOnce() -> Request) -> Request {
+    file.map_or_else(Request::default, |_| wanted())
+}
