@@ -90,6 +90,8 @@ class ElementMap:
     """Contact part of η_E (J), shape (elements,)."""
     total: NDArray[np.float64]
     """η_E (J), shape (elements,)."""
+    accumulated: NDArray[np.float64]
+    """∫η_E dt up to here (J s), shape (elements,)."""
     error: NDArray[np.float64]
     """√((1/T)∫η_E dt) up to here (J^½), shape (elements,); at the end e_E, eq. [20]."""
     displacement: NDArray[np.float64] | None = None
@@ -128,7 +130,7 @@ class Estimate:
 
     @property
     def history(self) -> History | None:
-        """The history that was estimated; None if the estimate comes from a file."""
+        """The history that was estimated; None if the estimate was unpickled."""
         return self._history
 
     @cached_property
@@ -137,7 +139,7 @@ class Estimate:
         return self._history.problem if self._history is not None else Problem._of(self._data.problem())
 
     @cached_property
-    def _measures(self) -> _percute.Measures:
+    def _measures(self) -> _percute._Measures:
         return self._data.measures()
 
     @property
@@ -282,11 +284,43 @@ class Estimate:
             f"mean {self.mean:.4g} J^½ ({self.relative_mean:.3%}), {len(self.by_element)} elements, {self.steps} steps>"
         )
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle all but the history, which is large and can be pickled apart."""
+        data = self._data
+        maps = data.maps()
+        for each in maps:
+            fields = {name: each.pop(name).copy() for name in _FIELDS if name in each}
+            parts = {name: each[name].copy() for name in ("kinetic", "elastic", "contact", "accumulated")}
+            each.update(parts, fields=fields or None)
+            del each["total"], each["error"]
+        state = {
+            "times": data.times(),
+            "options": data.options(),
+            "measures": data.measures(),
+            "parts": data.parts(),
+            "over_time": {name: column.copy() for name, column in data.over_time().items()},
+            "by_element": data.by_element().copy(),
+            "residuals": data.residuals(),
+            "given": data.given(),
+            "maps": maps,
+            "json": self.to_json(),
+        }
+        return _restore, (self.problem, state, self._name)
+
     def __copy__(self) -> Estimate:
         return self
 
     def __deepcopy__(self, memo: object) -> Estimate:
         return self
+
+
+_FIELDS = ("displacement", "velocity", "acceleration", "stress", "compatible_stress")
+
+
+def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:
+    restored = Estimate._of(_percute.EstimateData.restore(problem._data, state), None, name)
+    restored.__dict__["problem"] = problem
+    return restored
 
 
 def _whole(name: str, value: int | np.integer[Any] | None) -> int | None:

@@ -3,12 +3,15 @@
 use crate::any::{Any, each, map};
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
+use crate::restore::restore;
 use crate::run::{Run, Stoppable};
 use crate::{door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute::case::Instants;
 use percute::report::{Report, Subject};
 use percute_core::dynamics::{Simulation, critical_time_step};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -17,11 +20,27 @@ use std::time::Instant;
 
 /// An estimate, with what it is the estimate of.
 pub(crate) struct Made<const D: usize, const N: usize> {
-    run: Arc<Run<D, N>>,
-    options: Options,
-    simulation: Simulation,
+    pub(crate) problem: Arc<Problem<D, N>>,
+    /// The instants planned.
+    pub(crate) times: TimeGrid,
+    pub(crate) options: Options,
     pub(crate) estimate: Estimate<D>,
-    seconds: f64,
+    pub(crate) report: Told,
+}
+
+/// Where the report comes from.
+pub(crate) enum Told {
+    /// It is made when it is asked for.
+    Now {
+        /// What the simulation did.
+        simulation: Simulation,
+        /// Number of instants, of a stored history.
+        held: Option<usize>,
+        /// How long the estimate took (s).
+        seconds: f64,
+    },
+    /// It was made before: its text.
+    Before(String),
 }
 
 /// An estimate of either dimension.
@@ -30,9 +49,16 @@ pub(crate) struct EstimateData {
     pub(crate) made: Any<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
 }
 
+/// A number of each record, by name.
+type Columns<R, const C: usize> = [(&'static str, fn(&R) -> f64); C];
+/// Vectors of admissible fields.
+type Vectors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[f64; D]];
+/// Stresses.
+type Tensors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[[f64; D]; D]];
+
 /// At which instants maps are kept: so many, or near these times (s).
 #[derive(FromPyObject)]
-enum Wanted {
+pub(crate) enum Wanted {
     Count(usize),
     Times(Vec<f64>),
 }
@@ -96,22 +122,51 @@ fn estimate_one<const D: usize, const N: usize>(
     };
     let outcome = door::through(py, progress, work)?;
     let (simulation, estimate) = outcome.map_err(|error| errors::estimate(py, &error))?;
-    Ok(Arc::new(Made { run: run.clone(), options, simulation, estimate, seconds: start.elapsed().as_secs_f64() }))
+    let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
+    Ok(Arc::new(Made {
+        problem: run.problem.clone(),
+        times: run.times().clone(),
+        options,
+        estimate,
+        report: Told::Now { simulation, held, seconds },
+    }))
 }
 
 impl<const D: usize, const N: usize> Made<D, N> {
-    fn report(&self, name: &str) -> Report {
-        let (problem, times) = (&*self.run.problem, self.run.times());
-        let held = self.run.file().map(|_| self.run.count());
-        let subject = Subject { name, problem, times, critical_step: critical_time_step(problem), held };
-        Report::new(&subject, self.options, &self.simulation, &self.estimate, self.seconds)
+    /// The document of `percute run --json`.
+    fn report(&self, name: &str) -> Result<String, String> {
+        let Self { problem, times, options, estimate, report } = self;
+        match report {
+            Told::Before(text) => Ok(text.clone()),
+            Told::Now { simulation, held, seconds } => {
+                let critical_step = critical_time_step(problem);
+                let subject = Subject { name, problem, times, critical_step, held: *held };
+                let report = Report::new(&subject, *options, simulation, estimate, *seconds);
+                report.to_json().map_err(|error| error.to_string())
+            }
+        }
     }
 }
 
 #[pymethods]
 impl EstimateData {
     fn problem(&self) -> ProblemData {
-        ProblemData::new(map!(&self.made, m => m.run.problem.clone()))
+        ProblemData::new(map!(&self.made, m => m.problem.clone()))
+    }
+
+    /// All instants planned (s).
+    fn times(&self) -> Vec<f64> {
+        each!(&self.made, m => m.times.instants().to_vec())
+    }
+
+    /// An estimate put together again from what the other methods give.
+    #[staticmethod]
+    fn restore(problem: &ProblemData, state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let made = match &problem.problem {
+            Any::Bar(problem) => Any::Bar(Arc::new(restore(problem, &state.extract()?)?)),
+            Any::Plane(problem) => Any::Plane(Arc::new(restore(problem, &state.extract()?)?)),
+        };
+        Ok(Self { made })
     }
 
     /// The measures: those of `percute.Estimate` that are single numbers.
@@ -142,7 +197,7 @@ impl EstimateData {
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let quantities: [(&str, fn(&Sample) -> f64); 6] = [
+        let quantities: Columns<Sample, 6> = [
             ("time", |s| s.time),
             ("kinetic", |s| s.parts.kinetic),
             ("elastic", |s| s.parts.elastic),
@@ -197,9 +252,9 @@ impl EstimateData {
     fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
         let text = each!(&self.made, made => {
             let made = made.clone();
-            door::through(py, None, move |_| made.report(&name).to_json())?
+            door::through(py, None, move |_| made.report(&name))?
         });
-        text.map_err(|error| errors::percute_error(py, &error.to_string()))
+        text.map_err(|message| errors::percute_error(py, &message))
     }
 }
 
@@ -219,11 +274,13 @@ fn one_map<'py, const D: usize, const N: usize>(
     for (name, part) in parts {
         arguments.set_item(name, view::view(py, made, |m| part(&m.estimate.maps[at]), &[elements])?)?;
     }
+    let accumulated = view::view(py, made, |m| m.estimate.maps[at].accumulated.as_slice(), &[elements])?;
+    arguments.set_item("accumulated", accumulated)?;
     arguments.set_item("total", PyArray1::from_vec(py, map.total()))?;
     arguments.set_item("error", PyArray1::from_vec(py, map.error(made.estimate.end)))?;
     let Some(fields) = &map.fields else { return Ok(arguments) };
     let nodes = fields.displacement.len();
-    let vectors: [(&str, usize, fn(&AdmissibleFields<D>) -> &[[f64; D]]); 3] = [
+    let vectors: [(&str, usize, Vectors<D>); 3] = [
         ("displacement", nodes, |f| &f.displacement),
         ("velocity", nodes, |f| &f.velocity),
         ("acceleration", elements, |f| &f.acceleration),
@@ -232,8 +289,7 @@ fn one_map<'py, const D: usize, const N: usize>(
         let shown = view::field(py, made, |m| fields_of(m, at).map_or(&[], field), &[count])?;
         arguments.set_item(name, shown)?;
     }
-    let tensors: [(&str, fn(&AdmissibleFields<D>) -> &[[[f64; D]; D]]); 2] =
-        [("stress", |f| &f.stress), ("compatible_stress", |f| &f.compatible_stress)];
+    let tensors: [(&str, Tensors<D>); 2] = [("stress", |f| &f.stress), ("compatible_stress", |f| &f.compatible_stress)];
     for (name, field) in tensors {
         let shown =
             view::field(py, made, |m| fields_of(m, at).map_or(&[], |f| field(f).as_flattened()), &[elements, D])?;

@@ -10,6 +10,7 @@ mod exact;
 mod history;
 mod mesh;
 mod problem;
+mod restore;
 mod run;
 mod simulate;
 mod statement;
