@@ -54,20 +54,32 @@ class History:
     of them, or of the file.
     """
 
-    _data: _percute.HistoryData
     _problem: Problem | None
     _name: str
+    _file: str | None
 
     def __init__(self) -> None:
         raise TypeError("histories are made by percute.simulate, percute.run and percute.open")
 
     @classmethod
     def _of(cls, data: _percute.HistoryData, problem: Problem | None = None, name: str = "") -> History:
-        history = cls.__new__(cls)
+        history = cls._at(None, problem, name)
         history._data = data
+        return history
+
+    @classmethod
+    def _at(cls, file: str | None, problem: Problem | None, name: str = "") -> History:
+        """Give a history in a file, which is opened when it is needed."""
+        history = cls.__new__(cls)
+        history._file = file
         history._problem = problem
         history._name = name
         return history
+
+    @cached_property
+    def _data(self) -> _percute.HistoryData:
+        assert self._file is not None
+        return _percute.open_history(self._file)
 
     @property
     def problem(self) -> Problem:
@@ -283,4 +295,6 @@ def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
         done = getattr(error, "history", None)
         if isinstance(done, _percute.HistoryData):
             error.history = History._of(done, problem)  # type: ignore[attr-defined]
+        elif isinstance(done, Path):
+            error.history = History._at(str(done), problem, str(done))  # type: ignore[attr-defined]
         raise

@@ -24,7 +24,7 @@ use thiserror::Error;
 /// How the instants are stated: end, courant, step, steps.
 type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
 
-/// Simulates. What is raised on the way has what was done as its `history`.
+/// Simulates. What is raised on the way has what was done as its `history`: the data, or the file.
 #[pyfunction]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -129,7 +129,8 @@ fn one<const D: usize, const N: usize>(
     let outcome = door::through(py, progress, work);
     match outcome.and_then(|done| done.map_err(|error| error.raised(py))) {
         Ok(()) => open_history(py, store.path),
-        Err(error) if store.ours.load(Relaxed) => Err(with_history(py, error, open_history(py, store.path).ok())),
+        // To open it takes time that whoever pressed Ctrl-C does not have.
+        Err(error) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
         Err(error) => Err(error),
     }
 }
@@ -172,8 +173,8 @@ fn into_memory<const D: usize, const N: usize>(
     }
 }
 
-/// Hangs what was done on an exception.
-fn with_history(py: Python<'_>, error: PyErr, history: Option<HistoryData>) -> PyErr {
+/// Hangs what was done on an exception: the history, or its file.
+fn with_history<'py>(py: Python<'py>, error: PyErr, history: Option<impl IntoPyObject<'py>>) -> PyErr {
     if let Some(history) = history {
         // One that takes no attributes is raised all the same.
         let _ = error.value(py).setattr("history", history);
