@@ -23,8 +23,13 @@ pub fn plan<'p, const D: usize, const N: usize>(
     options: &Options,
     case: Option<&Source>,
 ) -> Result<Plan<'p, D, N>, Unsayable> {
-    let case = case.map(|source| Case { name: source.name().to_string(), text: source.text().to_string() });
+    let case = case.map(stored_case);
     Ok(Plan::new(problem, times, &statement(problem, Some(options))?, case.as_ref()))
+}
+
+/// A case file as it is stored in others.
+pub(crate) fn stored_case(source: &Source) -> Case {
+    Case { name: source.name().to_string(), text: source.text().to_string() }
 }
 
 /// A history in a file, with its problem.

@@ -2,6 +2,7 @@
 
 use crate::error::FileCause;
 use crate::library::{alone, detail};
+use crate::write::Texts;
 use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
 use rustix::io::Errno;
@@ -37,7 +38,7 @@ impl Unnamed {
         path: &Path,
         overwrite: Overwrite,
         bytes: u64,
-        fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>,
+        fill: impl FnOnce(&hdf5::File, &mut Texts) -> Result<T, FileCause>,
     ) -> Result<(Self, T), FileCause> {
         let (path, old) = destination(path, overwrite)?;
         let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
@@ -50,14 +51,16 @@ impl Unnamed {
         if let Some(free) = free(folder).filter(|free| *free < bytes) {
             return Err(FileCause::NoSpace { needed: bytes, free });
         }
+        let mut texts = Texts::default();
         let made = {
             let _alone = alone();
             hdf5::File::with_options()
-                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110))
+                // VTK loses arrays of later formats; who maps arrays into memory wants them aligned.
+                .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8))
                 .create(temporary.path())
                 .map_err(|error| refused(&error))
                 .and_then(|file| {
-                    let made = fill(&file)?;
+                    let made = fill(&file, &mut texts)?;
                     file.close().map_err(|error| refused(&error))?;
                     Ok(made)
                 })
@@ -72,6 +75,7 @@ impl Unnamed {
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => {}
             Err(error) => return Err(no_room(error.into(), folder, bytes.max(length))),
         }
+        texts.put(temporary.as_file()).map_err(|error| no_room(error, folder, bytes))?;
         Ok((Self { temporary, path, old, overwrite }, made))
     }
 

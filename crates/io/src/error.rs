@@ -190,12 +190,14 @@ pub enum FileCause {
     /// A step that does not fit the file.
     #[error(transparent)]
     Step(#[from] StepError),
-    /// A problem unlike that of the file.
-    #[error("the problem has {given} nodes, but the file has {needed}")]
+    /// A problem on another mesh.
+    #[error("the mesh of the problem has {given} {what}, but {needed} are needed")]
     Problem {
-        /// Nodes of the problem.
+        /// Nodes or elements.
+        what: &'static str,
+        /// How many the problem has.
         given: usize,
-        /// Nodes of the file.
+        /// How many the history or the estimate has.
         needed: usize,
     },
 }

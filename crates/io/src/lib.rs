@@ -6,12 +6,14 @@
 
 mod create;
 mod error;
+pub mod estimate_file;
 pub mod history;
 mod kind;
 mod library;
 mod mesh;
 mod names;
 mod read;
+mod steps;
 mod write;
 
 pub use create::Overwrite;

@@ -9,6 +9,7 @@ use hdf5::{Container, Dataset, Group, H5Type, Hyperslab, Selection, SliceOrIndex
 use std::fs::{File, TryLockError};
 use std::io::{self, Read};
 use std::ops::Range;
+use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::sync::MutexGuard;
 
@@ -42,7 +43,7 @@ impl Opened {
     }
 
     pub(crate) fn root(&self) -> Part<'_> {
-        Part { group: (*self.file).clone(), name: String::new(), file_bytes: self.bytes, _file: &self.file }
+        Part { group: (*self.file).clone(), name: String::new(), file_bytes: self.bytes, file: &self.file }
     }
 
     /// History or estimate; whatever is neither is an error that says what is there.
@@ -107,7 +108,7 @@ pub(crate) struct Part<'f> {
     group: Group,
     name: String,
     file_bytes: u64,
-    _file: &'f hdf5::File,
+    file: &'f hdf5::File,
 }
 
 impl<'f> Part<'f> {
@@ -120,7 +121,7 @@ impl<'f> Part<'f> {
             return Ok(None);
         }
         let group = self.group.group(name).map_err(damaged)?;
-        Ok(Some(Part { group, name: self.path(name), file_bytes: self.file_bytes, _file: self._file }))
+        Ok(Some(Part { group, name: self.path(name), file_bytes: self.file_bytes, file: self.file }))
     }
 
     pub(crate) fn group(&self, name: &str) -> Result<Part<'f>, FileCause> {
@@ -132,7 +133,7 @@ impl<'f> Part<'f> {
             return Ok(None);
         }
         let set = self.group.dataset(name).map_err(damaged)?;
-        Data::new(set, self.path(name), self.file_bytes, self._file).map(Some)
+        Data::new(set, self.path(name), self.file_bytes, self.file).map(Some)
     }
 
     pub(crate) fn data(&self, name: &str) -> Result<Data<'f>, FileCause> {
@@ -194,24 +195,30 @@ impl<'f> Part<'f> {
         if self.has_attribute(name) { self.text_attribute(name) } else { Ok(String::new()) }
     }
 
+    /// A text of fixed length, of which the bindings read none as long as it may be: straight from the file.
+    fn fixed(&self, data: &Data<'_>, length: usize) -> Result<String, FileCause> {
+        let place = data.set.offset().filter(|place| place.saturating_add(length as u64) <= self.file_bytes);
+        let Some(place) = place.filter(|_| data.set.layout() == Layout::Contiguous) else {
+            let given = "a text of fixed length in pieces".to_string();
+            return Err(FileCause::Type { name: data.name.clone(), given, needed: "a text in one piece" });
+        };
+        let mut bytes = vec![0; length];
+        let file = File::open(self.file.filename()).and_then(|file| file.read_exact_at(&mut bytes, place));
+        file.map_err(|source| FileCause::Read { source })?;
+        bytes.truncate(bytes.iter().position(|b| *b == 0).unwrap_or(length));
+        utf8(bytes, data.name.clone())
+    }
+
     /// A text, if it is there.
     pub(crate) fn optional_text(&self, name: &str) -> Result<Option<String>, FileCause> {
         let Some(data) = self.optional(name)? else { return Ok(None) };
         if data.shape.iter().product::<usize>() != 1 {
             return Err(FileCause::Shape { name: data.name, given: data.shape, needed: "one text".to_string() });
         }
-        text(&data.set, &data.kind, data.name).map(Some)
-    }
-
-    /// An attribute of a data set of the group.
-    pub(crate) fn attribute_of(&self, data: &str, name: &str) -> Result<String, FileCause> {
-        let set = self.group.dataset(data).map_err(damaged)?;
-        let Ok(attribute) = set.attr(name) else { return Ok(String::new()) };
-        let kind = attribute.dtype().and_then(|t| t.to_descriptor()).map_err(damaged)?;
-        if attribute.size() != 1 {
-            return Ok(String::new());
+        if let TypeDescriptor::FixedUnicode(length) | TypeDescriptor::FixedAscii(length) = data.kind {
+            return self.fixed(&data, length).map(Some);
         }
-        text(&attribute, &kind, format!("{}.{name}", self.path(data)))
+        text(&data.set, &data.kind, data.name).map(Some)
     }
 }
 
@@ -226,8 +233,12 @@ fn text(stored: &Container, kind: &TypeDescriptor, name: String) -> Result<Strin
         TypeDescriptor::VarLenAscii => one::<VarLenAscii>(stored)?.as_bytes().to_vec(),
         TypeDescriptor::FixedUnicode(..=MOST) => one::<Unicode>(stored)?.as_bytes().to_vec(),
         TypeDescriptor::FixedAscii(..=MOST) => one::<Ascii>(stored)?.as_bytes().to_vec(),
-        _ => return Err(FileCause::Type { name, given: kind.to_string(), needed: "a text of variable length" }),
+        _ => return Err(FileCause::Type { name, given: kind.to_string(), needed: "a text" }),
     };
+    utf8(bytes, name)
+}
+
+fn utf8(bytes: Vec<u8>, name: String) -> Result<String, FileCause> {
     String::from_utf8(bytes).map_err(|_| FileCause::Value { name, detail: "the text is not UTF-8".to_string() })
 }
 
@@ -242,6 +253,7 @@ pub(crate) struct Data<'f> {
     pub(crate) name: String,
     pub(crate) shape: Vec<usize>,
     kind: TypeDescriptor,
+    /// It must be closed first.
     _file: &'f hdf5::File,
 }
 

@@ -6,8 +6,11 @@ use crate::kind::Kind;
 use crate::read::LAYOUT;
 use hdf5::dataset::{AllocTime, FillTime, Layout};
 use hdf5::plist::link_create::CharEncoding;
-use hdf5::types::VarLenUnicode;
+use hdf5::types::{FixedUnicode, TypeDescriptor};
 use hdf5::{Dataset, Group, H5Type, Location};
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
 
 /// A case file as it was given: provenance only.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,22 +73,52 @@ pub(crate) fn numbers<T: H5Type>(parent: &Group, name: &str, shape: &[usize], va
     Ok(set)
 }
 
-/// A text.
-pub(crate) fn text(parent: &Group, name: &str, value: &str) -> Made<Dataset> {
-    let set = parent.new_dataset::<VarLenUnicode>().create(name).map_err(|error| refused(&error))?;
-    set.write_scalar(&unicode(name, value)?).map_err(|error| refused(&error))?;
-    Ok(set)
+/// Texts of a new file and where they go. They have a fixed length: those of variable length lie in a heap
+/// without checksums, and one damaged byte there can keep the library busy for ever. The library's
+/// bindings write no texts of a length that is known late; they are put in place once it has closed the file.
+#[derive(Default)]
+pub(crate) struct Texts(Vec<(u64, String)>);
+
+impl Texts {
+    /// Makes room for a text.
+    pub(crate) fn add(&mut self, parent: &Group, name: &str, value: &str) -> Made<Dataset> {
+        if value.contains('\0') {
+            return Err(FileCause::Value { name: name.to_string(), detail: "a text must not hold NUL".to_string() });
+        }
+        // No text has no length.
+        let value = if value.is_empty() { "\0" } else { value };
+        let set = parent
+            .new_dataset_builder()
+            .empty_as(TypeDescriptor::FixedUnicode(value.len()))
+            .alloc_time(Some(AllocTime::Early))
+            .fill_time(FillTime::Never)
+            .layout(Layout::Contiguous)
+            .create(name)
+            .map_err(|error| refused(&error))?;
+        self.0.push((offset(&set)?, value.to_string()));
+        Ok(set)
+    }
+
+    /// Writes the texts.
+    pub(crate) fn put(&self, file: &File) -> io::Result<()> {
+        self.0.iter().try_for_each(|(place, text)| file.write_all_at(text.as_bytes(), *place))
+    }
 }
 
-/// A text attribute.
+/// Where a data set lies in the file.
+pub(crate) fn offset(set: &Dataset) -> Made<u64> {
+    let missing = || FileCause::Create { source: io::Error::other("the HDF5 library took no room for a data set") };
+    set.offset().ok_or_else(missing)
+}
+
+/// A short text attribute; of one that is too long, the end.
 pub(crate) fn text_attribute(of: &Location, name: &str, value: &str) -> Made<()> {
-    let attribute = of.new_attr::<VarLenUnicode>().create(name).map_err(|error| refused(&error))?;
-    attribute.write_scalar(&unicode(name, value)?).map_err(|error| refused(&error))
-}
-
-fn unicode(name: &str, value: &str) -> Made<VarLenUnicode> {
-    let wrong = |_| FileCause::Value { name: name.to_string(), detail: "a text must not hold NUL".to_string() };
-    value.parse().map_err(wrong)
+    const MOST: usize = 64;
+    let start = (value.len().saturating_sub(MOST)..=value.len()).find(|&at| value.is_char_boundary(at)).unwrap_or(0);
+    let stored: FixedUnicode<MOST> = value[start..]
+        .parse()
+        .map_err(|_| FileCause::Value { name: name.to_string(), detail: "a text must not hold NUL".to_string() })?;
+    attribute(of, name, stored)
 }
 
 /// An attribute of one number.
@@ -113,11 +146,11 @@ pub(crate) fn ours(file: &Group, kind: Kind, dimension: usize) -> Made<Group> {
 }
 
 /// The statement of the problem and the case file.
-pub(crate) fn statement(ours: &Group, statement: &str, case: Option<&Case>) -> Made<()> {
-    text(ours, "problem", statement)?;
+pub(crate) fn statement(ours: &Group, texts: &mut Texts, statement: &str, case: Option<&Case>) -> Made<()> {
+    texts.add(ours, "problem", statement)?;
     if let Some(case) = case {
-        let set = text(ours, "case", &case.text)?;
-        text_attribute(&set, "name", &case.name)?;
+        texts.add(ours, "case", &case.text)?;
+        texts.add(ours, "case_name", &case.name)?;
     }
     Ok(())
 }

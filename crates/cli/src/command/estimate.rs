@@ -46,9 +46,8 @@ where
     let report = Report::new(&stored.subject(), options, &simulation, &estimate, seconds);
     let given = Given {
         problem: &stored.problem,
-        times,
         options,
-        case: None,
+        case: stored.file.case().cloned(),
         estimate: &estimate,
         report: &report,
         told: false,

@@ -5,8 +5,8 @@ use crate::args::InfoArguments;
 use crate::case::Case;
 use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
-use crate::info::{Info, of_case, of_history};
-use percute_io::{Kind, kind};
+use crate::info::{Info, of_case, of_estimate, of_history};
+use percute_io::{Kind, estimate_file, kind};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -17,8 +17,11 @@ pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> R
 
 fn read(file: &Path) -> Result<Info, Failure> {
     let found = kind(file)?;
-    if found == Kind::Other {
-        return of_text(file);
+    match found {
+        Kind::Other => return of_text(file),
+        Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
+        // The reader of histories says what a stranger holds instead.
+        Kind::History | Kind::OtherHdf5 => {}
     }
     Ok(match open(file)? {
         AnyStored::Bar(stored) => of_history(&stored),

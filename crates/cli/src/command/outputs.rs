@@ -7,7 +7,7 @@ use crate::report::number::bytes;
 use crate::{history, picture, writable};
 use percute_estimator::Options;
 use percute_io::history::Writer;
-use percute_io::{FileCause, Overwrite};
+use percute_io::{FileCause, FileError, Overwrite};
 use std::path::Path;
 
 /// A file to come.
@@ -69,6 +69,14 @@ pub(super) fn overwrite(force: bool) -> Overwrite {
     if force { Overwrite::Replace } else { Overwrite::Refuse }
 }
 
+/// A file that somebody else has made since it was checked.
+pub(super) fn taken(error: FileError) -> Failure {
+    match error.cause {
+        FileCause::Exists => Failure::Argument(format!("{error}; --force replaces it")),
+        _ => error.into(),
+    }
+}
+
 /// Makes the history file of a case and says how large it is.
 pub(super) fn begin_history<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
@@ -78,11 +86,7 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
     console: &mut Console<'_>,
 ) -> Result<Writer<D>, Failure> {
     let plan = history::plan(&case.problem, &case.times, &case.options, Some(&case.source))?;
-    let writer = plan.create(output.file, overwrite(force)).map_err(|error| match error.cause {
-        // Made by somebody else since it was checked.
-        FileCause::Exists => Failure::Argument(format!("{error}; --force replaces it")),
-        _ => error.into(),
-    })?;
+    let writer = plan.create(output.file, overwrite(force)).map_err(taken)?;
     if !quiet {
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }

@@ -1,22 +1,21 @@
 //! What a run and the estimate of a history have in common: report, picture, estimate file.
 
 use super::Console;
-use super::outputs::{Output, overwrite};
+use super::outputs::{Output, overwrite, taken};
 use crate::args::{PrintArguments, WorkArguments};
-use crate::case::{Source, statement};
+use crate::case::statement;
 use crate::failure::{DONE, Failure, INTERRUPTED};
 use crate::picture::{self, Drawn};
 use crate::report::{Report, summary};
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options};
+use percute_io::{Case, estimate_file};
 
 /// What is to be given to the user.
 pub(super) struct Given<'a, const D: usize, const N: usize> {
     pub(super) problem: &'a Problem<D, N>,
-    pub(super) times: &'a TimeGrid,
     pub(super) options: Options,
-    pub(super) case: Option<&'a Source>,
+    pub(super) case: Option<Case>,
     pub(super) estimate: &'a Estimate<D>,
     pub(super) report: &'a Report,
     /// Whether the number of steps was warned of before the work.
@@ -45,5 +44,20 @@ where
     if let Some(file) = &print.picture {
         picture::write(given.problem, report, file)?;
     }
+    if let Some(output) = stored {
+        store(given, &json, output, work.force)?;
+    }
     Ok(if given.interrupted { INTERRUPTED } else { DONE })
+}
+
+fn store<const D: usize, const N: usize>(
+    given: &Given<'_, D, N>,
+    json: &str,
+    output: Output<'_>,
+    force: bool,
+) -> Result<(), Failure> {
+    let Given { problem, options, case, estimate, .. } = given;
+    let statement = statement(problem, Some(options))?;
+    estimate_file::write(output.file, overwrite(force), problem, estimate, &statement, case.as_ref(), json)
+        .map_err(taken)
 }

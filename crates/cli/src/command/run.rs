@@ -6,6 +6,7 @@ use super::{Console, case};
 use crate::args::RunArguments;
 use crate::case::{Case, CaseOf};
 use crate::failure::{Failure, INTERRUPTED};
+use crate::history::stored_case;
 use crate::picture::Drawn;
 use crate::progress::Watch;
 use crate::report::{Report, many_steps};
@@ -30,17 +31,12 @@ where
     Problem<D, N>: Drawn,
 {
     let RunArguments { maps, print, work, .. } = arguments;
-    let history =
-        chosen(["--history", "[output] history"], arguments.history.as_deref(), case.output.history.as_deref());
-    let stored =
-        chosen(["--estimate", "[output] estimate"], arguments.estimate.as_deref(), case.output.estimate.as_deref());
+    let [history, stored] = files(case, arguments);
     check(("case file", &arguments.case), &[history, stored], print.picture.as_deref(), work.force)?;
     let options = with_work(case.options, work.threads, work.window);
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
-    let request = request(stored, || Request {
-        steps: instants.steps(&case.times, options.every),
-        fields: maps.fields || case.output.fields,
-    });
+    let fields = maps.fields || case.output.fields;
+    let request = request(stored, || Request { steps: instants.steps(&case.times, options.every), fields });
     let early = many_steps(case.times.step_count()).filter(|_| !work.quiet);
     console.warn(&early);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
@@ -59,15 +55,27 @@ where
     let report = Report::new(&case.subject(), options, &simulation, &estimate, seconds);
     let given = Given {
         problem: &case.problem,
-        times: &case.times,
         options,
-        case: Some(&case.source),
+        case: Some(stored_case(&case.source)),
         estimate: &estimate,
         report: &report,
         told: early.is_some(),
         interrupted: simulation.interrupted,
     };
     give(&given, print, stored, work, console)
+}
+
+/// The files of the history and of the estimate, as far as they are wanted.
+fn files<'a, const D: usize, const N: usize>(
+    case: &'a CaseOf<D, N>,
+    arguments: &'a RunArguments,
+) -> [Option<Output<'a>>; 2] {
+    let RunArguments { history, estimate, .. } = arguments;
+    let stated = &case.output;
+    [
+        chosen(["--history", "[output] history"], history.as_deref(), stated.history.as_deref()),
+        chosen(["--estimate", "[output] estimate"], estimate.as_deref(), stated.estimate.as_deref()),
+    ]
 }
 
 /// Maps are kept for a file only.

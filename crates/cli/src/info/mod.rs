@@ -1,7 +1,10 @@
 //! What a file holds, without any simulation. The fields are the keys of the JSON document, described in
 //! `docs/json.md`.
 
+mod estimate;
 mod memory;
+
+pub use estimate::{EstimateInfo, of_estimate};
 
 use crate::case::{CaseOf, Output, Unsayable};
 use crate::history::{Stored, plan};
@@ -21,6 +24,8 @@ pub enum Info {
     Case(Box<CaseInfo>),
     /// A history.
     History(Box<HistoryInfo>),
+    /// An estimate.
+    Estimate(Box<EstimateInfo>),
 }
 
 /// A case: what its run will take.
@@ -156,6 +161,7 @@ impl Info {
         layout(&match self {
             Self::Case(info) => info.lines(),
             Self::History(info) => info.lines(),
+            Self::Estimate(info) => info.lines(),
         })
     }
 

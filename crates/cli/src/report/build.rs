@@ -45,7 +45,7 @@ impl Report {
             end: estimate.end,
             steps_planned: planned,
             interrupted,
-            given: Given { velocity: estimate.given.velocity, acceleration: estimate.given.acceleration },
+            given: given(estimate),
             held,
             error: measures(&estimate.error),
             parts: parts(&estimate.parts),
@@ -61,6 +61,10 @@ impl Report {
             seconds,
         }
     }
+}
+
+fn given<const D: usize>(estimate: &Estimate<D>) -> Given {
+    Given { velocity: estimate.given.velocity, acceleration: estimate.given.acceleration }
 }
 
 fn options_used(options: Options) -> OptionsUsed {

@@ -210,6 +210,16 @@ fn info_tells_what_each_file_holds() {
     assert_eq!(of_history["bytes"].as_u64(), Some(size));
     // What HDF5 needs of its own is foreseen to some ten kilobytes.
     assert!(of_case["history_bytes"].as_u64().unwrap().abs_diff(size) < 20_000, "{of_case} for {size}");
+    let manual = include_str!("../../../../docs/json.md");
+    for key in [&of_case, &of_history].into_iter().flat_map(|info| info.as_object().unwrap().keys()) {
+        assert!(manual.contains(&format!("`{key}`")), "not in docs/json.md: {key}");
+    }
+}
+
+#[test]
+fn info_is_a_few_lines() {
+    let bench = Bench::new(&(BLOCK.to_string() + "[output]\nhistory = \"h.vtkhdf\"\n"));
+    done(&bench, &["run", "case.toml"]);
     for (file, words) in [
         (
             "case.toml",
@@ -237,10 +247,6 @@ fn info_tells_what_each_file_holds() {
         let summary = done(&bench, &["info", file]);
         assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
         words.iter().for_each(|word| assert!(summary.contains(word), "no `{word}` in {summary}"));
-    }
-    let manual = include_str!("../../../../docs/json.md");
-    for key in [&of_case, &of_history].into_iter().flat_map(|info| info.as_object().unwrap().keys()) {
-        assert!(manual.contains(&format!("`{key}`")), "not in docs/json.md: {key}");
     }
     let arrays = Bench::new(ARRAYS);
     assert!(done(&arrays, &["info", "case.toml"]).contains("2 triangles"));
@@ -277,4 +283,70 @@ fn a_finished_history_needs_no_recovery() {
     let before = std::fs::read(bench.path("case.vtkhdf")).unwrap();
     assert!(done(&bench, &["recover", "case.vtkhdf"]).contains("nothing was changed"));
     assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == before);
+}
+
+/// `info` of an estimate file.
+fn info(bench: &Bench, file: &str) -> Value {
+    serde_json::from_str(&done(bench, &["info", file, "--json"])).unwrap()
+}
+
+#[test]
+fn estimate_files_hold_the_instants_asked_for_and_the_report() {
+    let bench = Bench::new(&(BLOCK.to_string() + "[output]\nestimate = \"case.est\"\ninstants = 3\n"));
+    let report: Value =
+        serde_json::from_str(&done(&bench, &["run", "case.toml", "--json", "--history", "h.vtkhdf"])).unwrap();
+    let found = info(&bench, "case.est");
+    assert_eq!(
+        (&found["kind"], &found["fields"], &found["case"]),
+        (&"estimate".into(), &false.into(), &"case.toml".into())
+    );
+    assert_eq!(found["report"], report);
+    let held = |file: &str| {
+        info(&bench, file)["instants"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let (all, three) = (report["balance_over_time"]["time"].as_array().unwrap(), held("case.est"));
+    let end = all.last().unwrap().as_f64().unwrap();
+    assert!(three.len() == 3 && three[0] == 0.0 && three[2] == end, "{three:?}");
+    done(&bench, &["estimate", "h.vtkhdf", "--output", "times", "--instants", "1e-6,1", "--fields"]);
+    let times = held("times");
+    assert!(times.len() == 2 && times[1] == end && info(&bench, "times")["fields"] == true, "{times:?}");
+    // No other step is nearer.
+    let distance = |t: f64| (t - 1e-6).abs();
+    assert!(all.iter().all(|t| distance(t.as_f64().unwrap()) >= distance(times[0])), "{times:?}");
+    done(&bench, &["estimate", "h.vtkhdf", "--output", "many"]);
+    assert!(held("many").len() == all.len().min(50));
+    let summary = done(&bench, &["info", "times"]);
+    for word in ["estimate  times, ", "written   percute", "2 instants", "with the admissible fields", "error     sup"]
+    {
+        assert!(summary.contains(word), "no `{word}` in {summary}");
+    }
+    let manual = include_str!("../../../../docs/json.md");
+    let missing: Vec<_> =
+        found.as_object().unwrap().keys().filter(|key| !manual.contains(&format!("`{key}`"))).collect();
+    assert!(missing.is_empty(), "not in docs/json.md: {missing:?}");
+}
+
+#[test]
+fn the_estimate_file_of_a_history_is_that_of_its_run() {
+    for case in EXAMPLES {
+        let bench = Bench::new(case);
+        done(&bench, &["run", "case.toml", "--history", "h.vtkhdf", "--estimate", "beside", "--fields"]);
+        done(&bench, &["estimate", "h.vtkhdf", "--output", "later", "--fields", "--threads", "2", "--window", "7"]);
+        let [beside, later] = ["beside", "later"].map(|file| info(&bench, file));
+        for key in ["case", "dimension", "nodes", "elements", "instants", "fields"] {
+            assert_eq!(beside[key], later[key]);
+        }
+        assert_eq!(beside["report"]["by_element"], later["report"]["by_element"]);
+    }
+}
+
+#[test]
+fn an_estimate_is_no_history() {
+    let bench = Bench::new(BLOCK);
+    done(&bench, &["run", "case.toml", "--estimate", "e.vtkhdf"]);
+    for command in ["estimate", "recover"] {
+        let output = bench.percute(&[command, "e.vtkhdf"]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("this is an estimate, but a history is needed"), "{}", stderr(&output));
+    }
 }

@@ -231,6 +231,24 @@ fn meshes_as_arrays() {
 }
 
 #[test]
+fn outputs() {
+    let case = BLOCK.to_string() + "\n[output]\ninstants = 5\nfields = true\n";
+    check(
+        &case,
+        &[
+            Mistake("instants = 5", "instants = 0", 37, &["[output], instants", "is 0", "1 or more"]),
+            Mistake("instants = 5", "instants = \"all\"", 37, &["is \"all\"", "whole number"]),
+            Mistake("instants = 5", "instants = []", 37, &["a list of one time or more"]),
+            Mistake("instants = 5", "instants = [0.0, -1e-6]", 37, &["none of them negative"]),
+            Mistake("fields = true", "fields = 1", 38, &["[output], fields", "is 1", "true or false"]),
+            Mistake("fields = true", "history = \"\"", 38, &["is \"\"", "the name of a file"]),
+            Mistake("fields = true", "estimate = true", 38, &["[output], estimate", "the name of a file, in quotes"]),
+            Mistake("fields = true", "histroy = \"a\"", 38, &["did you mean `history`?"]),
+        ],
+    );
+}
+
+#[test]
 fn files_that_are_no_case() {
     for (text, line, phrase) in
         [("", 1, "[mesh] is missing"), ("[mesh]\n", 1, "exactly one of"), ("mesh = 3\n", 1, "is no table")]
@@ -281,7 +299,8 @@ fn spoilt(line: &str) -> Vec<String> {
 #[test]
 fn whatever_is_written_there_is_no_panic() {
     let (mut read, mut refused) = (0, 0);
-    for case in [BLOCK, BAR, ARRAYS] {
+    let output = BAR.to_string() + "[output]\nhistory = \"a\"\nestimate = \"b\"\ninstants = [0.0]\nfields = true\n";
+    for case in [BLOCK, &output, ARRAYS] {
         let lines: Vec<&str> = case.lines().collect();
         for (at, line) in lines.iter().enumerate() {
             for new in spoilt(line).into_iter().chain([String::new()]) {

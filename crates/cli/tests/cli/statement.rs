@@ -47,6 +47,72 @@ fn named<const D: usize, const N: usize>(mesh: &Mesh<D, N>, sides: &[&str], name
     Mesh::new(mesh.points().to_vec(), &cells, &facets, &elements).unwrap()
 }
 
+fn flip(random: &mut Random) -> bool {
+    random.bits().is_multiple_of(2)
+}
+
+/// A positive number of any size.
+fn size(random: &mut Random) -> f64 {
+    10.0_f64.powf(random.between(-6.0, 12.0))
+}
+
+fn vector<const D: usize>(random: &mut Random) -> [f64; D] {
+    std::array::from_fn(|_| random.between(-1.0, 1.0) * size(random))
+}
+
+fn law<const D: usize>(random: &mut Random) -> Elastic {
+    let (young, density, extent) = (size(random), size(random), size(random));
+    let poisson = random.between(-0.99, 0.499);
+    match (D, flip(random)) {
+        (1, _) => Elastic::bar(young, density, extent),
+        (_, true) => Elastic::plane_stress(young, poisson, density, extent),
+        (_, false) => Elastic::plane_strain(young, poisson, density, extent),
+    }
+    .unwrap()
+}
+
+fn table<const D: usize>(random: &mut Random) -> Table<D> {
+    if flip(random) {
+        return Table::constant(vector(random));
+    }
+    let count = 1 + random.bits() as usize % 4;
+    let mut time = random.between(-1.0, 1.0);
+    let mut later = || {
+        time += random.between(1e-6, 1.0);
+        time
+    };
+    let times = (0..count).map(|_| later()).collect();
+    Table::new(times, (0..count).map(|_| vector(random)).collect()).unwrap()
+}
+
+/// A support; of components that are not held a statement keeps nothing.
+fn support<const D: usize>(group: &str, random: &mut Random) -> Support<D> {
+    let components: [bool; D] = std::array::from_fn(|c| c == 0 || flip(random));
+    let velocity = flip(random).then(|| {
+        let table = table::<D>(random);
+        let keep = |v: &[f64; D]| std::array::from_fn(|c| if components[c] { v[c] } else { 0.0 });
+        Table::new(table.time().to_vec(), table.value().iter().map(keep).collect()).unwrap()
+    });
+    Support { group: group.to_string(), components, velocity }
+}
+
+/// Initial velocities that agree with a support.
+fn start<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    support: Option<&Support<D>>,
+    random: &mut Random,
+) -> Vec<[f64; D]> {
+    let mut velocity: Vec<[f64; D]> = mesh.points().iter().map(|_| vector(random)).collect();
+    let Some(Support { group, components, velocity: motion }) = support else { return velocity };
+    let at_start = motion.as_ref().map_or([0.0; D], |table| table.at(0.0));
+    for facet in &mesh.facet_groups()[group] {
+        for node in mesh.facets()[facet.index()].nodes {
+            (0..D).filter(|&c| components[c]).for_each(|c| velocity[node.index()][c] = at_start[c]);
+        }
+    }
+    velocity
+}
+
 /// Anything that can be stated on a mesh whose groups are, in this order: may touch, supported or
 /// loaded, loaded, loaded.
 fn anything<const D: usize, const N: usize>(
@@ -55,65 +121,23 @@ fn anything<const D: usize, const N: usize>(
     down: [f64; D],
     random: &mut Random,
 ) -> Problem<D, N> {
-    let flip = |random: &mut Random| random.bits().is_multiple_of(2);
-    let size = |random: &mut Random| 10.0_f64.powf(random.between(-6.0, 12.0));
-    let law = |random: &mut Random| {
-        let (young, density, extent) = (size(random), size(random), size(random));
-        let poisson = random.between(-0.99, 0.499);
-        match (D, flip(random)) {
-            (1, _) => Elastic::bar(young, density, extent),
-            (_, true) => Elastic::plane_stress(young, poisson, density, extent),
-            (_, false) => Elastic::plane_strain(young, poisson, density, extent),
-        }
-        .unwrap()
-    };
-    let vector = |random: &mut Random| std::array::from_fn::<f64, D, _>(|_| random.between(-1.0, 1.0) * size(random));
-    let table = |random: &mut Random| {
-        if flip(random) {
-            return Table::constant(vector(random));
-        }
-        let count = 1 + random.bits() as usize % 4;
-        let mut time = random.between(-1.0, 1.0);
-        let mut later = || {
-            time += random.between(1e-6, 1.0);
-            time
-        };
-        let times = (0..count).map(|_| later()).collect();
-        Table::new(times, (0..count).map(|_| vector(random)).collect()).unwrap()
-    };
-    let is_held = flip(random);
-    let held: [bool; D] = std::array::from_fn(|c| is_held && (c == 0 || flip(random)));
-    let motion = flip(random).then(|| {
-        let table = table(random);
-        // Of components that are not held nothing is kept.
-        let keep = |v: &[f64; D]| std::array::from_fn(|c| if held[c] { v[c] } else { 0.0 });
-        Table::new(table.time().to_vec(), table.value().iter().map(keep).collect()).unwrap()
-    });
-    let mut velocity: Vec<[f64; D]> = mesh.points().iter().map(|_| vector(random)).collect();
-    let start = motion.as_ref().map_or([0.0; D], |table| table.at(0.0));
-    for facet in &mesh.facet_groups()[&names[1]] {
-        for node in mesh.facets()[facet.index()].nodes {
-            (0..D).filter(|&c| held[c]).for_each(|c| velocity[node.index()][c] = start[c]);
-        }
-    }
+    let support = flip(random).then(|| support(&names[1], random));
+    let velocity = start(&mesh, support.as_ref(), random);
+    let loaded = names.iter().skip(if support.is_some() { 2 } else { 1 });
+    let (length, friction) = (size(random), if D == 1 { 0.0 } else { random.between(0.0, 2.0) });
     // So far away that no displacement of half a metre matters.
-    let point = down.map(|x| -10.0 * x);
-    let length = size(random);
-    let friction = if D == 1 { 0.0 } else { random.between(0.0, 2.0) };
-    let group = Some(names[0].clone());
+    let plane = Plane::new(down.map(|x| 10.0 * x), down.map(|x| -length * x), friction, Some(names[0].clone()));
     let mut builder = Problem::builder(mesh.clone())
-        .obstacle(Plane::new(point.map(|x| -x), down.map(|x| -length * x), friction, group).unwrap())
+        .obstacle(plane.unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .initial_displacement(Initial::Nodal(mesh.points().iter().map(|p| p.map(|x| 0.1 * x)).collect()));
-    if is_held {
-        builder = builder.support(Support { group: names[1].clone(), components: held, velocity: motion });
-    }
+    builder = support.into_iter().fold(builder, |builder, support| builder.support(support));
     builder = if flip(random) {
-        builder.material_of(&names[1], law(random)).material_of(&names[0], law(random))
+        builder.material_of(&names[1], law::<D>(random)).material_of(&names[0], law::<D>(random))
     } else {
-        builder.material(law(random))
+        builder.material(law::<D>(random))
     };
-    for group in names.iter().skip(if is_held { 2 } else { 1 }).filter(|name| mesh.facet_groups().contains_key(*name)) {
+    for group in loaded.filter(|name| mesh.facet_groups().contains_key(*name)) {
         let profile = Profile { value: random.between(-2.0, 2.0), gradient: vector(random) };
         builder = builder.traction(Traction { group: group.clone(), value: table(random), profile });
     }

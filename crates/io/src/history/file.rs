@@ -8,6 +8,8 @@ use crate::write::{Case, Provenance};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::fs::File;
+use std::io;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,13 +43,22 @@ impl AnyHistoryFile {
     }
 }
 
-/// Device and number of a file: another one under the same name differs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Identity(u64, u64);
+/// Tells whether another file has come under the same name. Held open, so that its number is not given anew.
+#[derive(Debug)]
+pub(super) struct Identity(File);
 
 impl Identity {
-    pub(super) fn of(path: &Path) -> Option<Self> {
-        path.metadata().ok().map(|found| Self(found.dev(), found.ino()))
+    pub(super) fn of(path: &Path) -> Result<Self, FileCause> {
+        let refused = |source: io::Error| match source.kind() {
+            io::ErrorKind::NotFound => FileCause::Missing,
+            _ => FileCause::Read { source },
+        };
+        File::open(path).map(Self).map_err(refused)
+    }
+
+    fn is_still_at(&self, path: &Path) -> bool {
+        let (Ok(mine), Ok(there)) = (self.0.metadata(), path.metadata()) else { return false };
+        (mine.dev(), mine.ino()) == (there.dev(), there.ino())
     }
 }
 
@@ -55,7 +66,7 @@ impl Identity {
 #[derive(Debug)]
 pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) path: PathBuf,
-    pub(super) identity: Option<Identity>,
+    pub(super) identity: Identity,
     pub(super) bytes: u64,
     pub(super) mesh: Mesh<D, N>,
     pub(super) statement: String,
@@ -247,7 +258,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     pub(super) fn again<T>(&self, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
         let path = self.path();
         reading(path, |opened| {
-            if Identity::of(path) != self.contents.identity {
+            if !self.contents.identity.is_still_at(path) {
                 return Err(FileCause::Replaced);
             }
             read(opened)
@@ -291,7 +302,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
         let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
         if given != needed {
-            return Err(FileCause::Problem { given, needed }.at(self.path()));
+            return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
         }
         Ok(HistorySource::new(self.clone(), problem))
     }

@@ -6,11 +6,11 @@ mod plan;
 mod recover;
 mod rows;
 mod source;
-mod steps;
 mod writer;
 
 pub use file::{AnyHistoryFile, HistoryFile, NativeArray};
 pub use open::open;
+pub(crate) use open::{case, provenance};
 pub use plan::Plan;
 pub use recover::{Recovered, recover};
 pub use source::HistorySource;

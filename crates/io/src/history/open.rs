@@ -17,7 +17,7 @@ use std::path::Path;
 /// missing, or of a wrong type, shape or value.
 pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     let path = path.as_ref();
-    let identity = Identity::of(path);
+    let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
     reading(path, |opened| {
         opened.expect(Kind::History)?;
         match opened.root().group("percute")?.integer_attribute("dimension")? {
@@ -33,7 +33,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
 
 fn contents<const D: usize, const N: usize>(
     path: &Path,
-    identity: Option<Identity>,
+    identity: Identity,
     opened: &Opened,
 ) -> Result<HistoryFile<D, N>, FileCause> {
     let root = opened.root();
@@ -129,7 +129,7 @@ fn single(data: &Data<'_>) -> Result<i64, FileCause> {
 /// A field over time, if it is there: its shape, its type and where VTK looks for its steps.
 fn field<'f>(vtk: &Part<'f>, name: &str, instants: usize, nodes: usize) -> Result<Option<Data<'f>>, FileCause> {
     let Some(field) = vtk.group("PointData")?.optional(name)? else { return Ok(None) };
-    let rows = instants.checked_mul(nodes).unwrap_or(usize::MAX);
+    let rows = instants.saturating_mul(nodes);
     field.expect(&[rows, 3], "(instants x nodes, 3), step after step")?;
     field.check_floats()?;
     let steps = vtk.group("Steps")?;
@@ -175,7 +175,7 @@ fn contact_nodes(ours: &Part<'_>, instants: usize, nodes: usize, dimension: usiz
 
 pub(crate) fn case(ours: &Part<'_>) -> Result<Option<Case>, FileCause> {
     let Some(text) = ours.optional_text("case")? else { return Ok(None) };
-    Ok(Some(Case { name: ours.attribute_of("case", "name")?, text }))
+    Ok(Some(Case { name: ours.optional_text("case_name")?.unwrap_or_default(), text }))
 }
 
 pub(crate) fn provenance(ours: &Part<'_>) -> Result<Provenance, FileCause> {

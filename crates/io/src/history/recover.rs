@@ -1,9 +1,9 @@
 //! Finishing the file of a run that was killed.
 
 use super::open::open;
-use super::steps::note_steps;
 use crate::error::{FileCause, FileError};
 use crate::library::{alone, detail};
+use crate::steps::note_steps;
 use std::fs::{File, TryLockError};
 use std::path::Path;
 

@@ -1,0 +1,7 @@
+//! Estimates in files.
+
+mod open;
+mod write;
+
+pub use open::{EstimateFile, open};
+pub use write::write;

@@ -1,0 +1,106 @@
+//! Reads back what an estimate file says; its fields are for ParaView and h5py.
+
+use crate::error::{FileCause, FileError};
+use crate::history::{case, provenance};
+use crate::kind::Kind;
+use crate::read::{Opened, Part, reading};
+use crate::write::{Case, Provenance};
+use percute_estimator::{Parts, Sample};
+use std::path::Path;
+
+/// What an estimate file holds.
+#[derive(Clone, Debug)]
+pub struct EstimateFile {
+    /// Size of the file (bytes).
+    pub bytes: u64,
+    /// Who wrote it.
+    pub provenance: Provenance,
+    /// The problem in the language of the case files.
+    pub statement: String,
+    /// The case file as it was given.
+    pub case: Option<Case>,
+    /// The document that `--json` printed.
+    pub report: String,
+    /// 1 (bars) or 2 (triangles).
+    pub dimension: usize,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of elements.
+    pub elements: usize,
+    /// Instants of the maps (s).
+    pub instants: Vec<f64>,
+    /// Whether the maps hold admissible fields.
+    pub fields: bool,
+    /// η and d over time.
+    pub over_time: Vec<Sample>,
+    /// e_E of each element (J^½), eq. \[20\].
+    pub by_element: Vec<f64>,
+}
+
+/// Opens an estimate file.
+///
+/// # Errors
+/// As for a history: a file that is missing, locked, damaged, foreign, of another kind or a later layout; a
+/// part that is missing, or of a wrong type or shape.
+pub fn open(path: impl AsRef<Path>) -> Result<EstimateFile, FileError> {
+    reading(path.as_ref(), |opened| {
+        opened.expect(Kind::Estimate)?;
+        contents(opened)
+    })
+}
+
+fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
+    let root = opened.root();
+    let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
+    let dimension = ours.integer_attribute("dimension")?;
+    if !(1..=2).contains(&dimension) {
+        let detail = format!("{dimension} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
+        return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
+    }
+    let points = vtk.data("Points")?;
+    points.expect_dimensions(2, "(nodes, 3)")?;
+    let by_element = vtk.group("CellData")?.data("by_element")?;
+    by_element.expect_dimensions(1, "(elements)")?;
+    let instants = match vtk.optional_group("Steps")? {
+        Some(steps) => column(&steps, "Values", None)?,
+        None => Vec::new(),
+    };
+    let text = |name: &str| -> Result<String, FileCause> {
+        let missing = || FileCause::MissingPart { name: format!("percute/{name}") };
+        ours.optional_text(name)?.ok_or_else(missing)
+    };
+    Ok(EstimateFile {
+        bytes: opened.bytes(),
+        provenance: provenance(&ours)?,
+        statement: text("problem")?,
+        case: case(&ours)?,
+        report: text("report")?,
+        dimension: dimension as usize,
+        nodes: points.shape[0],
+        elements: by_element.shape[0],
+        instants,
+        fields: vtk.optional_group("PointData")?.is_some(),
+        over_time: over_time(&ours.group("over_time")?)?,
+        by_element: by_element.floats()?,
+    })
+}
+
+fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {
+    let time = column(group, "time", None)?;
+    let of = |name| column(group, name, Some(time.len()));
+    let (kinetic, elastic, contact, reference) = (of("kinetic")?, of("elastic")?, of("contact")?, of("reference")?);
+    let sample = |k: usize| {
+        let parts = Parts { kinetic: kinetic[k], elastic: elastic[k], contact: contact[k] };
+        Sample { time: time[k], parts, reference: reference[k] }
+    };
+    Ok((0..time.len()).map(sample).collect())
+}
+
+fn column(group: &Part<'_>, name: &str, length: Option<usize>) -> Result<Vec<f64>, FileCause> {
+    let data = group.data(name)?;
+    data.expect_dimensions(1, "(instants)")?;
+    if let Some(length) = length {
+        data.expect(&[length], "one for each instant")?;
+    }
+    data.floats()
+}

@@ -1,0 +1,202 @@
+//! Writes an estimate, whole or not at all.
+
+use crate::create::{Overwrite, Unnamed};
+use crate::error::{FileCause, FileError};
+use crate::kind::Kind;
+use crate::mesh::{in_space, write_grid, write_groups};
+use crate::steps::write_steps;
+use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
+use hdf5::Group;
+use percute_core::problem::Problem;
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
+use std::io;
+use std::path::Path;
+
+/// What the library needs beside the arrays and for each group of the mesh (bytes), with some to spare.
+const LIBRARY: u64 = 24_000;
+const PER_GROUP: u64 = 350;
+
+/// Writes an estimate of a problem: its maps as VTKHDF, the errors over time, the residuals, and `report`, the
+/// document that `--json` prints. `statement` is the problem in the language of the case files, `case`
+/// the case file as given.
+///
+/// # Errors
+/// As for the creation of a history; an estimate of another mesh.
+pub fn write<const D: usize, const N: usize>(
+    path: impl AsRef<Path>,
+    overwrite: Overwrite,
+    problem: &Problem<D, N>,
+    estimate: &Estimate<D>,
+    statement: &str,
+    case: Option<&Case>,
+    report: &str,
+) -> Result<(), FileError> {
+    let path = path.as_ref();
+    let work = Work { problem, estimate, statement, case, report };
+    let written = work.check().and_then(|()| {
+        let (unnamed, ()) = Unnamed::new(path, overwrite, work.bytes(), |file, texts| work.fill(file, texts))?;
+        let synced = |source: io::Error| FileCause::Create { source };
+        unnamed.file().sync_all().map_err(synced)?;
+        unnamed.put().map(drop)
+    });
+    written.map_err(|cause| cause.at(path))
+}
+
+struct Work<'a, const D: usize, const N: usize> {
+    problem: &'a Problem<D, N>,
+    estimate: &'a Estimate<D>,
+    statement: &'a str,
+    case: Option<&'a Case>,
+    report: &'a str,
+}
+
+/// The numbers of one field in a map.
+type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
+/// Name, unit, numbers for each node or element, and how they are taken.
+type Field<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
+
+impl<const D: usize, const N: usize> Work<'_, D, N> {
+    fn check(&self) -> Result<(), FileCause> {
+        let (given, needed) = (self.problem.mesh().element_count(), self.estimate.by_element.len());
+        if given == needed { Ok(()) } else { Err(FileCause::Problem { what: "elements", given, needed }) }
+    }
+
+    fn has_fields(&self) -> bool {
+        !self.estimate.maps.is_empty() && self.estimate.maps.iter().all(|map| map.fields.is_some())
+    }
+
+    fn bytes(&self) -> u64 {
+        let mesh = self.problem.mesh();
+        let (nodes, cells, instants) = (mesh.node_count(), mesh.element_count(), self.estimate.maps.len());
+        let fields = if self.has_fields() { 48 * nodes + (16 * D * D + 24) * cells } else { 0 };
+        let grid = 24 * nodes + 8 * (D + 1) * cells + 8 * (cells + 1) + 9 * cells;
+        let texts =
+            self.statement.len() + self.report.len() + self.case.map_or(0, |case| case.name.len() + case.text.len());
+        let facets: usize = mesh.facet_groups().values().map(|members| 8 * D * members.len()).sum();
+        let elements: usize = mesh.element_groups().values().map(|members| 8 * members.len()).sum();
+        let groups = (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
+        let arrays = grid + facets + elements + texts + 48 * self.estimate.over_time.len();
+        (instants as u64) * (40 * cells + fields + 136) as u64 + arrays as u64 + LIBRARY + PER_GROUP * groups
+    }
+
+    fn fill(&self, file: &Group, texts: &mut Texts) -> Result<(), FileCause> {
+        let mesh = self.problem.mesh();
+        let vtk = write_grid(file, mesh)?;
+        self.maps(&vtk)?;
+        let ours = ours(file, Kind::Estimate, D)?;
+        statement(&ours, texts, self.statement, self.case)?;
+        texts.add(&ours, "report", self.report)?;
+        write_groups(&ours, mesh)?;
+        self.over_time(&ours)?;
+        self.measures(&ours)?;
+        let residuals = group(&ours, "residuals")?;
+        for (name, value) in self.estimate.residuals.entries() {
+            numbers(&residuals, name, &[], &[value])?;
+        }
+        Ok(())
+    }
+
+    /// Fields over the instants of the maps, and e_E, which does not change.
+    fn maps(&self, vtk: &Group) -> Result<(), FileCause> {
+        let maps = &self.estimate.maps;
+        let mesh = self.problem.mesh();
+        let (nodes, cells) = (mesh.node_count(), mesh.element_count());
+        let data = group(vtk, "CellData")?;
+        unit(&numbers(&data, "by_element", &[cells], &self.estimate.by_element)?, "J^(1/2)")?;
+        if maps.is_empty() {
+            return Ok(());
+        }
+        let mut cell_offsets = vec![("by_element", 0)];
+        self.fields(&data, cells, self.cell_fields(), &mut cell_offsets)?;
+        let mut point_offsets = Vec::new();
+        if self.has_fields() {
+            self.fields(&group(vtk, "PointData")?, nodes, point_fields(), &mut point_offsets)?;
+        }
+        let instants: Vec<f64> = maps.iter().map(|map| map.time).collect();
+        write_steps(vtk, &instants, instants.len(), &point_offsets, &cell_offsets)
+    }
+
+    fn fields(
+        &self,
+        data: &Group,
+        rows: usize,
+        fields: Vec<Field<'_, D>>,
+        offsets: &mut Vec<(&'static str, usize)>,
+    ) -> Result<(), FileCause> {
+        for (name, of, components, take) in fields {
+            let values: Vec<f64> = self.estimate.maps.iter().flat_map(&take).collect();
+            let count = rows * self.estimate.maps.len();
+            let shape = if components == 1 { vec![count] } else { vec![count, components] };
+            unit(&numbers(data, name, &shape, &values)?, of)?;
+            offsets.push((name, rows));
+        }
+        Ok(())
+    }
+
+    fn cell_fields(&self) -> Vec<Field<'_, D>> {
+        let end = self.estimate.end;
+        let mut fields: Vec<Field<'_, D>> = vec![
+            ("kinetic", "J", 1, Box::new(|map| map.kinetic.clone())),
+            ("elastic", "J", 1, Box::new(|map| map.elastic.clone())),
+            ("contact", "J", 1, Box::new(|map| map.contact.clone())),
+            ("total", "J", 1, Box::new(ElementMap::total)),
+            ("accumulated", "J^(1/2)", 1, Box::new(move |map| map.error(end))),
+        ];
+        if self.has_fields() {
+            let tensor = |values: &[[[f64; D]; D]]| values.as_flattened().as_flattened().to_vec();
+            fields.push(("admissible_stress", "Pa", D * D, of_fields(move |f| tensor(&f.stress))));
+            fields.push(("compatible_stress", "Pa", D * D, of_fields(move |f| tensor(&f.compatible_stress))));
+            fields.push(("admissible_acceleration", "m/s2", 3, of_fields(|f| in_space(&f.acceleration))));
+        }
+        fields
+    }
+
+    fn over_time(&self, ours: &Group) -> Result<(), FileCause> {
+        let group = group(ours, "over_time")?;
+        let column = |take: fn(&Sample) -> f64| -> Vec<f64> { self.estimate.over_time.iter().map(take).collect() };
+        let columns = [
+            ("time", "s", column(|s| s.time)),
+            ("kinetic", "J", column(|s| s.parts.kinetic)),
+            ("elastic", "J", column(|s| s.parts.elastic)),
+            ("contact", "J", column(|s| s.parts.contact)),
+            ("total", "J", column(|s| s.parts.total())),
+            ("reference", "J", column(|s| s.reference)),
+        ];
+        columns.iter().try_for_each(|(name, of, values)| unit(&numbers(&group, name, &[values.len()], values)?, of))
+    }
+
+    fn measures(&self, ours: &Group) -> Result<(), FileCause> {
+        let group = group(ours, "measures")?;
+        let Estimate { error: e, time_of_sup, end, kept_impulse, given, steps, .. } = self.estimate;
+        let numbers = [
+            ("sup", Some(e.sup)),
+            ("mean", Some(e.mean)),
+            ("relative_sup", Some(e.relative_sup)),
+            ("relative_mean", Some(e.relative_mean)),
+            ("reference_sup", Some(e.reference_sup)),
+            ("reference_mean", Some(e.reference_mean)),
+            ("time_of_sup", Some(*time_of_sup)),
+            ("end", Some(*end)),
+            ("kept_impulse", *kept_impulse),
+        ];
+        for (name, value) in numbers {
+            if let Some(value) = value {
+                attribute(&group, name, value)?;
+            }
+        }
+        attribute(&group, "steps", *steps as i64)?;
+        attribute(&group, "velocity_given", u8::from(given.velocity))?;
+        attribute(&group, "acceleration_given", u8::from(given.acceleration))
+    }
+}
+
+fn point_fields<const D: usize>() -> Vec<Field<'static, D>> {
+    vec![
+        ("admissible_displacement", "m", 3, of_fields(|f| in_space(&f.displacement))),
+        ("admissible_velocity", "m/s", 3, of_fields(|f| in_space(&f.velocity))),
+    ]
+}
+
+fn of_fields<const D: usize>(take: impl Fn(&AdmissibleFields<D>) -> Vec<f64> + 'static) -> Take<'static, D> {
+    Box::new(move |map| map.fields.as_ref().map(&take).unwrap_or_default())
+}

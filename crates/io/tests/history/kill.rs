@@ -1,0 +1,101 @@
+//! Runs that are killed at any moment leave files that open, with all whole steps.
+
+use crate::common::*;
+use percute_core::dynamics::simulate;
+use percute_core::observer::Unobserved;
+use percute_core::problem::TriangleProblem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Options, Request, estimate};
+use percute_io::Overwrite;
+use percute_io::history::{Plan, recover};
+use percute_testkit::Random;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Number of the run for the child to do, and where.
+const RUN: &str = "PERCUTE_TEST_RUN";
+const FILE: &str = "PERCUTE_TEST_FILE";
+
+/// Larger meshes with every run; about as many numbers in each, 24 MB of displacements.
+fn problem(run: usize) -> (TriangleProblem, TimeGrid) {
+    let nx = 5 + run % 100;
+    let problem = block(nx, 4 + run % 100 * 4 / 5);
+    let times = steps(&problem, 1_000_000 / problem.mesh().node_count());
+    (problem, times)
+}
+
+/// What the killed process does; without its environment it is no test.
+#[test]
+fn child() {
+    let (Ok(run), Ok(path)) = (std::env::var(RUN), std::env::var(FILE)) else { return };
+    let (problem, times) = problem(run.parse().unwrap());
+    let plan = Plan::new(&problem, &times, STATEMENT, None);
+    let mut writer = plan.create(path, Overwrite::Refuse).unwrap();
+    simulate(&problem, &times, &mut writer, &mut Unobserved).unwrap();
+    writer.finish().unwrap();
+}
+
+/// Starts a run and kills it: a quarter of the times wherever it may be, else once its file is there.
+fn kill(run: usize, path: &Path, random: &mut Random) {
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "kill::child"])
+        .envs([(RUN, run.to_string()), (FILE, path.to_str().unwrap().to_string())])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let anywhere = random.bits().is_multiple_of(4);
+    let start = Instant::now();
+    while !anywhere && !path.exists() && start.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    std::thread::sleep(Duration::from_micros(random.between(0.0, 60_000.0) as u64));
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// Kills that many runs. Returns how many files there were, and how many of them were not complete.
+fn check(runs: std::ops::Range<usize>) -> (usize, usize) {
+    let folder = folder();
+    let mut random = Random::new(42);
+    let (mut files, mut unfinished) = (0, 0);
+    for run in runs {
+        let path = folder.path().join(format!("{run}.vtkhdf"));
+        kill(run, &path, &mut random);
+        if !path.exists() {
+            continue;
+        }
+        files += 1;
+        let (problem, times) = problem(run);
+        let file = plane_file(&path);
+        unfinished += usize::from(!file.is_complete());
+        let undisturbed = crate::common::run(&problem, &times);
+        let replayed = replayed(&path, &problem).unwrap();
+        assert_eq!(replayed.len(), file.count());
+        assert_same(&replayed, &undisturbed, file.count());
+        if file.count() > 2 {
+            let options = Options { every: 50, ..Options::default() };
+            let source = file.source(&problem).unwrap();
+            let (_, estimate) = estimate(&problem, &source, options, &Request::default(), &mut Unobserved).unwrap();
+            assert_eq!(estimate.steps, file.count() - 1);
+        }
+        assert_eq!(recover(&path).unwrap().count, file.count());
+        assert!(plane_file(&path).is_complete());
+        std::fs::remove_file(&path).unwrap();
+    }
+    (files, unfinished)
+}
+
+/// A run takes longer than the 60 ms within which it is killed, so that most files are unfinished ones.
+#[test]
+fn twenty_kills() {
+    let (files, unfinished) = check(0..20);
+    assert!(files >= 14 && unfinished >= 10, "{files} files, {unfinished} of them unfinished");
+}
+
+#[test]
+#[ignore = "a minute; twenty of them run always"]
+fn a_hundred_kills() {
+    let (files, unfinished) = check(0..100);
+    assert!(files >= 70 && unfinished >= 50, "{files} files, {unfinished} of them unfinished");
+}
