@@ -19,6 +19,7 @@ __all__ = [
     "__version__",
     "command",
     "estimate",
+    "is_estimate",
     "open_history",
     "simulate",
     "simulate_case",
@@ -154,6 +155,7 @@ class EstimateData:
     def worst_elements(self, count: int) -> list[tuple[int, float]]: ...
     def maps(self) -> list[dict[str, Any]]: ...
     def to_json(self, name: str) -> str: ...
+    def save(self, path: str | PathLike[str], overwrite: bool, name: str) -> None: ...
 
 @final
 class CaseData:
@@ -189,6 +191,7 @@ def simulate(
 def simulate_case(
     case: CaseData, store: str | PathLike[str] | None, overwrite: bool, progress: _Tell
 ) -> HistoryData: ...
+def is_estimate(path: str | PathLike[str]) -> bool: ...
 def open_history(path: str | PathLike[str]) -> HistoryData: ...
 def estimate(
     history: HistoryData,

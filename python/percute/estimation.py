@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.errors import InputError
 from percute.history import History
+from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.statement import numbers
+from percute.stored import StoredEstimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,8 +81,6 @@ class WorstElement:
 class ElementMap:
     """What each element contributes at an instant, and on request the admissible fields there."""
 
-    step: int
-    """n."""
     time: float
     """t_n (s)."""
     kinetic: NDArray[np.float64]
@@ -90,8 +91,6 @@ class ElementMap:
     """Contact part of η_E (J), shape (elements,)."""
     total: NDArray[np.float64]
     """η_E (J), shape (elements,)."""
-    accumulated: NDArray[np.float64]
-    """∫η_E dt up to here (J s), shape (elements,)."""
     error: NDArray[np.float64]
     """√((1/T)∫η_E dt) up to here (J^½), shape (elements,); at the end e_E, eq. [20]."""
     displacement: NDArray[np.float64] | None = None
@@ -113,7 +112,7 @@ class Estimate:
     errors of space, time, lumped mass and contact together: a measure, not a strict bound.
     """
 
-    _data: _percute.EstimateData
+    _data: _percute.EstimateData | StoredEstimate
     _history: History | None
     _name: str
 
@@ -121,7 +120,7 @@ class Estimate:
         raise TypeError("estimates are made by percute.estimate, percute.run and percute.open")
 
     @classmethod
-    def _of(cls, data: _percute.EstimateData, history: History | None, name: str) -> Estimate:
+    def _of(cls, data: _percute.EstimateData | StoredEstimate, history: History | None, name: str) -> Estimate:
         made = cls.__new__(cls)
         made._data = data
         made._history = history
@@ -134,13 +133,23 @@ class Estimate:
         return self._history
 
     @cached_property
-    def problem(self) -> Problem:
-        """The problem that was simulated."""
+    def problem(self) -> Problem | None:
+        """The problem that was simulated; None if the estimate comes from a file, which does not hold its initial fields."""
+        if isinstance(self._data, StoredEstimate):
+            return None
         return self._history.problem if self._history is not None else Problem._of(self._data.problem())
 
     @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh."""
+        if isinstance(self._data, StoredEstimate):
+            return self._data.mesh
+        assert self.problem is not None
+        return self.problem.mesh
+
+    @cached_property
     def _measures(self) -> _percute._Measures:
-        return self._data.measures()
+        return cast("_percute._Measures", self._data.measures())
 
     @property
     def sup(self) -> float:
@@ -215,7 +224,8 @@ class Estimate:
     @cached_property
     def maps(self) -> tuple[ElementMap, ...]:
         """What each element contributes, at the instants that were asked for."""
-        return tuple(ElementMap(**arguments) for arguments in self._data.maps())
+        kept = [{k: v for k, v in each.items() if k not in ("step", "accumulated")} for each in self._data.maps()]
+        return tuple(ElementMap(**arguments) for arguments in kept)
 
     @property
     def given(self) -> Mapping[str, bool]:
@@ -233,7 +243,7 @@ class Estimate:
         """Give the ``n`` elements that contribute most, largest first."""
         if n < 0:
             raise InputError(f"`n` is {n}; it must be 0 or more")
-        mesh = self.problem.mesh
+        mesh = self.mesh
         worst = []
         for element, error in self._data.worst_elements(n):
             centroid = mesh.points[mesh.cells[element]].mean(axis=0)
@@ -243,6 +253,27 @@ class Estimate:
     def to_json(self) -> str:
         """Give the document that ``percute run --json`` prints, described in ``docs/json.md``."""
         return self._data.to_json(self._name)
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write an estimate file for ParaView, h5py and `percute.open`, described in ``docs/estimate.md``.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, such as ``"error.vtkhdf"``.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        InputError
+            The estimate comes from a file: copy that.
+        """
+        if isinstance(self._data, StoredEstimate):
+            raise InputError(f"the estimate comes from the file {self._data.path!r}; copy that")
+        self._data.save(os.path.abspath(path), overwrite, self._name)
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
         """Draw e_E, what each element contributes (J^½), eq. [20].
@@ -287,6 +318,8 @@ class Estimate:
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle all but the history, which is large and can be pickled apart."""
         data = self._data
+        if isinstance(data, StoredEstimate):
+            return _reopen, (data.path,)
         maps = data.maps()
         for each in maps:
             fields = {name: each.pop(name).copy() for name in _FIELDS if name in each}
@@ -315,6 +348,10 @@ class Estimate:
 
 
 _FIELDS = ("displacement", "velocity", "acceleration", "stress", "compatible_stress")
+
+
+def _reopen(path: str) -> Estimate:
+    return Estimate._of(StoredEstimate(path), None, path)
 
 
 def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:

@@ -10,33 +10,37 @@ from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate
 from percute.history import History, absolute, history_of_the_exception
 from percute.progress import ProgressOption, shown
+from percute.stored import StoredEstimate
 
 __all__ = ["open", "run"]
 
 
-def open(path: str | os.PathLike[str]) -> History:
-    """Open a history.
+def open(path: str | os.PathLike[str]) -> History | Estimate:
+    """Open a history or an estimate.
 
     Parameters
     ----------
     path : str or path
-        A history file: of percute, or of another program that follows ``docs/history.md``.
+        A history file, of percute or of another program that follows ``docs/history.md``; or an estimate file.
 
     Returns
     -------
-    History
-        Its arrays are views of the file, which must not change as long as they are in use.
+    History or Estimate
+        What the file holds. The arrays of a history are views of the file, which must not change as long as they are in use.
 
     Raises
     ------
     MissingFileError
         There is no such file.
     FileFormatError
-        It is no history, damaged, newer than this program, or its contents contradict each other.
+        It is neither, damaged, newer than this program, or its contents contradict each other.
     StorageError
         It cannot be read, or another program is writing it.
     """
-    return History._of(_percute.open_history(os.path.abspath(path)), name=os.fspath(path))
+    file = os.path.abspath(path)
+    if _percute.is_estimate(file):
+        return Estimate._of(StoredEstimate(file), None, os.fspath(path))
+    return History._of(_percute.open_history(file), name=os.fspath(path))
 
 
 def run(

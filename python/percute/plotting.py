@@ -89,7 +89,7 @@ def _draw_bar(axes: Axes, points: Floats, cells: Any, values: Floats, label: str
 def plot_map(estimate: Estimate, axes: Axes | None) -> Axes:
     """Draw e_E of each element (J^½), eq. [20]."""
     axes = _axes(axes)
-    mesh, label = estimate.problem.mesh, "error of the element, $e_E$ (J$^{1/2}$)"
+    mesh, label = estimate.mesh, "error of the element, $e_E$ (J$^{1/2}$)"
     if mesh.dimension == 1:
         _draw_bar(axes, mesh.points, mesh.cells, estimate.by_element, label)
     else:

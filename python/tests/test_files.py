@@ -1,9 +1,11 @@
 """Files of histories, and the ways in which they are missing, taken or wrong."""
 
 import os
+import pickle
 from pathlib import Path
 
 import h5py
+import matplotlib.pyplot as plt
 import numpy as np
 import percute as pc
 import pytest
@@ -111,3 +113,34 @@ def test_the_case_may_name_its_history(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_a_pickle_of_a_file_knows_where_it_is(stored: pc.History) -> None:
     assert repr(stored) == f"<percute.History: {len(stored)} instants to 1.3e-05 s, 63 nodes, 2D>"
+
+
+@pytest.mark.parametrize("make", [bar, block])
+@pytest.mark.parametrize("fields", [False, True])
+def test_a_saved_estimate_comes_back(make: object, fields: bool, tmp_path: Path) -> None:
+    assert callable(make)
+    estimate = pc.estimate(pc.simulate(make(), end=13e-6, courant=0.9), instants=3, fields=fields)
+    file = tmp_path / "error.vtkhdf"
+    estimate.save(file)
+    with pytest.raises(pc.ExistingFileError):
+        estimate.save(file)
+    estimate.save(file, overwrite=True)
+    opened = pc.open(file)
+    for again in (opened, pickle.loads(pickle.dumps(opened))):
+        assert isinstance(again, pc.Estimate) and again.history is None and again.problem is None
+        assert again._measures == estimate._measures and again.parts == estimate.parts
+        assert again.by_element.tobytes() == estimate.by_element.tobytes()
+        assert again.worst_elements(4) == estimate.worst_elements(4)
+        assert (dict(again.residuals), again.options) == (dict(estimate.residuals), estimate.options)
+        for name in ("time", "kinetic", "elastic", "contact", "total", "reference"):
+            assert getattr(again.over_time, name).tobytes() == getattr(estimate.over_time, name).tobytes()
+        assert len(again.maps) == 3
+        for first, second in zip(again.maps, estimate.maps, strict=True):
+            for name, value in vars(second).items():
+                assert np.array_equal(getattr(first, name), value), name
+        assert np.array_equal(again.mesh.cells, estimate.mesh.cells)
+        assert again.to_json() == estimate.to_json()
+        again.plot_map()
+    plt.close("all")
+    with pytest.raises(pc.InputError, match="copy that"):
+        opened.save(tmp_path / "other.vtkhdf")  # type: ignore[union-attr]

@@ -7,14 +7,17 @@ use crate::restore::restore;
 use crate::run::{Run, Stoppable};
 use crate::{door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
-use percute::case::Instants;
+use percute::Failure;
+use percute::case::{Instants, statement};
 use percute::report::{Report, Subject};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
+use percute_io::{Kind, Overwrite, estimate_file, kind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -148,6 +151,24 @@ impl<const D: usize, const N: usize> Made<D, N> {
     }
 }
 
+impl<const D: usize, const N: usize> Made<D, N> {
+    fn save(&self, path: &Path, overwrite: Overwrite, name: &str) -> Result<(), Failure> {
+        let report = self.report(name).map_err(Failure::Argument)?;
+        let statement = statement(&self.problem, Some(&self.options))?;
+        Ok(estimate_file::write(path, overwrite, &self.problem, &self.estimate, &statement, None, &report)?)
+    }
+}
+
+/// Whether a file holds an estimate, which is then known to be whole; else it may hold a history.
+#[pyfunction]
+pub(crate) fn is_estimate(py: Python<'_>, path: PathBuf) -> PyResult<bool> {
+    let found = door::through(py, None, move |_| match kind(&path)? {
+        Kind::Estimate => estimate_file::open(&path).map(|_| true),
+        _ => Ok(false),
+    })?;
+    found.map_err(|error| errors::file(py, &error))
+}
+
 #[pymethods]
 impl EstimateData {
     fn problem(&self) -> ProblemData {
@@ -246,6 +267,16 @@ impl EstimateData {
     /// Each map as its arguments.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
+    }
+
+    /// Writes an estimate file.
+    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool, name: String) -> PyResult<()> {
+        let overwrite = if overwrite { Overwrite::Replace } else { Overwrite::Refuse };
+        let saved = each!(&self.made, made => {
+            let made = made.clone();
+            door::through(py, None, move |_| made.save(&path, overwrite, &name))?
+        });
+        saved.map_err(|error| errors::failure(py, &error))
     }
 
     /// The document of `percute run --json`.
