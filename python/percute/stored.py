@@ -6,7 +6,6 @@ import json
 from functools import cached_property
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +15,13 @@ __all__ = ["StoredEstimate"]
 
 PARTS = ("kinetic", "elastic", "contact")
 MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean")
+
+
+def _file(path: str) -> Any:
+    # Few need it, and it takes as long to import as all of percute.
+    import h5py
+
+    return h5py.File(path)
 
 
 def _whole(group: Any, name: str, *shape: int) -> NDArray[Any]:
@@ -29,7 +35,7 @@ class StoredEstimate:
 
     def __init__(self, path: str) -> None:
         self.path = path
-        with h5py.File(path) as file:
+        with _file(path) as file:
             report = file["percute/report"].asstr()[()]
         self.text: str = report
         self.report: dict[str, Any] = json.loads(report)
@@ -37,7 +43,7 @@ class StoredEstimate:
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh."""
-        with h5py.File(self.path) as file:
+        with _file(self.path) as file:
             grid, own = file["VTKHDF"], file["percute"]
             dimension = int(own.attrs["dimension"])
             cells = _whole(grid, "Connectivity", -1, dimension + 1)
@@ -58,13 +64,13 @@ class StoredEstimate:
 
     def over_time(self) -> dict[str, NDArray[np.float64]]:
         """η, its parts and d at all samples."""
-        with h5py.File(self.path) as file:
+        with _file(self.path) as file:
             columns = file["percute/over_time"]
             return {name: _whole(columns, name) for name in ("time", *PARTS, "total", "reference")}
 
     def by_element(self) -> NDArray[np.float64]:
         """e_E (J^½)."""
-        with h5py.File(self.path) as file:
+        with _file(self.path) as file:
             return _whole(file, "VTKHDF/CellData/by_element")
 
     def residuals(self) -> dict[str, float]:
@@ -89,7 +95,7 @@ class StoredEstimate:
 
     def maps(self) -> list[dict[str, Any]]:
         """What each element contributes at the instants of the file."""
-        with h5py.File(self.path) as file:
+        with _file(self.path) as file:
             grid = file["VTKHDF"]
             if "Steps" not in grid:
                 return []

@@ -52,8 +52,8 @@ pub(crate) struct EstimateData {
     pub(crate) made: Any<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
 }
 
-/// A number of each record, by name.
-type Columns<R, const C: usize> = [(&'static str, fn(&R) -> f64); C];
+/// A number of each element.
+type Numbers<const D: usize> = fn(&ElementMap<D>) -> &[f64];
 /// Vectors of admissible fields.
 type Vectors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[f64; D]];
 /// Stresses.
@@ -218,7 +218,7 @@ impl EstimateData {
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let quantities: Columns<Sample, 6> = [
+        let quantities: view::Columns<Sample, 6> = [
             ("time", |s| s.time),
             ("kinetic", |s| s.parts.kinetic),
             ("elastic", |s| s.parts.elastic),
@@ -300,7 +300,7 @@ fn one_map<'py, const D: usize, const N: usize>(
     arguments.set_item("step", map.step)?;
     arguments.set_item("time", map.time)?;
     let elements = map.kinetic.len();
-    let parts: [(&str, fn(&ElementMap<D>) -> &[f64]); 3] =
+    let parts: [(&str, Numbers<D>); 3] =
         [("kinetic", |m| &m.kinetic), ("elastic", |m| &m.elastic), ("contact", |m| &m.contact)];
     for (name, part) in parts {
         arguments.set_item(name, view::view(py, made, |m| part(&m.estimate.maps[at]), &[elements])?)?;

@@ -104,7 +104,7 @@ impl BarImpactData {
         let (run, exact) = (run.clone(), self.exact);
         let outcome = door::through(py, None, move |watch| true_error(&run, &exact, watch))?;
         let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
-        let quantities: [(&str, fn(&TrueErrorSample) -> f64); 4] =
+        let quantities: view::Columns<TrueErrorSample, 4> =
             [("time", |s| s.time), ("kinetic", |s| s.kinetic), ("elastic", |s| s.elastic), ("total", |s| s.total())];
         let columns = PyDict::new(py);
         for (name, quantity) in quantities {

@@ -166,7 +166,7 @@ fn read<const D: usize, const N: usize, T: Send + 'static>(
 
 /// An array for each quantity of the balance.
 fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyDict>> {
-    let quantities: [(&str, fn(&Balance) -> f64); 8] = [
+    let quantities: view::Columns<Balance, 8> = [
         ("kinetic", |b| b.kinetic),
         ("strain", |b| b.strain),
         ("work_of_loads", |b| b.work_of_loads),

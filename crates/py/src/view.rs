@@ -45,6 +45,9 @@ where
     Ok(array)
 }
 
+/// Numbers of a record, by name.
+pub(crate) type Columns<R, const C: usize> = [(&'static str, fn(&R) -> f64); C];
+
 /// One number of each record as a read-only array of its own.
 pub(crate) fn column<'py, R, T: Element>(
     py: Python<'py>,
