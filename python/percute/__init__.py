@@ -1,5 +1,67 @@
-"""Elastic impacts, simulated and certified."""
+"""Elastic impacts, simulated and certified.
 
-from percute._percute import __version__
+State a `Problem` on a `Mesh`, `simulate` it, `estimate` how wrong the simulation is::
 
-__all__ = ["__version__"]
+    import percute as pc
+
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=20, ny=16)
+    material = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    plane = pc.Plane(point=(0, -2e-4), normal=(0, 1), friction=0.2)
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(400, -400))
+    estimate = pc.estimate(pc.simulate(problem, end=13e-6, courant=0.9))
+    estimate.relative_sup
+
+All quantities are in SI units. Numbers in brackets, like eq. [14], are equations of Louf, Gallimard and Pelle, *Un estimateur
+d'erreur en relation de comportement pour les problèmes d'impact*.
+"""
+
+from percute import exact
+from percute._percute import Progress, __version__
+from percute.errors import (
+    EstimateError,
+    ExistingFileError,
+    FileFormatError,
+    InputError,
+    MissingFileError,
+    PercuteError,
+    SimulationError,
+    StorageError,
+)
+from percute.estimation import ElementMap, Estimate, OverTime, Parts, WorstElement, estimate
+from percute.files import open, run
+from percute.history import Balance, History, simulate
+from percute.mesh import Mesh
+from percute.problem import Problem
+from percute.statement import BodyForce, Elastic, Plane, Support, Traction
+
+__all__ = [
+    "Balance",
+    "BodyForce",
+    "Elastic",
+    "ElementMap",
+    "Estimate",
+    "EstimateError",
+    "ExistingFileError",
+    "FileFormatError",
+    "History",
+    "InputError",
+    "Mesh",
+    "MissingFileError",
+    "OverTime",
+    "Parts",
+    "PercuteError",
+    "Plane",
+    "Problem",
+    "Progress",
+    "SimulationError",
+    "StorageError",
+    "Support",
+    "Traction",
+    "WorstElement",
+    "__version__",
+    "estimate",
+    "exact",
+    "open",
+    "run",
+    "simulate",
+]

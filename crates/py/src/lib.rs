@@ -1,10 +1,44 @@
-//! The extension module `percute._percute`; the package around it is `python/percute`.
+//! The extension module `percute._percute`; the package around it, which has the names that users see, is
+//! `python/percute`.
+
+mod any;
+mod case;
+mod door;
+mod errors;
+mod estimate;
+mod exact;
+mod history;
+mod mesh;
+mod problem;
+mod restore;
+mod run;
+mod simulate;
+mod statement;
+mod time;
+mod view;
 
 /// What the Python package `percute` is made of; use the package.
 #[pyo3::pymodule]
 mod _percute {
     use pyo3::prelude::*;
     use std::ffi::OsString;
+
+    #[pymodule_export]
+    use super::case::CaseData;
+    #[pymodule_export]
+    use super::door::ProgressNow;
+    #[pymodule_export]
+    use super::estimate::{EstimateData, estimate, is_estimate};
+    #[pymodule_export]
+    use super::exact::BarImpactData;
+    #[pymodule_export]
+    use super::history::HistoryData;
+    #[pymodule_export]
+    use super::mesh::MeshData;
+    #[pymodule_export]
+    use super::problem::ProblemData;
+    #[pymodule_export]
+    use super::simulate::{open_history, simulate, simulate_case};
 
     /// Adds what is no function.
     #[pymodule_init]

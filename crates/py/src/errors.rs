@@ -1,0 +1,160 @@
+//! From errors of Rust to the exceptions of `percute.errors`.
+
+use percute::Failure;
+use percute::case::CaseError;
+use percute_core::dynamics::SimulationError;
+use percute_core::history::{MemoryError, SinkError};
+use percute_core::mesh::MeshError;
+use percute_core::problem::{Cause, InputError};
+use percute_core::time::TimeError;
+use percute_estimator::{EstimateError, RunError};
+use percute_io::{FileCause, FileError};
+use pyo3::exceptions::PyMemoryError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyType;
+
+/// An exception of this name from `percute.errors`.
+fn exception(py: Python<'_>, name: &str, message: &str) -> PyErr {
+    static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+    let module = MODULE.get_or_try_init(py, || py.import("percute.errors").map(Bound::unbind));
+    let class = module.and_then(|m| m.bind(py).getattr(name)?.cast_into::<PyType>().map_err(PyErr::from));
+    class.map_or_else(|error| error, |class| PyErr::from_type(class, (message.to_string(),)))
+}
+
+/// The root of all.
+pub(crate) fn percute_error(py: Python<'_>, message: &str) -> PyErr {
+    exception(py, "PercuteError", message)
+}
+
+/// Bad input.
+pub(crate) fn input(py: Python<'_>, message: &str) -> PyErr {
+    exception(py, "InputError", message)
+}
+
+/// A mesh that was refused.
+pub(crate) fn mesh(py: Python<'_>, error: &MeshError) -> PyErr {
+    input(py, &error.to_string())
+}
+
+/// Instants that were refused.
+pub(crate) fn time(py: Python<'_>, error: &TimeError) -> PyErr {
+    input(py, &error.to_string())
+}
+
+/// A problem that was refused, with the argument's name; `groups` are the keys of `material`.
+pub(crate) fn problem(py: Python<'_>, error: &InputError, groups: &[Option<String>]) -> PyErr {
+    let place = error.place;
+    let index = place.index.unwrap_or(0);
+    let (list, key) = match (place.table, place.key) {
+        ("initial", "velocity") => ("initial_velocity".to_string(), ""),
+        ("initial", _) => ("initial_displacement".to_string(), ""),
+        ("material", key) => match groups.get(index) {
+            // The group is the key of the dictionary.
+            Some(Some(group)) => (format!("material[{group:?}]"), if key == "group" { "" } else { key }),
+            _ => ("material".to_string(), key),
+        },
+        (table, key) => {
+            let list = match table {
+                "obstacle" => "obstacles",
+                "support" => "supports",
+                "traction" => "tractions",
+                "body_force" => "body_forces",
+                other => other,
+            };
+            (place.index.map_or_else(|| list.to_string(), |i| format!("{list}[{i}]")), key)
+        }
+    };
+    let name = if key.is_empty() { list } else { format!("{list}.{key}") };
+    input(py, &format!("`{name}`: {}", cause(&error.cause)))
+}
+
+/// Causes that count from 1 or speak of a case file, in the words of Python.
+fn cause(cause: &Cause) -> String {
+    match cause {
+        Cause::TwoPlanes { node, first } => format!(
+            "node {node} could touch obstacles[{}] as well as this one; name for each plane a `group` so that no node lies in two",
+            first - 1
+        ),
+        Cause::ConflictingSupports { node, component, first } => format!(
+            "component {component} of node {node} is already prescribed by supports[{}] with another motion",
+            first - 1
+        ),
+        Cause::TwoMaterials { element, .. } => {
+            format!("element {element} already has a material; the groups of materials must not overlap")
+        }
+        Cause::NoMaterial { element, count } => format!(
+            "element {element} has no material ({count} such elements); give one material, or one for each group of elements"
+        ),
+        other => other.to_string(),
+    }
+}
+
+/// A simulation that failed.
+pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
+    match error {
+        SimulationError::StartsTooNear { obstacle, .. } => {
+            input(py, &format!("`obstacles[{obstacle}].point`: {error}"))
+        }
+        SimulationError::Sink { cause, .. } => match cause.downcast_ref::<MemoryError>() {
+            Some(MemoryError::Full { .. }) => PyMemoryError::new_err(format!("{cause}: give `store` the name of one")),
+            _ => steps(py, cause),
+        },
+        SimulationError::Unstable { .. } => exception(py, "SimulationError", &error.to_string()),
+    }
+}
+
+/// An estimate that failed.
+pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
+    match error {
+        RunError::Simulation(error) => simulation(py, error),
+        RunError::Estimate(EstimateError::Zero { .. } | EstimateError::Request(_)) => input(py, &error.to_string()),
+        RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
+        RunError::Source(cause) => steps(py, cause),
+    }
+}
+
+/// Steps that could not be handed on or read.
+pub(crate) fn steps(py: Python<'_>, error: &SinkError) -> PyErr {
+    match error.downcast_ref::<FileError>() {
+        Some(error) => file(py, error),
+        None => exception(py, "EstimateError", &error.to_string()),
+    }
+}
+
+/// A file that could not be made, written or read.
+pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
+    let name = match &error.cause {
+        FileCause::Missing => "MissingFileError",
+        FileCause::Exists => {
+            let message =
+                format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
+            return exception(py, "ExistingFileError", &message);
+        }
+        FileCause::NotAFile
+        | FileCause::InUse
+        | FileCause::Create { .. }
+        | FileCause::NoSpace { .. }
+        | FileCause::Write { .. }
+        | FileCause::Finish { .. }
+        | FileCause::Lost
+        | FileCause::Read { .. }
+        | FileCause::Replaced
+        | FileCause::TooLarge { .. } => "StorageError",
+        _ => "FileFormatError",
+    };
+    exception(py, name, &error.to_string())
+}
+
+/// A stored history that cannot be used.
+pub(crate) fn failure(py: Python<'_>, error: &Failure) -> PyErr {
+    match error {
+        Failure::File(error) => file(py, error),
+        other => exception(py, "FileFormatError", &other.to_string()),
+    }
+}
+
+/// A case file that is wrong.
+pub(crate) fn case(py: Python<'_>, error: &CaseError) -> PyErr {
+    input(py, &error.to_string())
+}

@@ -1,0 +1,334 @@
+//! Estimates of histories.
+
+use crate::any::{Any, each, map};
+use crate::history::HistoryData;
+use crate::problem::ProblemData;
+use crate::restore::restore;
+use crate::run::{Run, Stoppable};
+use crate::{door, errors, view};
+use numpy::{PyArray1, PyArrayDyn};
+use percute::Failure;
+use percute::case::{Instants, statement};
+use percute::report::{Report, Subject};
+use percute_core::dynamics::{Simulation, critical_time_step};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
+use percute_io::{Kind, Overwrite, estimate_file, kind};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// An estimate, with what it is the estimate of.
+pub(crate) struct Made<const D: usize, const N: usize> {
+    pub(crate) problem: Arc<Problem<D, N>>,
+    /// The instants planned.
+    pub(crate) times: TimeGrid,
+    pub(crate) options: Options,
+    pub(crate) estimate: Estimate<D>,
+    pub(crate) report: Told,
+}
+
+/// Where the report comes from.
+pub(crate) enum Told {
+    /// It is made when it is asked for.
+    Now {
+        /// What the simulation did.
+        simulation: Simulation,
+        /// Number of instants, of a stored history.
+        held: Option<usize>,
+        /// How long the estimate took (s).
+        seconds: f64,
+    },
+    /// It was made before: its text.
+    Before(String),
+}
+
+/// An estimate of either dimension.
+#[pyclass(frozen, module = "percute._percute")]
+pub(crate) struct EstimateData {
+    pub(crate) made: Any<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
+}
+
+/// A number of each element.
+type Numbers<const D: usize> = fn(&ElementMap<D>) -> &[f64];
+/// Vectors of admissible fields.
+type Vectors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[f64; D]];
+/// Stresses.
+type Tensors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[[f64; D]; D]];
+
+/// At which instants maps are kept: so many, or near these times (s).
+#[derive(FromPyObject)]
+pub(crate) enum Wanted {
+    Count(usize),
+    Times(Vec<f64>),
+}
+
+impl From<Wanted> for Instants {
+    fn from(wanted: Wanted) -> Self {
+        match wanted {
+            Wanted::Count(count) => Self::Count(count),
+            Wanted::Times(times) => Self::Times(times),
+        }
+    }
+}
+
+/// Estimates a history; without `instants`, no maps are kept.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn estimate(
+    py: Python<'_>,
+    history: &HistoryData,
+    contact_force: &str,
+    acceleration: &str,
+    every: usize,
+    threads: Option<usize>,
+    window: Option<usize>,
+    instants: Option<Wanted>,
+    fields: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<EstimateData> {
+    let unknown = |name: &str, error| errors::input(py, &format!("`{name}`: {error}"));
+    let contact_force = contact_force.parse().map_err(|error| unknown("contact_force", error))?;
+    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
+    let options = Options { contact_force, acceleration, every, threads, window };
+    let instants = instants.map(Instants::from);
+    Ok(EstimateData {
+        made: match &history.run {
+            Any::Bar(run) => Any::Bar(estimate_one(py, run, options, instants.as_ref(), fields, progress)?),
+            Any::Plane(run) => Any::Plane(estimate_one(py, run, options, instants.as_ref(), fields, progress)?),
+        },
+    })
+}
+
+fn estimate_one<const D: usize, const N: usize>(
+    py: Python<'_>,
+    run: &Arc<Run<D, N>>,
+    options: Options,
+    instants: Option<&Instants>,
+    fields: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Arc<Made<D, N>>> {
+    // An `every` of zero is for the estimator to refuse.
+    let every = options.every.max(1);
+    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(run.times(), every));
+    let request = Request { steps, fields };
+    let start = Instant::now();
+    let work = {
+        let run = run.clone();
+        move |mut watch: door::Watch| {
+            let source = Stoppable { source: run.source(), watch: watch.clone() };
+            percute_estimator::estimate(&run.problem, &source, options, &request, &mut watch)
+        }
+    };
+    let outcome = door::through(py, progress, work)?;
+    let (simulation, estimate) = outcome.map_err(|error| errors::estimate(py, &error))?;
+    let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
+    Ok(Arc::new(Made {
+        problem: run.problem.clone(),
+        times: run.times().clone(),
+        options,
+        estimate,
+        report: Told::Now { simulation, held, seconds },
+    }))
+}
+
+impl<const D: usize, const N: usize> Made<D, N> {
+    /// The document of `percute run --json`.
+    fn report(&self, name: &str) -> Result<String, String> {
+        let Self { problem, times, options, estimate, report } = self;
+        match report {
+            Told::Before(text) => Ok(text.clone()),
+            Told::Now { simulation, held, seconds } => {
+                let critical_step = critical_time_step(problem);
+                let subject = Subject { name, problem, times, critical_step, held: *held };
+                let report = Report::new(&subject, *options, simulation, estimate, *seconds);
+                report.to_json().map_err(|error| error.to_string())
+            }
+        }
+    }
+}
+
+impl<const D: usize, const N: usize> Made<D, N> {
+    fn save(&self, path: &Path, overwrite: Overwrite, name: &str) -> Result<(), Failure> {
+        let report = self.report(name).map_err(Failure::Argument)?;
+        let statement = statement(&self.problem, Some(&self.options))?;
+        Ok(estimate_file::write(path, overwrite, &self.problem, &self.estimate, &statement, None, &report)?)
+    }
+}
+
+/// Whether a file holds an estimate, which is then known to be whole; else it may hold a history.
+#[pyfunction]
+pub(crate) fn is_estimate(py: Python<'_>, path: PathBuf) -> PyResult<bool> {
+    let found = door::through(py, None, move |_| match kind(&path)? {
+        Kind::Estimate => estimate_file::open(&path).map(|_| true),
+        _ => Ok(false),
+    })?;
+    found.map_err(|error| errors::file(py, &error))
+}
+
+#[pymethods]
+impl EstimateData {
+    fn problem(&self) -> ProblemData {
+        ProblemData::new(map!(&self.made, m => m.problem.clone()))
+    }
+
+    /// All instants planned (s).
+    fn times(&self) -> Vec<f64> {
+        each!(&self.made, m => m.times.instants().to_vec())
+    }
+
+    /// An estimate put together again from what the other methods give.
+    #[staticmethod]
+    fn restore(problem: &ProblemData, state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let made = match &problem.problem {
+            Any::Bar(problem) => Any::Bar(Arc::new(restore(problem, &state.extract()?)?)),
+            Any::Plane(problem) => Any::Plane(Arc::new(restore(problem, &state.extract()?)?)),
+        };
+        Ok(Self { made })
+    }
+
+    /// The measures: those of `percute.Estimate` that are single numbers.
+    fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (error, time_of_sup, steps, end, kept) = each!(&self.made, m => {
+            let e = &m.estimate;
+            (e.error, e.time_of_sup, e.steps, e.end, e.kept_impulse)
+        });
+        let numbers = PyDict::new(py);
+        numbers.set_item("sup", error.sup)?;
+        numbers.set_item("mean", error.mean)?;
+        numbers.set_item("relative_sup", error.relative_sup)?;
+        numbers.set_item("relative_mean", error.relative_mean)?;
+        numbers.set_item("reference_sup", error.reference_sup)?;
+        numbers.set_item("reference_mean", error.reference_mean)?;
+        numbers.set_item("time_of_sup", time_of_sup)?;
+        numbers.set_item("steps", steps)?;
+        numbers.set_item("end", end)?;
+        numbers.set_item("kept_impulse", kept)?;
+        Ok(numbers)
+    }
+
+    /// Parts of η at the time of the sup: kinetic, elastic, contact (J).
+    fn parts(&self) -> (f64, f64, f64) {
+        let parts = each!(&self.made, m => m.estimate.parts);
+        (parts.kinetic, parts.elastic, parts.contact)
+    }
+
+    /// η, its parts and d at all samples, an array each.
+    fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let quantities: view::Columns<Sample, 6> = [
+            ("time", |s| s.time),
+            ("kinetic", |s| s.parts.kinetic),
+            ("elastic", |s| s.parts.elastic),
+            ("contact", |s| s.parts.contact),
+            ("total", |s| s.parts.total()),
+            ("reference", |s| s.reference),
+        ];
+        let columns = PyDict::new(py);
+        let samples = each!(&self.made, m => &m.estimate.over_time);
+        for (name, quantity) in quantities {
+            columns.set_item(name, view::column(py, samples, quantity))?;
+        }
+        Ok(columns)
+    }
+
+    fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        each!(&self.made, m => view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()]))
+    }
+
+    fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let residuals = PyDict::new(py);
+        for (name, value) in each!(&self.made, m => m.estimate.residuals.entries()) {
+            residuals.set_item(name, value)?;
+        }
+        Ok(residuals)
+    }
+
+    /// Whether the history brought velocities, and accelerations.
+    fn given(&self) -> (bool, bool) {
+        let given = each!(&self.made, m => m.estimate.given);
+        (given.velocity, given.acceleration)
+    }
+
+    /// Names of the method's choices, and the samples taken.
+    fn options(&self) -> (String, String, usize) {
+        let options = each!(&self.made, m => m.options);
+        (options.contact_force.to_string(), options.acceleration.to_string(), options.every)
+    }
+
+    /// The elements that contribute most, largest first.
+    fn worst_elements(&self, count: usize) -> Vec<(usize, f64)> {
+        let worst = each!(&self.made, m => m.estimate.worst_elements(count));
+        worst.into_iter().map(|(element, error)| (element.index(), error)).collect()
+    }
+
+    /// Each map as its arguments.
+    fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
+    }
+
+    /// Writes an estimate file.
+    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool, name: String) -> PyResult<()> {
+        let overwrite = if overwrite { Overwrite::Replace } else { Overwrite::Refuse };
+        let saved = each!(&self.made, made => {
+            let made = made.clone();
+            door::through(py, None, move |_| made.save(&path, overwrite, &name))?
+        });
+        saved.map_err(|error| errors::failure(py, &error))
+    }
+
+    /// The document of `percute run --json`.
+    fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
+        let text = each!(&self.made, made => {
+            let made = made.clone();
+            door::through(py, None, move |_| made.report(&name))?
+        });
+        text.map_err(|message| errors::percute_error(py, &message))
+    }
+}
+
+/// One map.
+fn one_map<'py, const D: usize, const N: usize>(
+    py: Python<'py>,
+    made: &Arc<Made<D, N>>,
+    at: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let map = &made.estimate.maps[at];
+    let arguments = PyDict::new(py);
+    arguments.set_item("step", map.step)?;
+    arguments.set_item("time", map.time)?;
+    let elements = map.kinetic.len();
+    let parts: [(&str, Numbers<D>); 3] =
+        [("kinetic", |m| &m.kinetic), ("elastic", |m| &m.elastic), ("contact", |m| &m.contact)];
+    for (name, part) in parts {
+        arguments.set_item(name, view::view(py, made, |m| part(&m.estimate.maps[at]), &[elements])?)?;
+    }
+    let accumulated = view::view(py, made, |m| m.estimate.maps[at].accumulated.as_slice(), &[elements])?;
+    arguments.set_item("accumulated", accumulated)?;
+    arguments.set_item("total", PyArray1::from_vec(py, map.total()))?;
+    arguments.set_item("error", PyArray1::from_vec(py, map.error(made.estimate.end)))?;
+    let Some(fields) = &map.fields else { return Ok(arguments) };
+    let nodes = fields.displacement.len();
+    let vectors: [(&str, usize, Vectors<D>); 3] = [
+        ("displacement", nodes, |f| &f.displacement),
+        ("velocity", nodes, |f| &f.velocity),
+        ("acceleration", elements, |f| &f.acceleration),
+    ];
+    for (name, count, field) in vectors {
+        let shown = view::field(py, made, |m| fields_of(m, at).map_or(&[], field), &[count])?;
+        arguments.set_item(name, shown)?;
+    }
+    let tensors: [(&str, Tensors<D>); 2] = [("stress", |f| &f.stress), ("compatible_stress", |f| &f.compatible_stress)];
+    for (name, field) in tensors {
+        let shown =
+            view::field(py, made, |m| fields_of(m, at).map_or(&[], |f| field(f).as_flattened()), &[elements, D])?;
+        arguments.set_item(name, shown)?;
+    }
+    Ok(arguments)
+}
+
+fn fields_of<const D: usize, const N: usize>(made: &Made<D, N>, at: usize) -> Option<&AdmissibleFields<D>> {
+    made.estimate.maps[at].fields.as_ref()
+}

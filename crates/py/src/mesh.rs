@@ -1,0 +1,151 @@
+//! Meshes.
+
+use crate::any::{Any, AnyMesh, each};
+use crate::{door, errors, view};
+use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A checked mesh of either dimension.
+#[pyclass(frozen, module = "percute._percute")]
+pub(crate) struct MeshData {
+    pub(crate) mesh: AnyMesh,
+}
+
+type Groups<'py> = BTreeMap<String, PyReadonlyArray2<'py, i64>>;
+type Elements<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
+
+#[pymethods]
+impl MeshData {
+    #[staticmethod]
+    fn rectangle(py: Python<'_>, width: f64, height: f64, nx: i64, ny: i64) -> PyResult<Self> {
+        let (nx, ny) = (count(py, "nx", nx)?, count(py, "ny", ny)?);
+        let mesh = door::through(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
+        Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+    }
+
+    #[staticmethod]
+    fn bar(py: Python<'_>, length: f64, elements: i64) -> PyResult<Self> {
+        let elements = count(py, "elements", elements)?;
+        let mesh = door::through(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
+        Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+    }
+
+    /// A mesh from contiguous arrays whose shapes have been checked.
+    #[staticmethod]
+    fn from_arrays(
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        cells: PyReadonlyArray2<'_, i64>,
+        groups: Groups<'_>,
+        elements: Elements<'_>,
+    ) -> PyResult<Self> {
+        let mesh = if points.as_array().ncols() == 1 {
+            Any::Bar(from_arrays(py, &points, &cells, &groups, &elements)?)
+        } else {
+            Any::Plane(from_arrays(py, &points, &cells, &groups, &elements)?)
+        };
+        Ok(Self { mesh })
+    }
+
+    #[getter]
+    fn dimension(&self) -> usize {
+        match self.mesh {
+            Any::Bar(_) => 1,
+            Any::Plane(_) => 2,
+        }
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        each!(&self.mesh, mesh => view::view(py, mesh, |m| m.points().as_flattened(), &[mesh.node_count(), self.dimension()]))
+    }
+
+    #[getter]
+    fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
+        let shape = [each!(&self.mesh, mesh => mesh.element_count()), self.dimension() + 1];
+        each!(&self.mesh, mesh => view::view(py, mesh, |m| view::numbers(m.cells().as_flattened()), &shape))
+    }
+
+    /// Name of each group of facets, with the nodes of each of its facets.
+    #[getter]
+    fn groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        each!(&self.mesh, mesh => {
+            let groups = PyDict::new(py);
+            for (name, facets) in mesh.facet_groups() {
+                let nodes = facets.iter().flat_map(|f| mesh.facets()[f.index()].nodes).map(|n| n.index() as i64);
+                groups.set_item(name, rows(py, nodes.collect(), self.dimension())?)?;
+            }
+            Ok(groups)
+        })
+    }
+
+    /// Name of each group of elements, with their numbers.
+    #[getter]
+    fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        each!(&self.mesh, mesh => {
+            let groups = PyDict::new(py);
+            for (name, elements) in mesh.element_groups() {
+                groups.set_item(name, view::column(py, elements, |e| e.index() as i64))?;
+            }
+            Ok(groups)
+        })
+    }
+
+    #[getter]
+    fn size(&self) -> f64 {
+        each!(&self.mesh, mesh => mesh.size())
+    }
+
+    #[getter]
+    fn mended_elements(&self) -> usize {
+        each!(&self.mesh, mesh => mesh.mended_elements())
+    }
+}
+
+fn rows<'py>(py: Python<'py>, numbers: Vec<i64>, columns: usize) -> PyResult<Bound<'py, PyArray2<i64>>> {
+    let array = numbers.into_pyarray(py);
+    let array = array.reshape([array.len()? / columns, columns])?;
+    array.readwrite().make_nonwriteable();
+    Ok(array)
+}
+
+/// A number of elements: what is negative is refused as what is zero is.
+fn count(py: Python<'_>, name: &'static str, value: i64) -> PyResult<usize> {
+    let allowed = "a number of elements from 1 to 20 000 000";
+    usize::try_from(value).map_err(|_| errors::mesh(py, &MeshError::Generator { name, value: value as f64, allowed }))
+}
+
+fn from_arrays<const D: usize, const N: usize>(
+    py: Python<'_>,
+    points: &PyReadonlyArray2<'_, f64>,
+    cells: &PyReadonlyArray2<'_, i64>,
+    groups: &Groups<'_>,
+    elements: &Elements<'_>,
+) -> PyResult<Arc<Mesh<D, N>>> {
+    let points = points.as_slice()?.as_chunks::<D>().0.to_vec();
+    let cells = indices::<N>(py, "cells", cells.as_slice()?)?;
+    let mut facet_groups = FacetGroups::new();
+    for (name, members) in groups {
+        facet_groups.insert(name.clone(), indices(py, &format!("groups[{name:?}]"), members.as_slice()?)?);
+    }
+    let mut element_groups = ElementGroups::new();
+    for (name, members) in elements {
+        let members = indices::<1>(py, &format!("elements[{name:?}]"), members.as_slice()?)?;
+        element_groups.insert(name.clone(), members.into_iter().flatten().collect());
+    }
+    let mesh = door::through(py, None, move |_| Mesh::new(points, &cells, &facet_groups, &element_groups))?;
+    mesh.map(Arc::new).map_err(|error| errors::mesh(py, &error))
+}
+
+/// Rows of indices, none of them negative.
+fn indices<const C: usize>(py: Python<'_>, name: &str, numbers: &[i64]) -> PyResult<Vec<[usize; C]>> {
+    if let Some(at) = numbers.iter().position(|&n| n < 0) {
+        let message = format!("`{name}`: entry {} is {}; numbers are counted from 0", at / C, numbers[at]);
+        return Err(errors::input(py, &message));
+    }
+    Ok(numbers.as_chunks::<C>().0.iter().map(|row| row.map(|n| n as usize)).collect())
+}

@@ -1,0 +1,197 @@
+//! A history with its problem, in memory or in a file.
+
+use crate::any::Any;
+use crate::door::Watch;
+use percute::history::Stored;
+use percute_core::dynamics::{Balance, Balancing, Kinematics};
+use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_io::FileError;
+use percute_io::history::{HistoryFile, HistorySource};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use thiserror::Error;
+
+/// A history and the problem it solves; it never changes.
+pub(crate) struct Run<const D: usize, const N: usize> {
+    pub(crate) problem: Arc<Problem<D, N>>,
+    pub(crate) steps: Steps<D, N>,
+    balance: OnceLock<Vec<Balance>>,
+}
+
+/// Where the steps are.
+pub(crate) enum Steps<const D: usize, const N: usize> {
+    /// In memory.
+    Memory(History<D>),
+    /// In a file, from which they are read as they are needed.
+    File(HistoryFile<D, N>, HistorySource<D, N>),
+}
+
+/// A run of either dimension, shared.
+pub(crate) type AnyRun = Any<Arc<Run<1, 2>>, Arc<Run<2, 3>>>;
+
+/// Velocities and accelerations at all instants, node by node and step after step.
+pub(crate) struct Motion<const D: usize> {
+    pub(crate) velocity: Vec<[f64; D]>,
+    pub(crate) acceleration: Vec<[f64; D]>,
+}
+
+impl<const D: usize, const N: usize> Run<D, N> {
+    pub(crate) fn new(problem: Arc<Problem<D, N>>, history: History<D>, balance: Option<Vec<Balance>>) -> Self {
+        let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
+        Self { problem, steps: Steps::Memory(history), balance }
+    }
+
+    /// A history in a file.
+    pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
+        let source = stored.file.source(&stored.problem)?;
+        let steps = Steps::File(stored.file, source);
+        Ok(Self { problem: Arc::new(stored.problem), steps, balance: OnceLock::new() })
+    }
+
+    /// The steps, one after the other.
+    pub(crate) fn source(&self) -> &dyn StepSource<D> {
+        match &self.steps {
+            Steps::Memory(history) => history,
+            Steps::File(_, source) => source,
+        }
+    }
+
+    /// The file, if that is where the steps are.
+    pub(crate) fn file(&self) -> Option<&HistoryFile<D, N>> {
+        match &self.steps {
+            Steps::Memory(_) => None,
+            Steps::File(file, _) => Some(file),
+        }
+    }
+
+    /// The history in memory, if that is where it is.
+    pub(crate) fn memory(&self) -> Option<&History<D>> {
+        match &self.steps {
+            Steps::Memory(history) => Some(history),
+            Steps::File(..) => None,
+        }
+    }
+
+    /// The instants planned.
+    pub(crate) fn times(&self) -> &TimeGrid {
+        self.source().times()
+    }
+
+    /// Number of instants held.
+    pub(crate) fn count(&self) -> usize {
+        self.source().count()
+    }
+
+    /// Nodes of the rows of reactions and touching status.
+    pub(crate) fn contact_nodes(&self) -> Vec<usize> {
+        match self.file() {
+            Some(file) => file.contact_nodes().to_vec(),
+            None => self.problem.surface().nodes().iter().map(|c| c.node.index()).collect(),
+        }
+    }
+
+    /// Instants and nodes.
+    pub(crate) fn shape(&self) -> [usize; 2] {
+        [self.count(), self.problem.mesh().node_count()]
+    }
+
+    /// Instants and nodes of the contact surface.
+    pub(crate) fn contact_shape(&self) -> [usize; 2] {
+        [self.count(), self.contact_nodes().len()]
+    }
+
+    /// Energies and works at every step, computed once.
+    pub(crate) fn balance(&self, watch: Watch) -> Result<&[Balance], SinkError> {
+        if let Some(balance) = self.balance.get() {
+            return Ok(balance);
+        }
+        let mut balancing = Balancing::new(&self.problem, self.times());
+        Stoppable { source: self.source(), watch }.replay(&mut balancing)?;
+        Ok(self.balance.get_or_init(|| balancing.finish()))
+    }
+
+    /// v_n and a_n by the scheme, or as the history brings them.
+    pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
+        let kinematics = Kinematics::new(&self.problem, self.times());
+        let motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
+        let mut deriving = Deriving { kinematics, motion };
+        Stoppable { source: self.source(), watch }.replay(&mut deriving)?;
+        Ok(deriving.motion)
+    }
+}
+
+struct Deriving<'p, const D: usize, const N: usize> {
+    kinematics: Kinematics<'p, D, N>,
+    motion: Motion<D>,
+}
+
+impl<const D: usize, const N: usize> StepSink<D> for Deriving<'_, D, N> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        self.kinematics.advance(step)?;
+        self.motion.velocity.extend(self.kinematics.velocity());
+        self.motion.acceleration.extend(self.kinematics.acceleration());
+        Ok(())
+    }
+}
+
+/// The caller has left.
+#[derive(Debug, Error)]
+#[error("stopped")]
+pub(crate) struct Left;
+
+/// A history that ends with an error when its reader is told to stop: unlike an observer that breaks, it
+/// asks for nothing more to be computed.
+pub(crate) struct Stoppable<'a, const D: usize> {
+    pub(crate) source: &'a dyn StepSource<D>,
+    pub(crate) watch: Watch,
+}
+
+impl<const D: usize> StepSource<D> for Stoppable<'_, D> {
+    fn times(&self) -> &TimeGrid {
+        self.source.times()
+    }
+
+    fn count(&self) -> usize {
+        self.source.count()
+    }
+
+    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+        self.source.replay(&mut StoppableSink { sink, watch: &self.watch })
+    }
+}
+
+struct StoppableSink<'a, const D: usize> {
+    sink: &'a mut dyn StepSink<D>,
+    watch: &'a Watch,
+}
+
+impl<const D: usize> StepSink<D> for StoppableSink<'_, D> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        if self.watch.0.stopped() { Err(Left.into()) } else { self.sink.push(step) }
+    }
+}
+
+/// A history that two threads share while it grows: one fills it, the other may take it away at any moment.
+#[derive(Clone, Debug)]
+pub(crate) struct Growing<const D: usize>(Arc<Mutex<Option<History<D>>>>);
+
+impl<const D: usize> Growing<D> {
+    pub(crate) fn new(times: &TimeGrid) -> Self {
+        Self(Arc::new(Mutex::new(Some(History::new(times)))))
+    }
+
+    /// Takes what is there; whoever fills it is refused from then on.
+    pub(crate) fn take(&self) -> Option<History<D>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().filter(|history| !history.is_empty())
+    }
+}
+
+impl<const D: usize> StepSink<D> for Growing<D> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        match self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+            Some(history) => history.push(step),
+            None => Err(Left.into()),
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Simulations, into memory or into a file.
+
+use crate::any::{Any, each};
+use crate::case::CaseData;
+use crate::door::Watch;
+use crate::history::HistoryData;
+use crate::problem::ProblemData;
+use crate::run::{AnyRun, Growing, Run};
+use crate::{door, errors, time};
+use percute::Failure;
+use percute::case::{Source, Unsayable};
+use percute::history::{AnyStored, plan};
+use percute_core::dynamics::SimulationError;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::Options;
+use percute_io::{FileError, Overwrite};
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use thiserror::Error;
+
+/// How the instants are stated: end, courant, step, steps.
+type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
+
+/// Simulates. What is raised on the way has what was done as its `history`: the data, or the file.
+#[pyfunction]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    problem: &ProblemData,
+    times: Times,
+    store: Option<PathBuf>,
+    overwrite: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<HistoryData> {
+    let (end, courant, step, steps) = times;
+    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
+    match &problem.problem {
+        Any::Bar(problem) => one(py, problem, &times, store, progress, Any::Bar),
+        Any::Plane(problem) => one(py, problem, &times, store, progress, Any::Plane),
+    }
+}
+
+/// Simulates a case, likewise.
+#[pyfunction]
+pub(crate) fn simulate_case(
+    py: Python<'_>,
+    case: &CaseData,
+    store: Option<PathBuf>,
+    overwrite: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<HistoryData> {
+    let (source, options) = each!(&case.case, case => (case.source.clone(), case.options));
+    let store = store.map(|path| Store::new(path, overwrite, options, Some(source)));
+    match &case.case {
+        Any::Bar(case) => one(py, &Arc::new(case.problem.clone()), &case.times, store, progress, Any::Bar),
+        Any::Plane(case) => one(py, &Arc::new(case.problem.clone()), &case.times, store, progress, Any::Plane),
+    }
+}
+
+/// Opens the history in a file.
+#[pyfunction]
+pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryData> {
+    let opened = door::through(py, None, move |_| opened(&path))?;
+    Ok(HistoryData { run: opened.map_err(|error| errors::failure(py, &error))? })
+}
+
+fn opened(path: &Path) -> Result<AnyRun, Failure> {
+    Ok(match percute::history::open(path)? {
+        AnyStored::Bar(stored) => Any::Bar(Arc::new(Run::stored(*stored)?)),
+        AnyStored::Plane(stored) => Any::Plane(Arc::new(Run::stored(*stored)?)),
+    })
+}
+
+/// A file to simulate into.
+#[derive(Clone)]
+struct Store {
+    path: PathBuf,
+    overwrite: bool,
+    /// Options that its estimate takes unless told otherwise.
+    options: Options,
+    case: Option<Source>,
+    /// Set as soon as the file is that of this run.
+    ours: Arc<AtomicBool>,
+}
+
+impl Store {
+    fn new(path: PathBuf, overwrite: bool, options: Options, case: Option<Source>) -> Self {
+        Self { path, overwrite, options, case, ours: Arc::default() }
+    }
+}
+
+/// Why a simulation into a file failed.
+#[derive(Debug, Error)]
+enum StoreError {
+    #[error(transparent)]
+    Unsayable(#[from] Unsayable),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl StoreError {
+    fn raised(&self, py: Python<'_>) -> PyErr {
+        match self {
+            Self::Unsayable(error) => errors::input(py, &error.to_string()),
+            Self::File(error) => errors::file(py, error),
+            Self::Simulation(error) => errors::simulation(py, error),
+        }
+    }
+}
+
+fn one<const D: usize, const N: usize>(
+    py: Python<'_>,
+    problem: &Arc<Problem<D, N>>,
+    times: &TimeGrid,
+    store: Option<Store>,
+    progress: Option<&Bound<'_, PyAny>>,
+    either: fn(Arc<Run<D, N>>) -> AnyRun,
+) -> PyResult<HistoryData> {
+    let Some(store) = store else { return into_memory(py, problem, times, progress, either) };
+    let work = {
+        let (problem, times, store) = (problem.clone(), times.clone(), store.clone());
+        move |watch| into_file(&problem, &times, &store, watch)
+    };
+    let outcome = door::through(py, progress, work);
+    match outcome.and_then(|done| done.map_err(|error| error.raised(py))) {
+        Ok(()) => open_history(py, store.path),
+        // To open it takes time that whoever pressed Ctrl-C does not have.
+        Err(error) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
+        Err(error) => Err(error),
+    }
+}
+
+/// A run that was stopped is finished like one that came to its end; after an error the file is left as it is.
+fn into_file<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    store: &Store,
+    mut watch: Watch,
+) -> Result<(), StoreError> {
+    let overwrite = if store.overwrite { Overwrite::Replace } else { Overwrite::Refuse };
+    let plan = plan(problem, times, &store.options, store.case.as_ref())?;
+    let mut writer = plan.create(&store.path, overwrite)?;
+    store.ours.store(true, Relaxed);
+    percute_core::dynamics::simulate(problem, times, &mut writer, &mut watch)?;
+    Ok(writer.finish()?)
+}
+
+fn into_memory<const D: usize, const N: usize>(
+    py: Python<'_>,
+    problem: &Arc<Problem<D, N>>,
+    times: &TimeGrid,
+    progress: Option<&Bound<'_, PyAny>>,
+    either: fn(Arc<Run<D, N>>) -> AnyRun,
+) -> PyResult<HistoryData> {
+    let growing = Growing::new(times);
+    let work = {
+        let (problem, times, mut sink) = (problem.clone(), times.clone(), growing.clone());
+        move |mut watch: Watch| percute_core::dynamics::simulate(&problem, &times, &mut sink, &mut watch)
+    };
+    let outcome = door::through(py, progress, work);
+    let kept = growing.take();
+    let data = |history, balance| HistoryData { run: either(Arc::new(Run::new(problem.clone(), history, balance))) };
+    match outcome.and_then(|done| done.map_err(|error| errors::simulation(py, &error))) {
+        Ok(simulation) => kept
+            .map(|history| data(history, Some(simulation.balance_over_time)))
+            .ok_or_else(|| errors::percute_error(py, "internal error: a simulation without steps")),
+        Err(error) => Err(with_history(py, error, kept.map(|history| data(history, None)))),
+    }
+}
+
+/// Hangs what was done on an exception: the history, or its file.
+fn with_history<'py>(py: Python<'py>, error: PyErr, history: Option<impl IntoPyObject<'py>>) -> PyErr {
+    if let Some(history) = history {
+        // One that takes no attributes is raised all the same.
+        let _ = error.value(py).setattr("history", history);
+    }
+    error
+}

@@ -1,0 +1,70 @@
+//! The instants of a run, as `simulate` takes them.
+
+use crate::errors;
+use percute_core::time::TimeGrid;
+use pyo3::prelude::*;
+
+/// A step may exceed the critical one by this much, as in case files.
+const SLACK: f64 = 1e-6;
+/// `end` agrees with the sum of `steps` if they differ by no more than this, relatively.
+const AGREES: f64 = 1e-9;
+
+/// The instants from 0 to `end`: by the ratio to the critical step, by the step, or step by step (s).
+///
+/// # Errors
+/// Not exactly one of the three, no end, or a step above the critical one.
+pub(crate) fn grid(
+    py: Python<'_>,
+    end: Option<f64>,
+    courant: Option<f64>,
+    step: Option<f64>,
+    steps: Option<Vec<f64>>,
+    critical: f64,
+) -> PyResult<TimeGrid> {
+    let refused = |message: String| errors::input(py, &message);
+    let made = match (courant, step, steps) {
+        (Some(courant), None, None) => {
+            if !(courant > 0.0 && courant <= 1.0) {
+                let allowed = "above 0 and at most 1: the step over the critical step";
+                return Err(refused(format!("`courant` is {courant}; it must be {allowed}")));
+            }
+            TimeGrid::with_step(needed(py, end)?, courant * critical)
+        }
+        (None, Some(step), None) => {
+            below(py, "step", step, critical)?;
+            TimeGrid::with_step(needed(py, end)?, step)
+        }
+        (None, None, Some(steps)) => {
+            for (i, step) in steps.iter().enumerate() {
+                below(py, &format!("steps[{i}]"), *step, critical)?;
+            }
+            TimeGrid::from_steps(&steps)
+        }
+        _ => {
+            let ways = "`courant` (0 to 1), `step` (s) and `steps` (a list in s)";
+            return Err(refused(format!("give exactly one of {ways}")));
+        }
+    };
+    let grid = made.map_err(|error| errors::time(py, &error))?;
+    match end {
+        Some(end) if (end - grid.end()).abs() > AGREES * grid.end() || end.is_nan() => Err(refused(format!(
+            "`end` is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree",
+            grid.end()
+        ))),
+        _ => Ok(grid),
+    }
+}
+
+fn needed(py: Python<'_>, end: Option<f64>) -> PyResult<f64> {
+    end.ok_or_else(|| errors::input(py, "`end` is missing: give the end of the run (s)"))
+}
+
+fn below(py: Python<'_>, name: &str, step: f64, critical: f64) -> PyResult<()> {
+    if step <= critical * (1.0 + SLACK) || step.is_nan() {
+        return Ok(());
+    }
+    let message = format!(
+        "`{name}` is {step} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
+    );
+    Err(errors::input(py, &message))
+}

@@ -1,0 +1,48 @@
+"""What percute raises.
+
+All exceptions are `PercuteError`; each is also the built-in exception that fits, so that code that knows nothing of
+percute can catch it. Messages name the argument, its value, its unit and what is allowed.
+"""
+
+__all__ = [
+    "EstimateError",
+    "ExistingFileError",
+    "FileFormatError",
+    "InputError",
+    "MissingFileError",
+    "PercuteError",
+    "SimulationError",
+    "StorageError",
+]
+
+
+class PercuteError(Exception):
+    """The root of all exceptions of percute."""
+
+
+class InputError(PercuteError, ValueError):
+    """An argument, a case file or a problem is wrong; nothing was computed."""
+
+
+class MissingFileError(PercuteError, FileNotFoundError):
+    """There is no such file."""
+
+
+class ExistingFileError(PercuteError, FileExistsError):
+    """The file exists already; ``overwrite=True`` replaces it."""
+
+
+class FileFormatError(PercuteError, ValueError):
+    """The file is damaged, of another kind or newer than this program; or its contents contradict each other."""
+
+
+class StorageError(PercuteError, OSError):
+    """The file cannot be read or written: no space, no permission, in use by another program."""
+
+
+class SimulationError(PercuteError, RuntimeError):
+    """The simulation failed; ``history``, if there is one, holds the steps done."""
+
+
+class EstimateError(PercuteError, RuntimeError):
+    """The history cannot be estimated."""

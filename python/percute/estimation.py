@@ -1,0 +1,436 @@
+"""Estimates: how wrong a simulation is, where, when and why."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percute import _percute
+from percute.errors import InputError
+from percute.history import History
+from percute.mesh import Mesh
+from percute.problem import Problem
+from percute.progress import ProgressOption, shown
+from percute.statement import numbers
+from percute.stored import StoredEstimate
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["ElementMap", "Estimate", "OverTime", "Parts", "WorstElement", "estimate"]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of η (J), eq. [14]."""
+
+    kinetic: float
+    """From inertia: ½∫ρ(u̇_DA − u̇_CA)²."""
+    elastic: float
+    """From stress: ½∫(σ_DA − σ_CA):K⁻¹(σ_DA − σ_CA)."""
+    contact: float
+    """From friction: 2∫∫[b(−w_CA, F_DA) + w_CA·F_DA]."""
+
+    @property
+    def total(self) -> float:
+        """η (J)."""
+        return self.kinetic + self.elastic + self.contact
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OverTime:
+    """η, its parts and d at each sample, each of shape (samples,).
+
+    Where the contact zone changes, an instant has two samples, before and after.
+    """
+
+    time: NDArray[np.float64]
+    """t (s)."""
+    kinetic: NDArray[np.float64]
+    """Kinetic part of η (J), eq. [14]."""
+    elastic: NDArray[np.float64]
+    """Elastic part of η (J)."""
+    contact: NDArray[np.float64]
+    """Contact part of η (J)."""
+    total: NDArray[np.float64]
+    """η (J)."""
+    reference: NDArray[np.float64]
+    """d (J), eq. [24]."""
+
+
+@dataclass(frozen=True)
+class WorstElement:
+    """An element and what it contributes."""
+
+    element: int
+    """Its number."""
+    error: float
+    """e_E (J^½), eq. [20]."""
+    centroid: tuple[float, ...]
+    """Its centroid in the undeformed mesh (m)."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ElementMap:
+    """What each element contributes at an instant, and on request the admissible fields there."""
+
+    time: float
+    """t_n (s)."""
+    kinetic: NDArray[np.float64]
+    """Kinetic part of η_E (J), shape (elements,)."""
+    elastic: NDArray[np.float64]
+    """Elastic part of η_E (J), shape (elements,)."""
+    contact: NDArray[np.float64]
+    """Contact part of η_E (J), shape (elements,)."""
+    total: NDArray[np.float64]
+    """η_E (J), shape (elements,)."""
+    error: NDArray[np.float64]
+    """√((1/T)∫η_E dt) up to here (J^½), shape (elements,); at the end e_E, eq. [20]."""
+    displacement: NDArray[np.float64] | None = None
+    """u_CA (m), shape (nodes, dimension)."""
+    velocity: NDArray[np.float64] | None = None
+    """du_CA/dt (m/s), shape (nodes, dimension)."""
+    acceleration: NDArray[np.float64] | None = None
+    """Mean of Γ_DA/ρ (m/s²), shape (elements, dimension)."""
+    stress: NDArray[np.float64] | None = None
+    """Mean of σ_DA (Pa), shape (elements, dimension, dimension)."""
+    compatible_stress: NDArray[np.float64] | None = None
+    """σ_CA = Kε(u_CA) (Pa), shape (elements, dimension, dimension)."""
+
+
+class Estimate:
+    """The constitutive relation error of a history.
+
+    Made by `estimate`, `run` or `percute.open`. Errors are in J^½, those of a plane body for its thickness. It holds the
+    errors of space, time, lumped mass and contact together: a measure, not a strict bound.
+    """
+
+    _data: _percute.EstimateData | StoredEstimate
+    _history: History | None
+    _name: str
+
+    def __init__(self) -> None:
+        raise TypeError("estimates are made by percute.estimate, percute.run and percute.open")
+
+    @classmethod
+    def _of(cls, data: _percute.EstimateData | StoredEstimate, history: History | None, name: str) -> Estimate:
+        made = cls.__new__(cls)
+        made._data = data
+        made._history = history
+        made._name = name
+        return made
+
+    @property
+    def history(self) -> History | None:
+        """The history that was estimated; None if the estimate was unpickled."""
+        return self._history
+
+    @cached_property
+    def problem(self) -> Problem | None:
+        """The problem that was simulated; None if the estimate comes from a file, which does not hold its initial fields."""
+        if isinstance(self._data, StoredEstimate):
+            return None
+        return self._history.problem if self._history is not None else Problem._of(self._data.problem())
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The mesh."""
+        if isinstance(self._data, StoredEstimate):
+            return self._data.mesh
+        assert self.problem is not None
+        return self.problem.mesh
+
+    @cached_property
+    def _measures(self) -> _percute._Measures:
+        return cast("_percute._Measures", self._data.measures())
+
+    @property
+    def sup(self) -> float:
+        """e_sup = √(sup η) (J^½), eq. [15]."""
+        return self._measures["sup"]
+
+    @property
+    def mean(self) -> float:
+        """e_mean = √((1/T)∫η dt) (J^½), eq. [16]."""
+        return self._measures["mean"]
+
+    @property
+    def relative_sup(self) -> float:
+        """``sup`` over ``reference_sup``, eq. [22]."""
+        return self._measures["relative_sup"]
+
+    @property
+    def relative_mean(self) -> float:
+        """``mean`` over ``reference_mean``."""
+        return self._measures["relative_mean"]
+
+    @property
+    def reference_sup(self) -> float:
+        """D = √(sup d) (J^½), eq. [23]."""
+        return self._measures["reference_sup"]
+
+    @property
+    def reference_mean(self) -> float:
+        """√((1/T)∫d dt) (J^½)."""
+        return self._measures["reference_mean"]
+
+    @property
+    def time_of_sup(self) -> float:
+        """When η is largest (s)."""
+        return self._measures["time_of_sup"]
+
+    @property
+    def steps(self) -> int:
+        """The last step that was estimated."""
+        return self._measures["steps"]
+
+    @property
+    def end(self) -> float:
+        """Its time T (s)."""
+        return self._measures["end"]
+
+    @property
+    def kept_impulse(self) -> float | None:
+        """Normal impulse of the admissible contact force over that of the simulation; None without contact."""
+        return self._measures["kept_impulse"]
+
+    @cached_property
+    def parts(self) -> Parts:
+        """Parts of η when it is largest (J), eq. [14]."""
+        return Parts(*self._data.parts())
+
+    @cached_property
+    def over_time(self) -> OverTime:
+        """η, its parts and d over time (J)."""
+        return OverTime(**self._data.over_time())
+
+    @cached_property
+    def by_element(self) -> NDArray[np.float64]:
+        """e_E of each element (J^½), shape (elements,), eq. [20]; a read-only view."""
+        return self._data.by_element()
+
+    @cached_property
+    def residuals(self) -> Mapping[str, float]:
+        """How far each field is from exactly admissible, relative; above 1e-10 it is not (see ``docs/json.md``)."""
+        return MappingProxyType(self._data.residuals())
+
+    @cached_property
+    def maps(self) -> tuple[ElementMap, ...]:
+        """What each element contributes, at the instants that were asked for."""
+        kept = [{k: v for k, v in each.items() if k not in ("step", "accumulated")} for each in self._data.maps()]
+        return tuple(ElementMap(**arguments) for arguments in kept)
+
+    @property
+    def given(self) -> Mapping[str, bool]:
+        """Whether the history brought its own ``velocity`` and ``acceleration``; else they follow by the scheme."""
+        velocity, acceleration = self._data.given()
+        return MappingProxyType({"velocity": velocity, "acceleration": acceleration})
+
+    @property
+    def options(self) -> Mapping[str, str | int]:
+        """The choices ``contact_force``, ``acceleration`` and ``every`` it was made with."""
+        contact_force, acceleration, every = self._data.options()
+        return MappingProxyType({"contact_force": contact_force, "acceleration": acceleration, "every": every})
+
+    def worst_elements(self, n: int = 5) -> list[WorstElement]:
+        """Give the ``n`` elements that contribute most, largest first."""
+        if n < 0:
+            raise InputError(f"`n` is {n}; it must be 0 or more")
+        mesh = self.mesh
+        worst = []
+        for element, error in self._data.worst_elements(n):
+            centroid = mesh.points[mesh.cells[element]].mean(axis=0)
+            worst.append(WorstElement(element, error, tuple(centroid.tolist())))
+        return worst
+
+    def to_json(self) -> str:
+        """Give the document that ``percute run --json`` prints, described in ``docs/json.md``."""
+        return self._data.to_json(self._name)
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write an estimate file for ParaView, h5py and `percute.open`, described in ``docs/estimate.md``.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, such as ``"error.vtkhdf"``.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        InputError
+            The estimate comes from a file: copy that.
+        """
+        if isinstance(self._data, StoredEstimate):
+            raise InputError(f"the estimate comes from the file {self._data.path!r}; copy that")
+        self._data.save(os.path.abspath(path), overwrite, self._name)
+
+    def plot_map(self, *, axes: Axes | None = None) -> Axes:
+        """Draw e_E, what each element contributes (J^½), eq. [20].
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; new ones by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            What was drawn on.
+        """
+        from percute import plotting
+
+        return plotting.plot_map(self, axes)
+
+    def plot_over_time(self, *, axes: Axes | None = None) -> Axes:
+        """Draw √η and its parts over time (J^½).
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; new ones by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            What was drawn on.
+        """
+        from percute import plotting
+
+        return plotting.plot_over_time(self, axes)
+
+    def __repr__(self) -> str:
+        return (
+            f"<percute.Estimate: sup {self.sup:.4g} J^½ ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "
+            f"mean {self.mean:.4g} J^½ ({self.relative_mean:.3%}), {len(self.by_element)} elements, {self.steps} steps>"
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle all but the history, which is large and can be pickled apart."""
+        data = self._data
+        if isinstance(data, StoredEstimate):
+            return _reopen, (data.path,)
+        maps = data.maps()
+        for each in maps:
+            fields = {name: each.pop(name).copy() for name in _FIELDS if name in each}
+            parts = {name: each[name].copy() for name in ("kinetic", "elastic", "contact", "accumulated")}
+            each.update(parts, fields=fields or None)
+            del each["total"], each["error"]
+        state = {
+            "times": data.times(),
+            "options": data.options(),
+            "measures": data.measures(),
+            "parts": data.parts(),
+            "over_time": {name: column.copy() for name, column in data.over_time().items()},
+            "by_element": data.by_element().copy(),
+            "residuals": data.residuals(),
+            "given": data.given(),
+            "maps": maps,
+            "json": self.to_json(),
+        }
+        return _restore, (self.problem, state, self._name)
+
+    def __copy__(self) -> Estimate:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Estimate:
+        return self
+
+
+_FIELDS = ("displacement", "velocity", "acceleration", "stress", "compatible_stress")
+
+
+def _reopen(path: str) -> Estimate:
+    return Estimate._of(StoredEstimate(path), None, path)
+
+
+def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:
+    restored = Estimate._of(_percute.EstimateData.restore(problem._data, state), None, name)
+    restored.__dict__["problem"] = problem
+    return restored
+
+
+def _whole(name: str, value: int | np.integer[Any] | None) -> int | None:
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise InputError(f"`{name}` is {value!r}; it must be a whole number")
+    if value < 1:
+        raise InputError(f"`{name}` is {value}; it must be at least 1")
+    return int(value)
+
+
+def estimate(
+    history: History,
+    *,
+    contact_force: Literal["sharp", "paper"] = "sharp",
+    acceleration: Literal["closest", "rigid", "weak"] = "closest",
+    every: int = 1,
+    threads: int | None = None,
+    window: int | None = None,
+    instants: int | ArrayLike | None = None,
+    fields: bool = False,
+    progress: ProgressOption = None,
+) -> Estimate:
+    """Estimate the constitutive relation error of a history.
+
+    Parameters
+    ----------
+    history : History
+        The steps; at least two instants.
+    contact_force : {"sharp", "paper"}
+        How reactions become admissible contact forces: on the edges that touch throughout a step, statically equivalent; or
+        by the paper's construction, eq. [45] to [50].
+    acceleration : {"closest", "rigid", "weak"}
+        The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion, or
+        the linear one that does the lumped work.
+    every : int, default: 1
+        The error is sampled at every so many steps, and at the end.
+    threads : int, optional
+        How many threads to use, one for each core by default. The result does not depend on it.
+    window : int, optional
+        How many steps are worked on at once. The result does not depend on it.
+    instants : int or (n,) floats, optional
+        At how many instants, evenly spaced, or near which (s), ``maps`` are kept; none by default.
+    fields : bool, default: False
+        Whether these hold the admissible fields too.
+    progress : bool or callable, optional
+        As for `simulate`.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    InputError
+        An argument is wrong.
+    EstimateError
+        The history cannot be estimated: fewer than two instants, or steps that do not fit the problem.
+    """
+    if not isinstance(history, History):
+        raise InputError(f"`history` is {history!r}; it must be a History")
+    wanted: int | list[float] | None
+    if instants is None or (isinstance(instants, int | np.integer)):
+        wanted = _whole("instants", instants)
+    else:
+        times = np.atleast_1d(numbers("instants", instants, most=1))
+        if not np.all(np.isfinite(times) & (times >= 0)):
+            raise InputError(f"`instants` is {times}; times must be finite and not negative (s)")
+        wanted = times.tolist()
+    every, threads, window = _whole("every", every) or 1, _whole("threads", threads), _whole("window", window)
+    with shown(progress) as tell:
+        data = _percute.estimate(
+            history._data, contact_force, acceleration, every, threads, window, wanted, fields, tell
+        )
+    return Estimate._of(data, history, history._name)

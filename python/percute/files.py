@@ -1,0 +1,110 @@
+"""Case files, and histories and estimates in files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from percute import _percute
+from percute.errors import InputError, MissingFileError, StorageError
+from percute.estimation import Estimate, estimate
+from percute.history import History, absolute, history_of_the_exception
+from percute.progress import ProgressOption, shown
+from percute.stored import StoredEstimate
+
+__all__ = ["open", "run"]
+
+
+def open(path: str | os.PathLike[str]) -> History | Estimate:
+    """Open a history or an estimate.
+
+    Parameters
+    ----------
+    path : str or path
+        A history file, of percute or of another program that follows ``docs/history.md``; or an estimate file.
+
+    Returns
+    -------
+    History or Estimate
+        What the file holds. The arrays of a history are views of the file, which must not change as long as they are in use.
+
+    Raises
+    ------
+    MissingFileError
+        There is no such file.
+    FileFormatError
+        It is neither, damaged, newer than this program, or its contents contradict each other.
+    StorageError
+        It cannot be read, or another program is writing it.
+    """
+    file = os.path.abspath(path)
+    if _percute.is_estimate(file):
+        return Estimate._of(StoredEstimate(file), None, os.fspath(path))
+    return History._of(_percute.open_history(file), name=os.fspath(path))
+
+
+def run(
+    case: str | os.PathLike[str],
+    *,
+    store: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    threads: int | None = None,
+    window: int | None = None,
+    progress: ProgressOption = None,
+) -> Estimate:
+    """Run a case: simulate it and estimate the error, as ``percute run`` does.
+
+    Parameters
+    ----------
+    case : str or path
+        Name of a case file, or the text of a case (several lines of TOML).
+    store : str or path, optional
+        A file for the history; by default the one that the case names in ``[output]``, else it is kept in memory.
+    overwrite : bool, default: False
+        Whether a file that exists already is replaced.
+    threads, window : int, optional
+        As for `estimate`.
+    progress : bool or callable, optional
+        As for `simulate`.
+
+    Returns
+    -------
+    Estimate
+        With the simulation as its ``history``.
+
+    Raises
+    ------
+    InputError
+        The case is wrong; the message has the line.
+    MissingFileError, StorageError
+        The case cannot be read, or the history cannot be written.
+    SimulationError, EstimateError, KeyboardInterrupt
+        As for `simulate` and `estimate`.
+    """
+    name, text = _read(case)
+    read = _percute.CaseData(name, text)
+    file = store if store is not None else read.outputs()[0]
+    with shown(progress) as tell, history_of_the_exception():
+        history = History._of(_percute.simulate_case(read, absolute(file), overwrite, tell), name=name)
+        try:
+            return estimate(history, **read.options(), threads=threads, window=window, progress=tell)
+        except BaseException as error:
+            error.history = history  # type: ignore[attr-defined]
+            raise
+
+
+def _read(case: str | os.PathLike[str]) -> tuple[str, str]:
+    """Name and text of a case: a text has several lines, the name of a file has one."""
+    if isinstance(case, str) and "\n" in case:
+        return "case", case
+    if not isinstance(case, str | os.PathLike):
+        raise InputError(f"`case` is {case!r}; it must be the name of a case file, or its text")
+    path = Path(case)
+    try:
+        return os.fspath(path), path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"`case`: {os.fspath(path)!r} is no UTF-8 text") from None
+    except OSError as error:
+        raise StorageError(f"`case`: cannot read {os.fspath(path)!r}: {error.strerror}") from error

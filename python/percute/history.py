@@ -1,0 +1,300 @@
+"""Histories: what a simulation did, step by step."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percute import _percute
+from percute.errors import InputError
+from percute.problem import Problem
+from percute.progress import ProgressOption, shown
+from percute.statement import numbers
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Balance", "History", "simulate"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Balance:
+    """Energies and works (J) and drifts at each instant, each of shape (instants,)."""
+
+    kinetic: NDArray[np.float64]
+    """Kinetic energy."""
+    strain: NDArray[np.float64]
+    """Strain energy."""
+    work_of_loads: NDArray[np.float64]
+    """Work of tractions and body forces."""
+    work_of_supports: NDArray[np.float64]
+    """Work of support reactions."""
+    work_of_contact: NDArray[np.float64]
+    """Work of contact reactions, friction included."""
+    friction: NDArray[np.float64]
+    """Energy dissipated by friction."""
+    energy_drift: NDArray[np.float64]
+    """Largest error of the energy balance so far, over the largest energy or work."""
+    impulse_drift: NDArray[np.float64]
+    """The same of momentum and impulses."""
+
+
+class History:
+    """The steps of a simulation: displacements, contact reactions and touching status at each instant t_n.
+
+    Made by `simulate` or `percute.open`. Its arrays are read-only views without copies, of memory that lives as long as any
+    of them, or of the file.
+    """
+
+    _problem: Problem | None
+    _name: str
+    _file: str | None
+
+    def __init__(self) -> None:
+        raise TypeError("histories are made by percute.simulate, percute.run and percute.open")
+
+    @classmethod
+    def _of(cls, data: _percute.HistoryData, problem: Problem | None = None, name: str = "") -> History:
+        history = cls._at(None, problem, name)
+        history._data = data
+        return history
+
+    @classmethod
+    def _at(cls, file: str | None, problem: Problem | None, name: str = "") -> History:
+        """Give a history in a file, which is opened when it is needed."""
+        history = cls.__new__(cls)
+        history._file = file
+        history._problem = problem
+        history._name = name
+        return history
+
+    @cached_property
+    def _data(self) -> _percute.HistoryData:
+        assert self._file is not None
+        return _percute.open_history(self._file)
+
+    @property
+    def problem(self) -> Problem:
+        """The problem that was simulated."""
+        if self._problem is None:
+            self._problem = Problem._of(self._data.problem)
+        return self._problem
+
+    @cached_property
+    def time(self) -> NDArray[np.float64]:
+        """Instants t_n (s), shape (instants,)."""
+        return self._data.times[: self._data.count]
+
+    @cached_property
+    def displacement(self) -> NDArray[np.float64]:
+        """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
+        mapped = self._mapped("displacement", np.dtype("<f8"))
+        return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
+
+    @cached_property
+    def reaction(self) -> NDArray[np.float64]:
+        """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
+        mapped = self._mapped("reaction", np.dtype("<f8"))
+        return self._data.reaction() if mapped is None else mapped
+
+    @cached_property
+    def touching(self) -> NDArray[np.bool_]:
+        """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
+        mapped = self._mapped("touching", np.dtype("u1"))
+        # Any byte but 0 says yes; as a bool of numpy only 1 may.
+        if mapped is None or mapped.max(initial=0) > 1:
+            return self._data.touching()
+        return mapped.view(np.bool_)
+
+    def _mapped(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any] | None:
+        """Map an array of the file into memory; None if there is none that can be."""
+        path = self.path
+        for known, shape, offset in self._arrays if path is not None else ():
+            if known == name and path is not None and 0 not in shape:
+                return np.memmap(path, dtype, "r", offset, tuple(shape))[: len(self)]
+        return None
+
+    @cached_property
+    def _arrays(self) -> Sequence[tuple[str, list[int], int]]:
+        return self._data.arrays()
+
+    @cached_property
+    def contact_nodes(self) -> NDArray[np.int64]:
+        """Nodes of the rows of ``reaction`` and ``touching``, shape (contact nodes,)."""
+        return self._data.contact_nodes
+
+    @cached_property
+    def path(self) -> Path | None:
+        """The file that holds the steps; None if they are in memory."""
+        path = self._data.path
+        return None if path is None else Path(path)
+
+    @cached_property
+    def _motion(self) -> Sequence[NDArray[np.float64]]:
+        return self._data.motion()
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities v_n (m/s), shape (instants, nodes, dimension), eq. [29], [31]; computed when first asked for."""
+        return self._motion[0]
+
+    @property
+    def acceleration(self) -> NDArray[np.float64]:
+        """Accelerations a_n (m/s²), shape (instants, nodes, dimension), eq. [30]; computed when first asked for."""
+        return self._motion[1]
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Energies and works over time (J)."""
+        return Balance(**self._data.balance())
+
+    @property
+    def complete(self) -> bool:
+        """Whether all steps that were planned are there."""
+        return self._data.complete
+
+    def __len__(self) -> int:
+        return self._data.count
+
+    def plot(self, quantity: str = "displacement", *, step: int = -1, scale: float = 1.0, axes: Axes | None = None) -> Axes:
+        """Draw a field on the deformed body.
+
+        Parameters
+        ----------
+        quantity : {"displacement", "velocity", "von_mises", "pressure"}
+            Magnitude of the displacement (m) or the velocity (m/s), von Mises stress or pressure (Pa); of a bar its
+            displacement, velocity or ``"stress"`` along it.
+        step : int, default: -1
+            Which instant; negative ones count from the end.
+        scale : float, default: 1.0
+            By how much the displacement is exaggerated.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; new ones by default.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            What was drawn on.
+        """
+        from percute import plotting
+
+        return plotting.plot_field(self, quantity, step, scale, axes)
+
+    def __repr__(self) -> str:
+        held = f"{len(self)} instants to {self.time[-1]:.4g} s"
+        planned = "" if self.complete else f" of {len(self._data.times)} planned"
+        nodes, dimension = self.displacement.shape[1:]
+        return f"<percute.History: {held}{planned}, {nodes} nodes, {dimension}D>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self.path is not None:
+            return _reopen, (str(self.path),)
+        arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
+        return _rebuild, (self.problem, self._data.times.tolist(), *arrays)
+
+    def __copy__(self) -> History:
+        return self
+
+    def __deepcopy__(self, memo: object) -> History:
+        return self
+
+
+def _reopen(path: str) -> History:
+    return History._of(_percute.open_history(path), name=path)
+
+
+def _rebuild(
+    problem: Problem,
+    times: list[float],
+    displacement: NDArray[np.float64],
+    reaction: NDArray[np.float64],
+    touching: NDArray[np.bool_],
+) -> History:
+    return History._of(
+        _percute.HistoryData.from_arrays(problem._data, times, displacement, reaction, touching), problem
+    )
+
+
+def simulate(
+    problem: Problem,
+    *,
+    end: float | None = None,
+    courant: float | None = None,
+    step: float | None = None,
+    steps: ArrayLike | None = None,
+    store: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    progress: ProgressOption = None,
+) -> History:
+    """Simulate by central differences with a lumped mass and contact multipliers, eq. [28] to [38].
+
+    Parameters
+    ----------
+    problem : Problem
+        What to simulate.
+    end : float
+        End T of the run (s); it may be left out with ``steps``.
+    courant : float
+        Time step over the critical one, above 0 and at most 1. Give exactly one of ``courant``, ``step`` and ``steps``.
+    step : float
+        Time step (s). The run has equal steps of at most about this length and ends at T exactly.
+    steps : (n,) floats
+        Time steps (s), one by one.
+    store : str or path, optional
+        A file, such as ``"block.vtkhdf"``, to which the steps are written as they come, instead of keeping them in memory; see
+        ``docs/history.md``. Its size is known at the start, and room for it is taken at once.
+    overwrite : bool, default: False
+        Whether a file that exists already is replaced.
+    progress : bool or callable, optional
+        With True, progress is shown on a terminal or in a notebook. A function is called with a `Progress` about twenty
+        times a second; an exception that it raises stops the run.
+
+    Returns
+    -------
+    History
+
+    Raises
+    ------
+    InputError
+        An argument is wrong; or the start is too near to a plane.
+    SimulationError
+        The run became unstable.
+    ExistingFileError, StorageError
+        The file exists already or cannot be written; the steps before that are in it.
+    KeyboardInterrupt
+        After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``.
+    """
+    if not isinstance(problem, Problem):
+        raise InputError(f"`problem` is {problem!r}; it must be a Problem")
+    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
+    times = (end, courant, step, lengths)
+    with shown(progress) as tell, history_of_the_exception(problem):
+        data = _percute.simulate(problem._data, times, absolute(store), overwrite, tell)
+    return History._of(data, problem, "" if store is None else os.fspath(store))
+
+
+def absolute(store: str | os.PathLike[str] | None) -> str | None:
+    """Give a name that stays good when the working directory changes."""
+    return None if store is None else os.path.abspath(store)
+
+
+@contextmanager
+def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
+    """Make a `History` of the data that hangs on an exception."""
+    try:
+        yield
+    except BaseException as error:
+        done = getattr(error, "history", None)
+        if isinstance(done, _percute.HistoryData):
+            error.history = History._of(done, problem)  # type: ignore[attr-defined]
+        elif isinstance(done, Path):
+            error.history = History._at(str(done), problem, str(done))  # type: ignore[attr-defined]
+        raise

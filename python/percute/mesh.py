@@ -1,0 +1,163 @@
+"""Meshes of bars and triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percute import _percute
+from percute.errors import InputError
+from percute.statement import numbers
+
+__all__ = ["Mesh"]
+
+
+def _integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
+    """Whole numbers in rows of so many columns; without columns, one after the other."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.asarray(None)
+    if array.size == 0 and array.dtype.kind == "f":
+        array = array.astype(np.int64)
+    if array.dtype.kind not in "iu":
+        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcb" else repr(value)
+        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0")
+    if columns == 1 and array.ndim == 1:
+        array = array[:, None]
+    shape = (-1,) if columns is None else (-1, columns)
+    if array.ndim != len(shape) or (columns is not None and array.shape[1] != columns):
+        needed = "(n,)" if columns is None else f"(n, {columns})"
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}")
+    return np.ascontiguousarray(array, dtype=np.int64)
+
+
+class Mesh:
+    """A mesh of 2-node bars or 3-node triangles, checked once when it is made.
+
+    Parameters
+    ----------
+    points : (nodes,), (nodes, 1) or (nodes, 2) floats
+        Coordinates of the nodes (m). One coordinate makes a mesh of bars, two make one of triangles.
+    cells : (elements, 2) or (elements, 3) ints
+        Nodes of each element, counted from 0. Elements that are given clockwise (a bar: backwards) are turned round.
+    groups : dict of str to (edges, 2) ints, optional
+        Named groups of boundary edges, each by its two nodes; of a bar: (ends,) or (ends, 1).
+    elements : dict of str to (n,) ints, optional
+        Named groups of elements.
+
+    Raises
+    ------
+    InputError
+        With the number of the node or element at fault: coordinates that are not finite, nodes that do not exist, belong to
+        no element or lie at the same place, elements that are degenerate or overlap, edges not on the boundary.
+    """
+
+    _data: _percute.MeshData
+
+    def __init__(
+        self,
+        points: ArrayLike,
+        cells: ArrayLike,
+        groups: Mapping[str, ArrayLike] | None = None,
+        elements: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
+        places = numbers("points", points, most=2)
+        places = places[:, None] if places.ndim == 1 else places
+        if places.ndim != 2 or places.shape[1] not in (1, 2):
+            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2)")
+        dimension = places.shape[1]
+        self._data = _percute.MeshData.from_arrays(
+            places,
+            _integers("cells", cells, dimension + 1),
+            {name: _integers(f"groups[{name!r}]", edges, dimension) for name, edges in (groups or {}).items()},
+            {name: _integers(f"elements[{name!r}]", each, None) for name, each in (elements or {}).items()},
+        )
+
+    @classmethod
+    def _of(cls, data: _percute.MeshData) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._data = data
+        return mesh
+
+    @classmethod
+    def rectangle(cls, width: float, height: float, *, nx: int, ny: int) -> Mesh:
+        """Make the rectangle [0, width] × [0, height] of triangles.
+
+        Parameters
+        ----------
+        width, height : float
+            Lengths of the sides (m).
+        nx, ny : int
+            Number of cells along x and y; each is cut into two triangles from its lower left to its upper right corner.
+
+        Returns
+        -------
+        Mesh
+            Its sides are the groups ``left``, ``right``, ``bottom`` and ``top``.
+        """
+        return cls._of(_percute.MeshData.rectangle(width, height, nx, ny))
+
+    @classmethod
+    def bar(cls, length: float, *, elements: int) -> Mesh:
+        """Make a bar from 0 to ``length`` (m) of equal elements.
+
+        Returns
+        -------
+        Mesh
+            Its ends are the groups ``start`` (at 0) and ``end``.
+        """
+        return cls._of(_percute.MeshData.bar(length, elements))
+
+    @property
+    def dimension(self) -> int:
+        """1 for bars, 2 for triangles."""
+        return self._data.dimension
+
+    @cached_property
+    def points(self) -> NDArray[np.float64]:
+        """Coordinates of the nodes (m), shape (nodes, dimension); a read-only view."""
+        return self._data.points
+
+    @cached_property
+    def cells(self) -> NDArray[np.uint32]:
+        """Nodes of each element, counterclockwise, shape (elements, dimension + 1); a read-only view."""
+        return self._data.cells
+
+    @cached_property
+    def groups(self) -> Mapping[str, NDArray[np.int64]]:
+        """Named groups of boundary edges, each by its nodes: arrays (edges, dimension)."""
+        return MappingProxyType(self._data.groups)
+
+    @cached_property
+    def elements(self) -> Mapping[str, NDArray[np.int64]]:
+        """Named groups of elements, by number: arrays (n,)."""
+        return MappingProxyType(self._data.elements)
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around the mesh (m)."""
+        return self._data.size
+
+    @property
+    def mended_elements(self) -> int:
+        """How many elements were given with the wrong orientation and turned round."""
+        return self._data.mended_elements
+
+    def __repr__(self) -> str:
+        kind = "bars" if self.dimension == 1 else "triangles"
+        return f"<percute.Mesh: {len(self.cells)} {kind}, {len(self.points)} nodes>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Mesh, (self.points.copy(), self.cells.copy(), dict(self.groups), dict(self.elements))
+
+    def __copy__(self) -> Mesh:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Mesh:
+        return self

@@ -1,0 +1,209 @@
+"""Problems: a body, what it is made of, what holds, pushes and awaits it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percute import _percute
+from percute.errors import InputError
+from percute.mesh import Mesh
+from percute.statement import BodyForce, Elastic, Plane, Support, Traction, numbers
+
+__all__ = ["Problem"]
+
+T = TypeVar("T")
+
+
+def _all_of(name: str, given: Iterable[T], kind: type[T]) -> list[T]:
+    if isinstance(given, kind):
+        raise InputError(f"`{name}` is one {kind.__name__}; give a list of them")
+    objects = list(given)
+    for i, each in enumerate(objects):
+        if not isinstance(each, kind):
+            raise InputError(f"`{name}[{i}]` is {each!r}; it must be a {kind.__name__}")
+    return objects
+
+
+def _materials(material: Elastic | Mapping[str, Elastic]) -> list[tuple[str | None, Elastic]]:
+    if isinstance(material, Elastic):
+        return [(None, material)]
+    if not isinstance(material, Mapping):
+        raise InputError(f"`material` is {material!r}; it must be one Elastic, or a dict of group to Elastic")
+    for group, each in material.items():
+        if not isinstance(group, str) or not isinstance(each, Elastic):
+            raise InputError(f"`material[{group!r}]` is {each!r}; it must be an Elastic for the name of a group of elements")
+    return list(material.items())
+
+
+def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64] | None:
+    """Give one row for all nodes, or one for each."""
+    if field is None:
+        return None
+    array = numbers(name, field, most=2)
+    one_number_each = mesh.dimension == 1 and array.ndim == 1
+    array = array[:, None] if one_number_each else np.atleast_2d(array)
+    return array
+
+
+class Problem:
+    """An elastic body that may strike rigid planes: everything to be simulated, checked.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    material : Elastic or dict of str to Elastic
+        The material of all elements, or of each group of elements.
+    obstacles : sequence of Plane, default: ()
+        Planes that the body may touch; a node may touch one only.
+    supports : sequence of Support, default: ()
+        Where the motion is prescribed, eq. [4].
+    tractions : sequence of Traction, default: ()
+        Forces on the boundary, eq. [8].
+    body_forces : sequence of BodyForce, default: ()
+        Forces in the volume, eq. [8].
+    initial_velocity : (dimension,) or (nodes, dimension) floats, optional
+        v₀ (m/s), eq. [7]: the same for all nodes, or one for each; zero unless given. A bar takes one number, or (nodes,).
+    initial_displacement : (dimension,) or (nodes, dimension) floats, optional
+        u₀ (m), eq. [6]; likewise.
+
+    Raises
+    ------
+    InputError
+        With the name of the argument at fault.
+    """
+
+    _data: _percute.ProblemData
+    _mesh: Mesh
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        *,
+        material: Elastic | Mapping[str, Elastic],
+        obstacles: Iterable[Plane] = (),
+        supports: Iterable[Support] = (),
+        tractions: Iterable[Traction] = (),
+        body_forces: Iterable[BodyForce] = (),
+        initial_velocity: ArrayLike | None = None,
+        initial_displacement: ArrayLike | None = None,
+    ) -> None:
+        if not isinstance(mesh, Mesh):
+            raise InputError(f"`mesh` is {mesh!r}; it must be a Mesh")
+        self._mesh = mesh
+        self._data = _percute.ProblemData(
+            mesh._data,
+            _materials(material),
+            _all_of("obstacles", obstacles, Plane),
+            _all_of("supports", supports, Support),
+            _all_of("tractions", tractions, Traction),
+            _all_of("body_forces", body_forces, BodyForce),
+            _field("initial_velocity", initial_velocity, mesh),
+            _field("initial_displacement", initial_displacement, mesh),
+        )
+
+    @classmethod
+    def _of(cls, data: _percute.ProblemData) -> Problem:
+        problem = cls.__new__(cls)
+        problem._data = data
+        problem._mesh = Mesh._of(data.mesh())
+        return problem
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh."""
+        return self._mesh
+
+    @cached_property
+    def material(self) -> Elastic | dict[str, Elastic]:
+        """The material of all elements, or of each group."""
+        groups = [(group, Elastic(**arguments)) for group, arguments in self._data.materials()]
+        if len(groups) == 1 and groups[0][0] is None:
+            return groups[0][1]
+        return {group: material for group, material in groups if group is not None}
+
+    @cached_property
+    def obstacles(self) -> tuple[Plane, ...]:
+        """The planes."""
+        return tuple(Plane(**arguments) for arguments in self._data.obstacles())
+
+    @cached_property
+    def supports(self) -> tuple[Support, ...]:
+        """The supports."""
+        return tuple(Support(**arguments) for arguments in self._data.supports())
+
+    @cached_property
+    def tractions(self) -> tuple[Traction, ...]:
+        """The tractions."""
+        return tuple(Traction(**arguments) for arguments in self._data.tractions())
+
+    @cached_property
+    def body_forces(self) -> tuple[BodyForce, ...]:
+        """The body forces."""
+        return tuple(BodyForce(**arguments) for arguments in self._data.body_forces())
+
+    @cached_property
+    def initial_velocity(self) -> NDArray[np.float64]:
+        """v₀ at the nodes (m/s), shape (nodes, dimension), eq. [7]; a read-only view."""
+        return self._data.initial_velocity
+
+    @cached_property
+    def initial_displacement(self) -> NDArray[np.float64]:
+        """u₀ at the nodes (m), shape (nodes, dimension), eq. [6]; a read-only view."""
+        return self._data.initial_displacement
+
+    @cached_property
+    def mass(self) -> NDArray[np.float64]:
+        """Lumped mass of each node (kg), shape (nodes,), eq. [35]; a read-only view."""
+        return self._data.mass
+
+    @cached_property
+    def contact_nodes(self) -> NDArray[np.int64]:
+        """Nodes that may touch a plane, shape (contact nodes,), along the boundary."""
+        return self._data.contact_nodes
+
+    @property
+    def critical_time_step(self) -> float:
+        """Critical time step Δt_c = 2/ω_max (s), eq. [34]."""
+        return self._data.critical_time_step
+
+    @property
+    def wave_speed(self) -> float:
+        """Largest speed of waves (m/s)."""
+        return self._data.wave_speed
+
+    def __repr__(self) -> str:
+        parts = [repr(self.mesh)[len("<percute.Mesh: ") : -1]]
+        for name in ("obstacles", "supports", "tractions", "body_forces"):
+            count = len(getattr(self, name))
+            if count:
+                label = name.replace("_", " ")
+                parts.append(f"{count} {label.removesuffix('s') if count == 1 else label}")
+        return f"<percute.Problem: {', '.join(parts)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arguments = {
+            "material": self.material,
+            "obstacles": self.obstacles,
+            "supports": self.supports,
+            "tractions": self.tractions,
+            "body_forces": self.body_forces,
+            "initial_velocity": self.initial_velocity.copy(),
+            "initial_displacement": self.initial_displacement.copy(),
+        }
+        return _rebuild, (self.mesh, arguments)
+
+    def __copy__(self) -> Problem:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Problem:
+        return self
+
+
+def _rebuild(mesh: Mesh, arguments: dict[str, Any]) -> Problem:
+    return Problem(mesh, **arguments)

@@ -1,0 +1,230 @@
+"""The words in which a problem is stated: values, compared and shown by their contents.
+
+The types of their parts are checked here; whether they make sense on a mesh is checked when `Problem` puts them together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percute.errors import InputError
+
+__all__ = ["BodyForce", "Elastic", "Plane", "Support", "Traction"]
+
+Vector = tuple[float, ...]
+Rows = tuple[Vector, ...]
+
+
+def _number(name: str, value: object) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"`{name}` is {value!r}; it must be a number") from None
+
+
+def _text(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"`{name}` is {value!r}; it must be a text")
+    return value
+
+
+def numbers(name: str, value: object, *, most: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Give an array of numbers of at most so many dimensions, or say what is wrong with ``name``."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        array = np.asarray(None)
+    if array.dtype.kind not in "fiu":
+        raise InputError(f"`{name}` is {value!r}; it must be numbers in rows of equal length")
+    if array.ndim > most:
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _vector(name: str, value: object) -> Vector:
+    return tuple(np.atleast_1d(numbers(name, value, most=1)).tolist())
+
+
+def _table(name: str, value: object, time: object, columns: int | None) -> tuple[Vector | Rows, Vector | None]:
+    """Check a value that is constant, or has a row for each instant."""
+    if time is None:
+        constant = _vector(name, value)
+        if columns is not None and len(constant) != columns:
+            raise InputError(f"`{name}` has {len(constant)} numbers; it must have {columns}, or give `time`")
+        return constant, None
+    array = numbers(name, value, most=2)
+    if array.ndim == 1 and columns in (None, 1):
+        array = array[:, None]
+    if array.ndim != 2 or (columns is not None and array.shape[1] != columns):
+        raise InputError(f"`{name}` has the shape {array.shape}; with `time` it must have a row for each instant")
+    return tuple(tuple(row) for row in array.tolist()), _vector("time", time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Elastic:
+    """An isotropic linear elastic material, eq. [9].
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus E (Pa).
+    density : float
+        Mass per volume ρ (kg/m³).
+    poisson : float, optional
+        Poisson's ratio ν, above -1 and below 0.5. Plane bodies need it, bars have none.
+    plane : {"stress", "strain"}, optional
+        What a plane body does across its plane. Plane bodies need it, bars have none.
+    thickness : float, default: 1.0
+        Thickness of a plane body (m). With 1 m, energies and forces are per metre.
+    section : float, optional
+        Section of a bar (m²). Bars need it, plane bodies have none.
+    """
+
+    young: float
+    density: float
+    poisson: float | None = None
+    plane: Literal["stress", "strain"] | None = None
+    thickness: float = 1.0
+    section: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("young", "density", "thickness"):
+            object.__setattr__(self, name, _number(name, getattr(self, name)))
+        for name in ("poisson", "section"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _number(name, getattr(self, name)))
+        if self.plane not in (None, "stress", "strain"):
+            raise InputError(f"`plane` is {self.plane!r}; it must be 'stress' or 'strain'")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plane:
+    """A rigid plane with Coulomb friction that the body may touch, eq. [1] to [3].
+
+    Parameters
+    ----------
+    point : (dimension,) floats
+        A point of the plane (m); one number for a bar.
+    normal : (dimension,) floats
+        A normal of any length, from the plane to the body.
+    friction : float, default: 0.0
+        Coefficient of friction μ, zero for a bar.
+    group : str, optional
+        Only edges of this group may touch; by default all free ones that face the plane.
+    """
+
+    point: Vector | ArrayLike
+    normal: Vector | ArrayLike
+    friction: float = 0.0
+    group: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "point", _vector("point", self.point))
+        object.__setattr__(self, "normal", _vector("normal", self.normal))
+        object.__setattr__(self, "friction", _number("friction", self.friction))
+        if self.group is not None:
+            _text("group", self.group)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """Components of the motion that are prescribed on a group of edges (a bar: ends), eq. [4].
+
+    Parameters
+    ----------
+    group : str
+        Name of the group.
+    components : str or sequence of str
+        Axes of the prescribed components: ``"x"``, ``"y"`` or both.
+    velocity : (components,) or (instants, components) floats, optional
+        Prescribed velocity (m/s), constant, or with a row for each instant of ``time``, in the order of ``components``.
+        Without it they are fixed.
+    time : (instants,) floats, optional
+        Instants (s) of ``velocity``: straight lines between, constant before and after.
+    """
+
+    group: str
+    components: tuple[str, ...] | Sequence[str] | str
+    velocity: Vector | Rows | ArrayLike | None = None
+    time: Vector | ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        _text("group", self.group)
+        given = (self.components,) if isinstance(self.components, str) else tuple(self.components)
+        components = tuple(_text("components", name) for name in given)
+        if len(set(components)) < len(components):
+            raise InputError(f"`components` is {components!r}; it must not name an axis twice")
+        object.__setattr__(self, "components", components)
+        if self.velocity is None:
+            if self.time is not None:
+                raise InputError("`time` goes with `velocity`, which is missing")
+            return
+        velocity, time = _table("velocity", self.velocity, self.time, len(components))
+        object.__setattr__(self, "velocity", velocity)
+        object.__setattr__(self, "time", time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traction:
+    """A force per area on a group of edges (a bar: ends), eq. [8].
+
+    Parameters
+    ----------
+    group : str
+        Name of the group.
+    value : (dimension,) or (instants, dimension) floats
+        Traction (Pa) in global axes, constant, or with a row for each instant of ``time``.
+    time : (instants,) floats, optional
+        Instants (s) of ``value``: straight lines between, constant before and after.
+    profile : (float, (dimension,) floats), optional
+        Linear variation along the edges: ``value`` is multiplied by ``profile[0] + profile[1] · x``, with the gradient
+        ``profile[1]`` in 1/m.
+    """
+
+    group: str
+    value: Vector | Rows | ArrayLike
+    time: Vector | ArrayLike | None = None
+    profile: tuple[float, Vector | ArrayLike] | None = None
+
+    def __post_init__(self) -> None:
+        _text("group", self.group)
+        value, time = _table("value", self.value, self.time, None)
+        object.__setattr__(self, "value", value)
+        object.__setattr__(self, "time", time)
+        if self.profile is not None:
+            try:
+                at_origin, gradient = self.profile
+            except (TypeError, ValueError):
+                raise InputError(f"`profile` is {self.profile!r}; it must be a value and a gradient") from None
+            object.__setattr__(self, "profile", (_number("profile", at_origin), _vector("profile", gradient)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyForce:
+    """A force per volume, eq. [8].
+
+    Parameters
+    ----------
+    value : (dimension,) or (instants, dimension) floats
+        Force (N/m³) in global axes, constant, or with a row for each instant of ``time``.
+    time : (instants,) floats, optional
+        Instants (s) of ``value``: straight lines between, constant before and after.
+    group : str, optional
+        The group of elements that feels it; by default all.
+    """
+
+    value: Vector | Rows | ArrayLike
+    time: Vector | ArrayLike | None = None
+    group: str | None = None
+
+    def __post_init__(self) -> None:
+        value, time = _table("value", self.value, self.time, None)
+        object.__setattr__(self, "value", value)
+        object.__setattr__(self, "time", time)
+        if self.group is not None:
+            _text("group", self.group)

@@ -1,0 +1,146 @@
+"""Files of histories, and the ways in which they are missing, taken or wrong."""
+
+import os
+import pickle
+from pathlib import Path
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+import percute as pc
+import pytest
+from conftest import bar, block
+
+
+@pytest.fixture
+def stored(tmp_path: Path) -> pc.History:
+    return pc.simulate(block(), end=13e-6, courant=0.9, store=tmp_path / "block.vtkhdf")
+
+
+def test_a_stored_history_maps_its_file(stored: pc.History, block_history: pc.History) -> None:
+    for name in ("displacement", "reaction", "touching"):
+        array = getattr(stored, name)
+        assert isinstance(array, np.memmap) and not array.flags.writeable, name
+        assert array.tobytes() == getattr(block_history, name).tobytes(), name
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0
+    assert stored.complete and stored.problem.obstacles == block_history.problem.obstacles
+    assert np.array_equal(stored.contact_nodes, block_history.contact_nodes)
+    assert np.array_equal(stored.balance.friction, block_history.balance.friction)
+
+
+def test_names_of_files_outlive_a_change_of_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    history = pc.simulate(bar(), end=5e-6, courant=0.9, store="bar.vtkhdf")
+    monkeypatch.chdir("/")
+    assert history.path == tmp_path / "bar.vtkhdf" and len(history.displacement) == len(history)
+
+
+def test_nothing_is_overwritten_unless_told_so(stored: pc.History) -> None:
+    assert stored.path is not None
+    before = stored.path.read_bytes()
+    with pytest.raises(pc.ExistingFileError, match="overwrite=True") as raised:
+        pc.simulate(bar(), end=5e-6, courant=0.9, store=stored.path)
+    assert isinstance(raised.value, FileExistsError) and not hasattr(raised.value, "history")
+    assert stored.path.read_bytes() == before
+    replaced = pc.simulate(bar(), end=5e-6, courant=0.9, store=stored.path, overwrite=True)
+    assert replaced.problem.mesh.dimension == 1
+
+
+def test_a_missing_file(tmp_path: Path) -> None:
+    for action in (pc.open, pc.run):
+        with pytest.raises(FileNotFoundError, match="none.toml") as raised:
+            action(tmp_path / "none.toml")
+        assert isinstance(raised.value, pc.MissingFileError)
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(pc.StorageError, match="folder") as raised:
+        pc.simulate(bar(), end=5e-6, courant=0.9, store=tmp_path / "none" / "bar.vtkhdf")
+    assert isinstance(raised.value, OSError)
+
+
+def test_files_of_other_kinds(tmp_path: Path) -> None:
+    text, other = tmp_path / "text.vtkhdf", tmp_path / "other.vtkhdf"
+    text.write_text("no history")
+    with h5py.File(other, "w") as file:
+        file["numbers"] = [1, 2, 3]
+    for path in (text, other):
+        with pytest.raises(pc.FileFormatError) as raised:
+            pc.open(path)
+        assert isinstance(raised.value, ValueError) and path.name in str(raised.value)
+
+
+def test_a_truncated_file(stored: pc.History) -> None:
+    assert stored.path is not None
+    short = stored.path.with_name("short.vtkhdf")
+    short.write_bytes(stored.path.read_bytes()[:-4000])
+    with pytest.raises(pc.FileFormatError, match="short.vtkhdf"):
+        pc.estimate(pc.open(short))
+
+
+def test_a_value_that_is_no_number(stored: pc.History) -> None:
+    path = stored.path
+    assert path is not None
+    with h5py.File(path, "r+") as file:
+        file["VTKHDF/PointData/displacement"][5 * 63 + 7, 1] = np.nan
+    with pytest.raises(pc.FileFormatError, match="NaN at step 5, node 7"):
+        pc.estimate(pc.open(path))
+
+
+def test_a_file_that_h5py_locks(stored: pc.History) -> None:
+    path = stored.path
+    assert path is not None
+    with h5py.File(path, "r+", locking=True), pytest.raises(pc.StorageError, match="another program"):
+        pc.open(path)
+    assert pc.open(path).complete
+
+
+def test_a_mistake_in_a_case_has_its_line() -> None:
+    with pytest.raises(pc.InputError, match="case:2: .*bar"):
+        pc.run("[mesh]\nbar = 3\n")
+    with pytest.raises(pc.InputError, match="`case` is 3"):
+        pc.run(3)  # type: ignore[arg-type]
+
+
+def test_the_case_may_name_its_history(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text()
+    estimate = pc.run(text + '\n[output]\nhistory = "bar.vtkhdf"\n')
+    assert estimate.history is not None and estimate.history.path == tmp_path / "bar.vtkhdf"
+    assert os.listdir(tmp_path) == ["bar.vtkhdf"]
+
+
+def test_a_pickle_of_a_file_knows_where_it_is(stored: pc.History) -> None:
+    assert repr(stored) == f"<percute.History: {len(stored)} instants to 1.3e-05 s, 63 nodes, 2D>"
+
+
+@pytest.mark.parametrize("make", [bar, block])
+@pytest.mark.parametrize("fields", [False, True])
+def test_a_saved_estimate_comes_back(make: object, fields: bool, tmp_path: Path) -> None:
+    assert callable(make)
+    estimate = pc.estimate(pc.simulate(make(), end=13e-6, courant=0.9), instants=3, fields=fields)
+    file = tmp_path / "error.vtkhdf"
+    estimate.save(file)
+    with pytest.raises(pc.ExistingFileError):
+        estimate.save(file)
+    estimate.save(file, overwrite=True)
+    opened = pc.open(file)
+    for again in (opened, pickle.loads(pickle.dumps(opened))):
+        assert isinstance(again, pc.Estimate) and again.history is None and again.problem is None
+        assert again._measures == estimate._measures and again.parts == estimate.parts
+        assert again.by_element.tobytes() == estimate.by_element.tobytes()
+        assert again.worst_elements(4) == estimate.worst_elements(4)
+        assert (dict(again.residuals), again.options) == (dict(estimate.residuals), estimate.options)
+        for name in ("time", "kinetic", "elastic", "contact", "total", "reference"):
+            assert getattr(again.over_time, name).tobytes() == getattr(estimate.over_time, name).tobytes()
+        assert len(again.maps) == 3
+        for first, second in zip(again.maps, estimate.maps, strict=True):
+            for name, value in vars(second).items():
+                assert np.array_equal(getattr(first, name), value), name
+        assert np.array_equal(again.mesh.cells, estimate.mesh.cells)
+        assert again.to_json() == estimate.to_json()
+        again.plot_map()
+    plt.close("all")
+    with pytest.raises(pc.InputError, match="copy that"):
+        opened.save(tmp_path / "other.vtkhdf")  # type: ignore[union-attr]

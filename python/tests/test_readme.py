@@ -1,0 +1,39 @@
+"""The Python of the README and of the package runs as it stands."""
+
+import re
+import textwrap
+from pathlib import Path
+
+import percute as pc
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_the_examples_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    examples = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    assert examples
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for example in examples:
+        exec(example, names)
+    assert isinstance(names["estimate"], pc.Estimate) and names["estimate"].relative_sup < 0.1
+
+
+def test_the_example_of_the_package_runs() -> None:
+    assert pc.__doc__ is not None
+    names: dict[str, object] = {}
+    exec(textwrap.dedent(pc.__doc__.split("::\n\n")[1].split("\n\nAll quantities")[0]), names)
+    assert isinstance(names["estimate"], pc.Estimate)
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    page = (ROOT / "docs" / "python.md").read_text()
+    for name in pc.__all__:
+        assert name == "__version__" or f"`{name}" in page or f".{name}" in page, name
+    for kind in (pc.Mesh, pc.Problem, pc.History, pc.Estimate, pc.exact.BarImpact):
+        for name, value in vars(kind).items():
+            if not name.startswith("_") and (callable(value) or value.__doc__):
+                assert f"`{name}" in page or f".{name}(" in page, f"{kind.__name__}.{name}"
+            assert name.startswith("_") or value.__doc__, f"{kind.__name__}.{name} says nothing"

@@ -1,0 +1,187 @@
+"""Stating a problem: values, and every mistake with the name of its argument."""
+
+import re
+from typing import Any
+
+import numpy as np
+import percute as pc
+import pytest
+from conftest import bar, block
+from hypothesis import given
+from hypothesis import strategies as st
+
+STEEL = pc.Elastic(young=210e9, poisson=0.3, density=7800.0, plane="strain")
+BAR = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+SQUARE: dict[str, Any] = {"points": [[0, 0], [1, 0], [1, 1], [0, 1]], "cells": [[0, 1, 2], [0, 2, 3]]}
+
+
+def stack() -> pc.Problem:
+    """All that can be said, at once."""
+    points = [[x, y] for y in (0.0, 0.01, 0.02) for x in (0.0, 0.01, 0.02)]
+    cells = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [3, 4, 7], [3, 7, 6], [4, 5, 8], [4, 8, 7]]
+    groups = {"foot": [[0, 1], [1, 2]], "top": [[6, 7], [7, 8]], "left": [[0, 3], [3, 6]]}
+    mesh = pc.Mesh(np.array(points), np.array(cells), groups, {"low": np.arange(4), "high": np.arange(4, 8)})
+    soft = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="strain", thickness=0.5)
+    high = pc.Elastic(young=210e9, poisson=0.3, density=7800.0, plane="strain", thickness=0.5)
+    return pc.Problem(
+        mesh,
+        material={"low": soft, "high": high},
+        obstacles=[pc.Plane(point=(0.0, -2e-5), normal=(0.0, 3.0), friction=0.1, group="foot")],
+        supports=[pc.Support(group="left", components="x", velocity=[0.0, 0.0, 1.0], time=[0.0, 5e-6, 1e-5])],
+        tractions=[
+            pc.Traction(group="top", value=[[0, 0], [0, -1e6]], time=[0.0, 2e-6], profile=(1.0, (-25.0, 0.0))),
+        ],
+        body_forces=[pc.BodyForce(value=(0.0, -26487.0), group="low")],
+        initial_velocity=(0.0, -10.0),
+    )
+
+
+def test_a_problem_tells_what_was_stated() -> None:
+    problem = stack()
+    assert isinstance(problem.material, dict) and list(problem.material) == ["low", "high"]
+    assert problem.material["high"] == pc.Elastic(
+        young=210e9, poisson=0.3, density=7800.0, plane="strain", thickness=0.5
+    )
+    assert problem.obstacles == (pc.Plane(point=(0.0, -2e-5), normal=(0.0, 3.0), friction=0.1, group="foot"),)
+    assert problem.supports == (
+        pc.Support(group="left", components=["x"], velocity=[[0.0], [0.0], [1.0]], time=(0.0, 5e-6, 1e-5)),
+    )
+    assert problem.tractions[0].profile == (1.0, (-25.0, 0.0)) and problem.tractions[0].time == (0.0, 2e-6)
+    assert problem.body_forces == (pc.BodyForce(value=[0.0, -26487.0], group="low"),)
+    assert repr(problem) == (
+        "<percute.Problem: 8 triangles, 9 nodes, 1 obstacle, 1 support, 1 traction, 1 body force>"
+    )
+    assert "Plane(point=(0.0, -2e-05)" in repr(problem.obstacles)
+
+
+def test_a_mesh_tells_what_it_is() -> None:
+    mesh = stack().mesh
+    assert mesh.dimension == 2 and mesh.size == pytest.approx(0.02 * 2**0.5)
+    assert mesh.groups["top"].tolist() == [[6, 7], [7, 8]] and mesh.elements["low"].tolist() == [0, 1, 2, 3]
+    turned = pc.Mesh([0.0, 0.5, 1.0], [[1, 0], [1, 2]], {"end": [2]})
+    assert (turned.dimension, turned.mended_elements, turned.cells.tolist()) == (1, 1, [[0, 1], [1, 2]])
+    assert repr(turned) == "<percute.Mesh: 2 bars, 3 nodes>"
+
+
+@given(st.lists(st.floats(1e-3, 1.0), min_size=1, max_size=20))
+def test_masses_are_those_of_the_material(lengths: list[float]) -> None:
+    """Each bar gives half its mass to each of its nodes [35]."""
+    points = np.concatenate([[0.0], np.cumsum(lengths)])
+    cells = np.column_stack([np.arange(len(lengths)), np.arange(1, len(lengths) + 1)])
+    problem = pc.Problem(pc.Mesh(points, cells), material=BAR)
+    shares = 0.5 * 2700.0 * 0.02 * np.diff(points)
+    expected = np.concatenate([shares, [0.0]]) + np.concatenate([[0.0], shares])
+    # Rounding of a few products.
+    assert np.allclose(problem.mass, expected, rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"points": [[0, 0], [1, 0], [1, np.nan], [0, 1]]}, "node 2 has the coordinate NaN"),
+        ({"points": [[0, 0, 0]]}, "`points` has the shape (1, 3)"),
+        ({"points": [["a", "b"]]}, "`points` is [['a', 'b']]"),
+        ({"points": [[0, 0], [1]]}, "`points`"),
+        ({"cells": [[0, 1, -1]]}, "`cells`: entry 0 is -1; numbers are counted from 0"),
+        ({"cells": [[0.0, 1.0, 2.0]]}, "`cells` is an array of float64"),
+        ({"cells": [[0, 1]]}, "`cells` has the shape (1, 2); it must have (n, 3)"),
+        ({"cells": [[0, 1, 7], [0, 2, 3]]}, "names node 7"),
+        ({"groups": {"a": [[0, 2]]}}, 'group "a" names the facet of nodes [0, 2]'),
+        ({"groups": {"a": [0, 1]}}, "`groups['a']` has the shape (2,)"),
+        ({"elements": {"a": [2]}}, 'group "a" names element 2'),
+        ({"elements": {"a": [-2]}}, '`elements["a"]`: entry 0 is -2'),
+    ],
+)
+def test_mistakes_in_a_mesh(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(pc.InputError, match=re.escape(message)):
+        pc.Mesh(**(SQUARE | changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"material": pc.Elastic(young=-1, poisson=0.3, density=1, plane="stress")}, "`material.young` is -1 Pa"),
+        ({"material": BAR}, "`material.section` applies to bars only"),
+        ({"material": {"core": STEEL}}, '`material["core"]`: there is no group "core"'),
+        ({"material": 7}, "`material` is 7"),
+        ({"obstacles": pc.Plane(point=(0, 0), normal=(0, 1))}, "`obstacles` is one Plane; give a list"),
+        ({"obstacles": [3]}, "`obstacles[0]` is 3; it must be a Plane"),
+        ({"obstacles": [pc.Plane(point=0, normal=(0, 1))]}, "`obstacles[0].point` has 1 numbers"),
+        ({"obstacles": [pc.Plane(point=(0, 0.01), normal=(0, 1))]}, "`obstacles[0].point`: node 0 starts"),
+        ({"obstacles": [pc.Plane(point=(0, 0), normal=(0, 0))]}, "`obstacles[0]`: `normal` is [0.0, 0.0]"),
+        ({"obstacles": [pc.Plane(point=(0, -1), normal=(0, 1), group="floor")]}, "`obstacles[0].group`"),
+        ({"supports": [pc.Support(group="left", components="z")]}, "`supports[0].components` names \"z\""),
+        ({"supports": [pc.Support(group="left", components=())]}, "`supports[0].components`: no component"),
+        (
+            {"tractions": [pc.Traction(group="top", value=[[0, 0]], time=[0, 1])]},
+            "`tractions[0].value` has 1 entries and `time` has 2",
+        ),
+        (
+            {"tractions": [pc.Traction(group="top", value=[[0, 0], [1, 1]], time=[1, 1])]},
+            "`tractions[0].time`: `time` entry 1 is 1 s",
+        ),
+        ({"body_forces": [pc.BodyForce(value=(0, 1), group="core")]}, "`body_forces[0].group`"),
+        ({"initial_velocity": (1, 2, 3)}, "`initial_velocity`: a vector has 3 numbers"),
+        ({"initial_velocity": np.zeros((3, 2))}, "`initial_velocity`: the field has 3 values"),
+        ({"initial_displacement": (0, np.inf)}, "`initial_displacement`: the value at node 0 is inf"),
+    ],
+)
+def test_mistakes_in_a_problem(changes: dict[str, Any], message: str) -> None:
+    arguments: dict[str, Any] = {"material": STEEL} | changes
+    with pytest.raises(pc.InputError, match=re.escape(message)) as raised:
+        pc.Problem(pc.Mesh.rectangle(1.0, 1.0, nx=2, ny=2), **arguments)
+    assert isinstance(raised.value, ValueError) and isinstance(raised.value, pc.PercuteError)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"courant": 0.9}, "`end` is missing"),
+        ({"end": 1e-5}, "give exactly one of `courant`"),
+        ({"end": 1e-5, "courant": 0.9, "step": 1e-8}, "give exactly one of `courant`"),
+        ({"end": 1e-5, "courant": 1.5}, "`courant` is 1.5; it must be above 0 and at most 1"),
+        ({"end": 1e-5, "step": 1.0}, "`step` is 1 s; it must be at most the critical step"),
+        ({"end": -1.0, "courant": 0.9}, "`end` is -1 s"),
+        ({"end": 1e-5, "steps": [1e-7, 2e-7]}, "`steps` add up to"),
+        ({"steps": [1e-7, 1.0]}, "`steps[1]` is 1 s"),
+        ({"steps": []}, "`steps` is empty"),
+        ({"end": float("nan"), "courant": 0.9}, "`end` is NaN"),
+    ],
+)
+def test_mistakes_in_time(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(pc.InputError, match=re.escape(message)):
+        pc.simulate(block(), **arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"contact_force": "blunt"}, '`contact_force`: "blunt" is not known; choose one of sharp, paper'),
+        ({"acceleration": "none"}, "`acceleration`"),
+        ({"every": 0}, "`every` is 0; it must be at least 1"),
+        ({"threads": 1.5}, "`threads` is 1.5"),
+        ({"window": -1}, "`window` is -1"),
+        ({"instants": [-1.0]}, "`instants`"),
+        ({"instants": 0}, "`instants` is 0"),
+    ],
+)
+def test_mistakes_in_an_estimate(arguments: dict[str, Any], message: str, bar_history: pc.History) -> None:
+    with pytest.raises(pc.InputError, match=re.escape(message)):
+        pc.estimate(bar_history, **arguments)
+
+
+def test_a_start_that_is_too_near_names_its_plane() -> None:
+    problem = pc.Problem(
+        pc.Mesh.bar(1.0, elements=4),
+        material=pc.Elastic(young=1.0, density=1.0, section=1.0),
+        obstacles=[pc.Plane(point=-1e-6, normal=1)],
+        initial_velocity=-1.0,
+    )
+    with pytest.raises(pc.InputError, match=re.escape("`obstacles[0].point`: node 0 starts 1.000000e-6 m")):
+        pc.simulate(problem, end=1.0, courant=0.9)
+
+
+def test_variable_steps_are_taken_as_they_are() -> None:
+    steps = 1e-7 * (1 + np.arange(5) % 2)
+    history = pc.simulate(bar(), steps=steps)
+    assert np.array_equal(history.time, np.concatenate([[0.0], np.cumsum(steps)])) and history.complete
