@@ -43,6 +43,12 @@ class _Measures(TypedDict):
     end: float
     kept_impulse: float | None
 
+class _Outputs(TypedDict):
+    history: Path | None
+    estimate: Path | None
+    instants: int | list[float]
+    fields: bool
+
 @final
 class Progress:
     @property
@@ -119,6 +125,7 @@ class HistoryData:
         displacement: _Floats,
         reaction: _Floats,
         touching: NDArray[np.bool_],
+        options: tuple[str, str, int],
     ) -> HistoryData: ...
     @property
     def problem(self) -> ProblemData: ...
@@ -128,6 +135,7 @@ class HistoryData:
     def count(self) -> int: ...
     @property
     def complete(self) -> bool: ...
+    def options(self) -> tuple[str, str, int]: ...
     @property
     def contact_nodes(self) -> _Integers: ...
     @property
@@ -160,8 +168,7 @@ class EstimateData:
 @final
 class CaseData:
     def __new__(cls, name: str, text: str) -> CaseData: ...
-    def options(self) -> dict[str, Any]: ...
-    def outputs(self) -> tuple[Path | None, Path | None]: ...
+    def outputs(self) -> _Outputs: ...
 
 @final
 class BarImpactData:

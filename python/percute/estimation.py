@@ -373,9 +373,9 @@ def _whole(name: str, value: int | np.integer[Any] | None) -> int | None:
 def estimate(
     history: History,
     *,
-    contact_force: Literal["sharp", "paper"] = "sharp",
-    acceleration: Literal["closest", "rigid", "weak"] = "closest",
-    every: int = 1,
+    contact_force: Literal["sharp", "paper"] | None = None,
+    acceleration: Literal["closest", "rigid", "weak"] | None = None,
+    every: int | None = None,
     threads: int | None = None,
     window: int | None = None,
     instants: int | ArrayLike | None = None,
@@ -388,14 +388,14 @@ def estimate(
     ----------
     history : History
         The steps; at least two instants.
-    contact_force : {"sharp", "paper"}
+    contact_force : {"sharp", "paper"}, optional
         How reactions become admissible contact forces: on the edges that touch throughout a step, statically equivalent; or
-        by the paper's construction, eq. [45] to [50].
-    acceleration : {"closest", "rigid", "weak"}
+        by the paper's construction, eq. [45] to [50]. By default what the history's file or case states, else "sharp".
+    acceleration : {"closest", "rigid", "weak"}, optional
         The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion, or
-        the linear one that does the lumped work.
-    every : int, default: 1
-        The error is sampled at every so many steps, and at the end.
+        the linear one that does the lumped work. By default as stated, else "closest".
+    every : int, optional
+        The error is sampled at every so many steps, and at the end. By default as stated, else at every step.
     threads : int, optional
         How many threads to use, one for each core by default. The result does not depend on it.
     window : int, optional
@@ -428,9 +428,11 @@ def estimate(
         if not np.all(np.isfinite(times) & (times >= 0)):
             raise InputError(f"`instants` is {times}; times must be finite and not negative (s)")
         wanted = times.tolist()
-    every, threads, window = _whole("every", every) or 1, _whole("threads", threads), _whole("window", window)
+    stated = history._data.options()
+    contact_force_, acceleration_ = contact_force or stated[0], acceleration or stated[1]
+    every_, threads, window = _whole("every", every) or stated[2], _whole("threads", threads), _whole("window", window)
     with shown(progress) as tell:
         data = _percute.estimate(
-            history._data, contact_force, acceleration, every, threads, window, wanted, fields, tell
+            history._data, contact_force_, acceleration_, every_, threads, window, wanted, fields, tell
         )
     return Estimate._of(data, history, history._name)

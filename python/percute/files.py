@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from percute import _percute
-from percute.errors import InputError, MissingFileError, StorageError
+from percute.errors import ExistingFileError, InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate
 from percute.history import History, absolute, history_of_the_exception
 from percute.progress import ProgressOption, shown
@@ -70,7 +70,7 @@ def run(
     Returns
     -------
     Estimate
-        With the simulation as its ``history``.
+        With the simulation as its ``history``. An estimate file that the case names in ``[output]`` is written too.
 
     Raises
     ------
@@ -83,11 +83,20 @@ def run(
     """
     name, text = _read(case)
     read = _percute.CaseData(name, text)
-    file = store if store is not None else read.outputs()[0]
+    asked = read.outputs()
+    file = store if store is not None else asked["history"]
+    report = asked["estimate"]
+    # Maps are what an estimate file is for; nobody else asked for them.
+    instants = asked["instants"] if report is not None else None
+    if report is not None and report.exists() and not overwrite:
+        raise ExistingFileError(f"{os.fspath(report)!r} exists already; name another file, or say `overwrite=True`")
     with shown(progress) as tell, history_of_the_exception():
         history = History._of(_percute.simulate_case(read, absolute(file), overwrite, tell), name=name)
         try:
-            return estimate(history, **read.options(), threads=threads, window=window, progress=tell)
+            estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=asked["fields"])
+            if report is not None:
+                estimated.save(report, overwrite=overwrite)
+            return estimated
         except BaseException as error:
             error.history = history  # type: ignore[attr-defined]
             raise

@@ -198,7 +198,7 @@ class History:
         if self.path is not None:
             return _reopen, (str(self.path),)
         arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
-        return _rebuild, (self.problem, self._data.times.tolist(), *arrays)
+        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options())
 
     def __copy__(self) -> History:
         return self
@@ -217,9 +217,10 @@ def _rebuild(
     displacement: NDArray[np.float64],
     reaction: NDArray[np.float64],
     touching: NDArray[np.bool_],
+    options: tuple[str, str, int],
 ) -> History:
     return History._of(
-        _percute.HistoryData.from_arrays(problem._data, times, displacement, reaction, touching), problem
+        _percute.HistoryData.from_arrays(problem._data, times, displacement, reaction, touching, options), problem
     )
 
 

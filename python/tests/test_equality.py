@@ -1,6 +1,7 @@
 """The same bits from Python and from the command, from memory and from a file, for any threads and windows."""
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -93,3 +94,18 @@ def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> 
     assert [each.element for each in estimate.worst_elements()] == [each["element"] for each in worst]
     assert estimate.parts.total == pytest.approx(estimate.sup**2, rel=1e-14)
     assert document["case"] == ""
+
+
+def test_the_options_of_the_case_go_with_its_history(tmp_path: Path) -> None:
+    text = (EXAMPLES / "block.toml").read_text().replace('"closest"', '"weak"').replace("every = 1", "every = 3")
+    text += f'\n[output]\nestimate = "{tmp_path / "error.vtkhdf"}"\ninstants = 4\n'
+    estimate = pc.run(text, store=tmp_path / "history.vtkhdf")
+    stated = {"contact_force": "sharp", "acceleration": "weak", "every": 3}
+    assert estimate.options == stated and estimate.history is not None
+    for history in (pc.open(tmp_path / "history.vtkhdf"), pickle.loads(pickle.dumps(pc.run(text, overwrite=True).history))):
+        assert pc.estimate(history).options == stated
+        assert pc.estimate(history, every=1, acceleration="rigid").options == stated | {"every": 1, "acceleration": "rigid"}
+    written = pc.open(tmp_path / "error.vtkhdf")
+    assert isinstance(written, pc.Estimate) and len(written.maps) == 4 and written.sup == estimate.sup
+    with pytest.raises(pc.ExistingFileError, match=r"error\.vtkhdf"):
+        pc.run(text)

@@ -2,10 +2,9 @@
 
 use crate::any::{Any, each};
 use crate::{door, errors};
-use percute::case::{Case, CaseOf, Source};
+use percute::case::{Case, CaseOf, Instants, Source};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::PathBuf;
 
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]
@@ -27,18 +26,17 @@ impl CaseData {
         })
     }
 
-    /// Arguments of `estimate` that the case states.
-    fn options<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let options = each!(&self.case, case => case.options);
-        let arguments = PyDict::new(py);
-        arguments.set_item("contact_force", options.contact_force.to_string())?;
-        arguments.set_item("acceleration", options.acceleration.to_string())?;
-        arguments.set_item("every", options.every)?;
-        Ok(arguments)
-    }
-
-    /// The files that the case asks for: history and estimate.
-    fn outputs(&self) -> (Option<PathBuf>, Option<PathBuf>) {
-        each!(&self.case, case => (case.output.history.clone(), case.output.estimate.clone()))
+    /// The files that the case asks for: history and estimate, and what the latter holds.
+    fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let output = each!(&self.case, case => &case.output);
+        let asked = PyDict::new(py);
+        asked.set_item("history", output.history.as_ref())?;
+        asked.set_item("estimate", output.estimate.as_ref())?;
+        match &output.instants {
+            Instants::Count(count) => asked.set_item("instants", count)?,
+            Instants::Times(times) => asked.set_item("instants", times)?,
+        }
+        asked.set_item("fields", output.fields)?;
+        Ok(asked)
     }
 }

@@ -90,10 +90,7 @@ pub(crate) fn estimate(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
-    let unknown = |name: &str, error| errors::input(py, &format!("`{name}`: {error}"));
-    let contact_force = contact_force.parse().map_err(|error| unknown("contact_force", error))?;
-    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
-    let options = Options { contact_force, acceleration, every, threads, window };
+    let options = Options { threads, window, ..options(py, contact_force, acceleration, every)? };
     let instants = instants.map(Instants::from);
     Ok(EstimateData {
         made: match &history.run {
@@ -101,6 +98,14 @@ pub(crate) fn estimate(
             Any::Plane(run) => Any::Plane(estimate_one(py, run, options, instants.as_ref(), fields, progress)?),
         },
     })
+}
+
+/// Options of an estimate by their names.
+pub(crate) fn options(py: Python<'_>, contact_force: &str, acceleration: &str, every: usize) -> PyResult<Options> {
+    let unknown = |name: &str, error| errors::input(py, &format!("`{name}`: {error}"));
+    let contact_force = contact_force.parse().map_err(|error| unknown("contact_force", error))?;
+    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
+    Ok(Options { contact_force, acceleration, every, ..Options::default() })
 }
 
 fn estimate_one<const D: usize, const N: usize>(

@@ -4,12 +4,13 @@ use crate::any::{AnyProblem, each, map};
 use crate::door::Watch;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
-use crate::{door, errors, view};
+use crate::{door, errors, estimate, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
 use pyo3::prelude::*;
@@ -34,9 +35,12 @@ impl HistoryData {
         displacement: PyReadonlyArray3<'_, f64>,
         reaction: PyReadonlyArray3<'_, f64>,
         touching: PyReadonlyArray2<'_, bool>,
+        options: (String, String, usize),
     ) -> PyResult<Self> {
+        let (contact_force, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::time(py, &error))?;
         let given = Given {
+            options: estimate::options(py, &contact_force, &acceleration, every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: reaction.as_slice()?,
@@ -68,6 +72,12 @@ impl HistoryData {
     #[getter]
     fn complete(&self) -> bool {
         each!(&self.run, run => run.count() == run.times().instants().len())
+    }
+
+    /// Arguments of `estimate` that it takes unless told otherwise.
+    fn options(&self) -> (String, String, usize) {
+        let options = each!(&self.run, run => run.options);
+        (options.contact_force.to_string(), options.acceleration.to_string(), options.every)
     }
 
     /// Nodes of the rows of reactions and touching status.
@@ -185,6 +195,7 @@ fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyD
 
 /// Arrays of a history.
 struct Given<'a> {
+    options: Options,
     count: usize,
     displacement: &'a [f64],
     reaction: &'a [f64],
@@ -212,7 +223,7 @@ impl Given<'_> {
             };
             history.push(&step).map_err(|error| errors::input(py, &error.to_string()))?;
         }
-        Ok(Run::new(problem.clone(), history, None))
+        Ok(Run::new(problem.clone(), history, self.options, None))
     }
 }
 

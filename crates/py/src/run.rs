@@ -7,6 +7,7 @@ use percute_core::dynamics::{Balance, Balancing, Kinematics};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::{HistoryFile, HistorySource};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -16,6 +17,8 @@ use thiserror::Error;
 pub(crate) struct Run<const D: usize, const N: usize> {
     pub(crate) problem: Arc<Problem<D, N>>,
     pub(crate) steps: Steps<D, N>,
+    /// Options that its estimate takes unless told otherwise.
+    pub(crate) options: Options,
     balance: OnceLock<Vec<Balance>>,
 }
 
@@ -37,16 +40,21 @@ pub(crate) struct Motion<const D: usize> {
 }
 
 impl<const D: usize, const N: usize> Run<D, N> {
-    pub(crate) fn new(problem: Arc<Problem<D, N>>, history: History<D>, balance: Option<Vec<Balance>>) -> Self {
+    pub(crate) fn new(
+        problem: Arc<Problem<D, N>>,
+        history: History<D>,
+        options: Options,
+        balance: Option<Vec<Balance>>,
+    ) -> Self {
         let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
-        Self { problem, steps: Steps::Memory(history), balance }
+        Self { problem, steps: Steps::Memory(history), options, balance }
     }
 
     /// A history in a file.
     pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
         let source = stored.file.source(&stored.problem)?;
         let steps = Steps::File(stored.file, source);
-        Ok(Self { problem: Arc::new(stored.problem), steps, balance: OnceLock::new() })
+        Ok(Self { problem: Arc::new(stored.problem), steps, options: stored.options, balance: OnceLock::new() })
     }
 
     /// The steps, one after the other.

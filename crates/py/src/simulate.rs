@@ -38,8 +38,8 @@ pub(crate) fn simulate(
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
     match &problem.problem {
-        Any::Bar(problem) => one(py, problem, &times, store, progress, Any::Bar),
-        Any::Plane(problem) => one(py, problem, &times, store, progress, Any::Plane),
+        Any::Bar(problem) => one(py, problem, &times, Options::default(), store, progress, Any::Bar),
+        Any::Plane(problem) => one(py, problem, &times, Options::default(), store, progress, Any::Plane),
     }
 }
 
@@ -55,8 +55,8 @@ pub(crate) fn simulate_case(
     let (source, options) = each!(&case.case, case => (case.source.clone(), case.options));
     let store = store.map(|path| Store::new(path, overwrite, options, Some(source)));
     match &case.case {
-        Any::Bar(case) => one(py, &Arc::new(case.problem.clone()), &case.times, store, progress, Any::Bar),
-        Any::Plane(case) => one(py, &Arc::new(case.problem.clone()), &case.times, store, progress, Any::Plane),
+        Any::Bar(case) => one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, Any::Bar),
+        Any::Plane(case) => one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, Any::Plane),
     }
 }
 
@@ -117,11 +117,12 @@ fn one<const D: usize, const N: usize>(
     py: Python<'_>,
     problem: &Arc<Problem<D, N>>,
     times: &TimeGrid,
+    options: Options,
     store: Option<Store>,
     progress: Option<&Bound<'_, PyAny>>,
     either: fn(Arc<Run<D, N>>) -> AnyRun,
 ) -> PyResult<HistoryData> {
-    let Some(store) = store else { return into_memory(py, problem, times, progress, either) };
+    let Some(store) = store else { return into_memory(py, problem, times, options, progress, either) };
     let work = {
         let (problem, times, store) = (problem.clone(), times.clone(), store.clone());
         move |watch| into_file(&problem, &times, &store, watch)
@@ -154,6 +155,7 @@ fn into_memory<const D: usize, const N: usize>(
     py: Python<'_>,
     problem: &Arc<Problem<D, N>>,
     times: &TimeGrid,
+    options: Options,
     progress: Option<&Bound<'_, PyAny>>,
     either: fn(Arc<Run<D, N>>) -> AnyRun,
 ) -> PyResult<HistoryData> {
@@ -164,7 +166,10 @@ fn into_memory<const D: usize, const N: usize>(
     };
     let outcome = door::through(py, progress, work);
     let kept = growing.take();
-    let data = |history, balance| HistoryData { run: either(Arc::new(Run::new(problem.clone(), history, balance))) };
+    let data = |history, balance| {
+        let run = Run::new(problem.clone(), history, options, balance);
+        HistoryData { run: either(Arc::new(run)) }
+    };
     match outcome.and_then(|done| done.map_err(|error| errors::simulation(py, &error))) {
         Ok(simulation) => kept
             .map(|history| data(history, Some(simulation.balance_over_time)))
