@@ -182,8 +182,13 @@ pub enum FileCause {
         node: usize,
     },
     /// Instants that are no time grid.
-    #[error("`VTKHDF/Steps/Values`: {0}")]
-    Times(#[from] TimeError),
+    #[error("`{name}`: {cause}")]
+    Times {
+        /// The data set.
+        name: String,
+        /// What is wrong.
+        cause: TimeError,
+    },
     /// A mesh that cannot be used.
     #[error("the mesh: {0}")]
     Mesh(#[from] MeshError),

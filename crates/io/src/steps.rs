@@ -3,23 +3,27 @@
 use crate::create::refused;
 use crate::error::FileCause;
 use crate::write::{attribute, group, numbers, unit};
-use hdf5::Group;
+use hdf5::dataset::AllocTime;
+use hdf5::{Extent, Group};
 
 /// A name and how many rows of it an instant has; none for a field that does not change.
 type Field<'a> = (&'a str, usize);
 
-/// Makes `VTKHDF/Steps`, of which VTK reads the first `valid` instants.
+/// Makes `VTKHDF/Steps` for all these instants; VTK sees the first only until more are noted.
 pub(crate) fn write_steps(
     vtk: &Group,
     instants: &[f64],
-    valid: usize,
     points: &[Field<'_>],
     cells: &[Field<'_>],
 ) -> Result<(), FileCause> {
     let steps = group(vtk, "Steps")?;
-    attribute(&steps, "NSteps", valid as i64)?;
     let count = instants.len();
-    unit(&numbers(&steps, "Values", &[count], instants)?, "s")?;
+    attribute(&steps, "NSteps", 1_i64)?;
+    // In one chunk with room for all: what grows is the number of those that count.
+    let values = steps.new_dataset::<f64>().shape(Extent::new(count, Some(count))).chunk([count]);
+    let values = values.alloc_time(Some(AllocTime::Early)).create("Values").map_err(|error| refused(&error))?;
+    values.resize([1]).and_then(|()| values.write_raw(&instants[..1])).map_err(|error| refused(&error))?;
+    unit(&values, "s")?;
     let same = |value: i64| vec![value; count];
     for name in ["PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"] {
         numbers(&steps, name, &[count], &same(0))?;
@@ -38,11 +42,15 @@ pub(crate) fn write_steps(
     Ok(())
 }
 
-/// Notes how many instants VTK may read.
-pub(crate) fn note_steps(file: &hdf5::File, count: usize) -> Result<(), FileCause> {
-    let noted = file
-        .group("VTKHDF/Steps")
-        .and_then(|steps| steps.attr("NSteps"))
-        .and_then(|attribute| attribute.write_scalar(&(count as i64)));
-    noted.map_err(|error| refused(&error))
+/// Notes which instants VTK may read. It wants just as many `Values` as `NSteps` says: with more, it writes beyond
+/// its memory.
+pub(crate) fn note_steps(vtk: &Group, instants: &[f64]) -> Result<(), FileCause> {
+    let note = || {
+        let steps = vtk.group("Steps")?;
+        let values = steps.dataset("Values")?;
+        values.resize([instants.len()])?;
+        values.write_raw(instants)?;
+        steps.attr("NSteps")?.write_scalar(&(instants.len() as i64))
+    };
+    note().map_err(|error: hdf5::Error| refused(&error))
 }

@@ -4,7 +4,7 @@ use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{in_space, write_grid, write_groups};
-use crate::steps::write_steps;
+use crate::steps::{note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
 use percute_core::problem::Problem;
@@ -113,7 +113,8 @@ impl<const D: usize, const N: usize> Work<'_, D, N> {
             self.fields(&group(vtk, "PointData")?, nodes, point_fields(), &mut point_offsets)?;
         }
         let instants: Vec<f64> = maps.iter().map(|map| map.time).collect();
-        write_steps(vtk, &instants, instants.len(), &point_offsets, &cell_offsets)
+        write_steps(vtk, &instants, &point_offsets, &cell_offsets)?;
+        note_steps(vtk, &instants)
     }
 
     fn fields(

@@ -40,7 +40,7 @@ fn contents<const D: usize, const N: usize>(
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let mesh = read::<D, N>(opened)?;
     let nodes = mesh.node_count();
-    let times = times(&vtk)?;
+    let times = times(&vtk, &ours)?;
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
     let (initial_displacement, given) = fields::<D>(&vtk, instants, nodes)?;
@@ -85,10 +85,14 @@ fn fields<const D: usize>(
     Ok((initial, [velocity, acceleration]))
 }
 
-fn times(vtk: &Part<'_>) -> Result<TimeGrid, FileCause> {
-    let values = vtk.group("Steps")?.data("Values")?;
+/// All instants: of a file that VTK may not read to its end yet, they are beside those that it sees.
+fn times(vtk: &Part<'_>, ours: &Part<'_>) -> Result<TimeGrid, FileCause> {
+    let values = match ours.optional("times")? {
+        Some(times) => times,
+        None => vtk.group("Steps")?.data("Values")?,
+    };
     values.expect_dimensions(1, "(instants)")?;
-    Ok(TimeGrid::from_instants(values.floats()?)?)
+    TimeGrid::from_instants(values.floats()?).map_err(|cause| FileCause::Times { name: values.name, cause })
 }
 
 /// Number of whole instants, and whether no more will come.
@@ -99,7 +103,7 @@ fn written(vtk: &Part<'_>, ours: &Part<'_>, instants: usize) -> Result<(usize, b
         if steps.has_attribute("NSteps") {
             let told = steps.integer_attribute("NSteps")?;
             if told != instants as i64 {
-                let detail = format!("{told} steps, but `VTKHDF/Steps/Values` has {instants}");
+                let detail = format!("{told} steps, but there are {instants} instants");
                 return Err(FileCause::Value { name: "VTKHDF/Steps.NSteps".to_string(), detail });
             }
         }

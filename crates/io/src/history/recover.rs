@@ -46,7 +46,11 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
 pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
     let _alone = alone();
     let file = writable(path)?;
-    note_steps(&file, count.max(1)).map_err(|cause| cause.to_string())?;
+    let times = file.dataset("percute/times").and_then(|times| times.read_raw::<f64>());
+    let times = times.map_err(|error| detail(&error))?;
+    let vtk = file.group("VTKHDF").map_err(|error| detail(&error))?;
+    note_steps(&vtk, times.get(..count.max(1)).unwrap_or(&times)).map_err(|cause| cause.to_string())?;
+    drop(vtk);
     file.close().map_err(|error| detail(&error))
 }
 
