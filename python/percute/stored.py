@@ -3,89 +3,121 @@
 from __future__ import annotations
 
 import json
+import math
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from percute import _percute
+from percute.errors import FileFormatError
 from percute.mesh import Mesh
 
 __all__ = ["StoredEstimate"]
 
 PARTS = ("kinetic", "elastic", "contact")
 MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean")
+FIELDS = {
+    "accumulated": "error",
+    "admissible_displacement": "displacement",
+    "admissible_velocity": "velocity",
+    "admissible_acceleration": "acceleration",
+    "admissible_stress": "stress",
+    "compatible_stress": "compatible_stress",
+}
+"""Data sets, and what they are called here."""
 
 
-def _file(path: str) -> Any:
-    # Few need it, and it takes as long to import as all of percute.
-    import h5py
+class _Report:
+    """The report in a file; what it lacks is an error that says so."""
 
-    return h5py.File(path)
+    def __init__(self, path: str, text: str) -> None:
+        self.path = path
+        try:
+            self.document = json.loads(text)
+        except (ValueError, RecursionError) as error:
+            raise FileFormatError(f"{path}: `percute/report` is no JSON: {error}") from None
 
+    def part(self, *keys: str) -> Any:
+        value = self.document
+        for key in keys:
+            if not isinstance(value, dict) or key not in value:
+                raise self.wrong(keys, "is missing")
+            value = value[key]
+        return value
 
-def _whole(group: Any, name: str, *shape: int) -> NDArray[Any]:
-    array: NDArray[Any] = group[name][()].reshape(shape or (-1,))
-    array.flags.writeable = False
-    return array
+    def wrong(self, keys: tuple[str, ...], what: str) -> FileFormatError:
+        return FileFormatError(f"{self.path}: `percute/report`: the key {'.'.join(keys)!r} {what}")
+
+    def number(self, *keys: str) -> float:
+        value = self.part(*keys)
+        if value is None:  # JSON has neither infinity nor NaN.
+            return math.nan
+        if type(value) not in (int, float) or abs(value) > 1e308:
+            raise self.wrong(keys, "must be a number")
+        return float(value)
+
+    def of(self, kind: type, *keys: str) -> Any:
+        value = self.part(*keys)
+        if type(value) is not kind:
+            raise self.wrong(keys, f"must be of the JSON type that Python calls {kind.__name__}")
+        return value
 
 
 class StoredEstimate:
-    """What a file says, in the words of `percute._percute.EstimateData`; the file has been found whole."""
+    """What a file says, in the words of `percute._percute.EstimateData`; all is checked at once, but the maps read later."""
 
     def __init__(self, path: str) -> None:
         self.path = path
-        with _file(path) as file:
-            report = file["percute/report"].asstr()[()]
-        self.text: str = report
-        self.report: dict[str, Any] = json.loads(report)
+        self._data = _percute.EstimateFileData(path)
+        report = _Report(path, self._data.report())
+        self._measures: dict[str, Any] = {name: report.number("error", name) for name in MEASURES}
+        self._measures |= {name: report.number(name) for name in ("time_of_sup", "end")}
+        self._measures["steps"] = report.of(int, "steps")
+        none = report.part("kept_impulse") is None
+        self._measures["kept_impulse"] = None if none else report.number("kept_impulse")
+        self._parts = [report.number("parts", name) for name in PARTS]
+        self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
+        self._given = [report.of(bool, "given", name) for name in ("velocity", "acceleration")]
+        self._options = [report.of(str, "options", name) for name in ("contact_force", "acceleration")]
+        self._every: int = report.of(int, "options", "every")
 
     @cached_property
     def mesh(self) -> Mesh:
         """The mesh."""
-        with _file(self.path) as file:
-            grid, own = file["VTKHDF"], file["percute"]
-            dimension = int(own.attrs["dimension"])
-            cells = _whole(grid, "Connectivity", -1, dimension + 1)
-            points = grid["Points"][:, :dimension]
-            groups = {name: rows[()] for name, rows in own.get("facet_groups", {}).items()}
-            elements = {name: numbers[()] for name, numbers in own.get("element_groups", {}).items()}
-        return Mesh(points, cells, groups, elements)
+        return Mesh._of(self._data.mesh())
 
     def measures(self) -> dict[str, Any]:
         """Single numbers."""
-        single = {name: self.report[name] for name in ("time_of_sup", "steps", "end", "kept_impulse")}
-        return {name: self.report["error"][name] for name in MEASURES} | single
+        return self._measures
 
     def parts(self) -> tuple[float, float, float]:
         """Parts of η at the time of the sup (J)."""
-        kinetic, elastic, contact = (self.report["parts"][name] for name in PARTS)
+        kinetic, elastic, contact = self._parts
         return kinetic, elastic, contact
 
     def over_time(self) -> dict[str, NDArray[np.float64]]:
         """η, its parts and d at all samples."""
-        with _file(self.path) as file:
-            columns = file["percute/over_time"]
-            return {name: _whole(columns, name) for name in ("time", *PARTS, "total", "reference")}
+        return self._data.over_time()
 
     def by_element(self) -> NDArray[np.float64]:
         """e_E (J^½)."""
-        with _file(self.path) as file:
-            return _whole(file, "VTKHDF/CellData/by_element")
+        return self._data.by_element()
 
     def residuals(self) -> dict[str, float]:
         """Largest residuals."""
-        residuals: dict[str, float] = self.report["residuals"]
-        return residuals
+        return self._residuals
 
     def given(self) -> tuple[bool, bool]:
         """Whether the history brought velocities, and accelerations."""
-        return self.report["given"]["velocity"], self.report["given"]["acceleration"]
+        velocity, acceleration = self._given
+        return velocity, acceleration
 
     def options(self) -> tuple[str, str, int]:
         """The choices it was made with."""
-        options = self.report["options"]
-        return options["contact_force"], options["acceleration"], options["every"]
+        contact_force, acceleration = self._options
+        return contact_force, acceleration, self._every
 
     def worst_elements(self, count: int) -> list[tuple[int, float]]:
         """The elements that contribute most, largest first; of equal ones the one with the lower number."""
@@ -95,27 +127,17 @@ class StoredEstimate:
 
     def maps(self) -> list[dict[str, Any]]:
         """What each element contributes at the instants of the file."""
-        with _file(self.path) as file:
-            grid = file["VTKHDF"]
-            if "Steps" not in grid:
-                return []
-            times = grid["Steps/Values"][()]
-            count, d = len(times), int(file["percute"].attrs["dimension"])
-            cells = grid["CellData"]
-            columns = {name: _whole(cells, name, count, -1) for name in (*PARTS, "total")}
-            columns["error"] = _whole(cells, "accumulated", count, -1)
-            if "admissible_stress" in cells:
-                points = grid["PointData"]
-                columns["displacement"] = _whole(points, "admissible_displacement", count, -1, 3)[..., :d]
-                columns["velocity"] = _whole(points, "admissible_velocity", count, -1, 3)[..., :d]
-                columns["acceleration"] = _whole(cells, "admissible_acceleration", count, -1, 3)[..., :d]
-                columns["stress"] = _whole(cells, "admissible_stress", count, -1, d, d)
-                columns["compatible_stress"] = _whole(cells, "compatible_stress", count, -1, d, d)
-        return [
-            {"time": float(time), **{name: column[i] for name, column in columns.items()}}
-            for i, time in enumerate(times)
-        ]
+        times, columns = self._data.maps()
+        d = self.mesh.dimension
+        found = {}
+        for name, column in columns.items():
+            if name.endswith("stress"):
+                column = column.reshape(*column.shape[:2], d, d)
+            elif name.startswith("admissible"):
+                column = column[..., :d]
+            found[FIELDS.get(name, name)] = column
+        return [{"time": time, **{name: column[i] for name, column in found.items()}} for i, time in enumerate(times)]
 
     def to_json(self, name: str) -> str:
         """The document as it is in the file."""
-        return self.text
+        return self._data.report()

@@ -14,7 +14,7 @@ use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
-use percute_io::{Kind, Overwrite, estimate_file, kind};
+use percute_io::{Overwrite, estimate_file};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -164,16 +164,6 @@ impl<const D: usize, const N: usize> Made<D, N> {
     }
 }
 
-/// Whether a file holds an estimate, which is then known to be whole; else it may hold a history.
-#[pyfunction]
-pub(crate) fn is_estimate(py: Python<'_>, path: PathBuf) -> PyResult<bool> {
-    let found = door::through(py, None, move |_| match kind(&path)? {
-        Kind::Estimate => estimate_file::open(&path).map(|_| true),
-        _ => Ok(false),
-    })?;
-    found.map_err(|error| errors::file(py, &error))
-}
-
 #[pymethods]
 impl EstimateData {
     fn problem(&self) -> ProblemData {
@@ -223,20 +213,7 @@ impl EstimateData {
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let quantities: view::Columns<Sample, 6> = [
-            ("time", |s| s.time),
-            ("kinetic", |s| s.parts.kinetic),
-            ("elastic", |s| s.parts.elastic),
-            ("contact", |s| s.parts.contact),
-            ("total", |s| s.parts.total()),
-            ("reference", |s| s.reference),
-        ];
-        let columns = PyDict::new(py);
-        let samples = each!(&self.made, m => &m.estimate.over_time);
-        for (name, quantity) in quantities {
-            columns.set_item(name, view::column(py, samples, quantity))?;
-        }
-        Ok(columns)
+        columns(py, each!(&self.made, m => &m.estimate.over_time))
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -292,6 +269,23 @@ impl EstimateData {
         });
         text.map_err(|message| errors::percute_error(py, &message))
     }
+}
+
+/// Samples as arrays, by name.
+pub(crate) fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
+    let quantities: view::Columns<Sample, 6> = [
+        ("time", |s| s.time),
+        ("kinetic", |s| s.parts.kinetic),
+        ("elastic", |s| s.parts.elastic),
+        ("contact", |s| s.parts.contact),
+        ("total", |s| s.parts.total()),
+        ("reference", |s| s.reference),
+    ];
+    let columns = PyDict::new(py);
+    for (name, quantity) in quantities {
+        columns.set_item(name, view::column(py, samples, quantity))?;
+    }
+    Ok(columns)
 }
 
 /// One map.

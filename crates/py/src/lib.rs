@@ -14,6 +14,7 @@ mod restore;
 mod run;
 mod simulate;
 mod statement;
+mod stored;
 mod time;
 mod view;
 
@@ -28,7 +29,7 @@ mod _percute {
     #[pymodule_export]
     use super::door::ProgressNow;
     #[pymodule_export]
-    use super::estimate::{EstimateData, estimate, is_estimate};
+    use super::estimate::{EstimateData, estimate};
     #[pymodule_export]
     use super::exact::BarImpactData;
     #[pymodule_export]
@@ -39,6 +40,8 @@ mod _percute {
     use super::problem::ProblemData;
     #[pymodule_export]
     use super::simulate::{open_history, simulate, simulate_case};
+    #[pymodule_export]
+    use super::stored::{EstimateFileData, is_estimate};
 
     /// Adds the constants.
     #[pymodule_init]

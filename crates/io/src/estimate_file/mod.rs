@@ -1,7 +1,9 @@
 //! Estimates in files.
 
+mod maps;
 mod open;
 mod write;
 
-pub use open::{EstimateFile, open};
+pub use maps::{Field, Maps, maps};
+pub use open::{AnyMesh, EstimateFile, open};
 pub use write::write;

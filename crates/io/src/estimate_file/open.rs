@@ -1,12 +1,24 @@
-//! Reads back what an estimate file says; its fields are for ParaView and h5py.
+//! Reads back what an estimate file says, but for its maps; those are checked.
 
+use super::maps::{Size, fields, has_admissible, instants};
 use crate::error::{FileCause, FileError};
 use crate::history::{case, provenance};
 use crate::kind::Kind;
+use crate::mesh;
 use crate::read::{Opened, Part, reading};
 use crate::write::{Case, Provenance};
+use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_estimator::{Parts, Sample};
 use std::path::Path;
+
+/// A mesh of either dimension.
+#[derive(Clone, Debug)]
+pub enum AnyMesh {
+    /// Of a bar.
+    Bar(BarMesh),
+    /// Of a plane body.
+    Plane(TriangleMesh),
+}
 
 /// What an estimate file holds.
 #[derive(Clone, Debug)]
@@ -27,6 +39,8 @@ pub struct EstimateFile {
     pub nodes: usize,
     /// Number of elements.
     pub elements: usize,
+    /// The mesh.
+    pub mesh: AnyMesh,
     /// Instants of the maps (s).
     pub instants: Vec<f64>,
     /// Whether the maps hold admissible fields.
@@ -52,19 +66,19 @@ pub fn open(path: impl AsRef<Path>) -> Result<EstimateFile, FileError> {
 fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
-    let dimension = ours.integer_attribute("dimension")?;
-    if !(1..=2).contains(&dimension) {
-        let detail = format!("{dimension} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
-        return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
-    }
-    let points = vtk.data("Points")?;
-    points.expect_dimensions(2, "(nodes, 3)")?;
-    let by_element = vtk.group("CellData")?.data("by_element")?;
-    by_element.expect_dimensions(1, "(elements)")?;
-    let instants = match vtk.optional_group("Steps")? {
-        Some(steps) => column(&steps, "Values", None)?,
-        None => Vec::new(),
+    let [dimension, nodes, elements] = size(&vtk, &ours)?;
+    let mesh = match dimension {
+        1 => AnyMesh::Bar(mesh::read(opened)?),
+        _ => AnyMesh::Plane(mesh::read(opened)?),
     };
+    let count = match &mesh {
+        AnyMesh::Bar(mesh) => mesh.element_count(),
+        AnyMesh::Plane(mesh) => mesh.element_count(),
+    };
+    let by_element = vtk.group("CellData")?.data("by_element")?;
+    by_element.expect(&[count], "one for each element")?;
+    let instants = instants(&vtk)?;
+    fields(&vtk, [dimension, nodes, elements], instants.len())?;
     let text = |name: &str| -> Result<String, FileCause> {
         let missing = || FileCause::MissingPart { name: format!("percute/{name}") };
         ours.optional_text(name)?.ok_or_else(missing)
@@ -75,20 +89,37 @@ fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
         statement: text("problem")?,
         case: case(&ours)?,
         report: text("report")?,
-        dimension: dimension as usize,
-        nodes: points.shape[0],
-        elements: by_element.shape[0],
+        dimension,
+        nodes,
+        elements,
+        mesh,
+        fields: !instants.is_empty() && has_admissible(&vtk)?,
         instants,
-        fields: vtk.optional_group("PointData")?.is_some(),
         over_time: over_time(&ours.group("over_time")?)?,
         by_element: by_element.floats()?,
     })
+}
+
+/// How large all is.
+pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
+    let dimension = ours.integer_attribute("dimension")?;
+    if !(1..=2).contains(&dimension) {
+        let detail = format!("{dimension} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
+        return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
+    }
+    let points = vtk.data("Points")?;
+    points.expect_dimensions(2, "(nodes, 3)")?;
+    let by_element = vtk.group("CellData")?.data("by_element")?;
+    by_element.expect_dimensions(1, "(elements)")?;
+    Ok([dimension as usize, points.shape[0], by_element.shape[0]])
 }
 
 fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {
     let time = column(group, "time", None)?;
     let of = |name| column(group, name, Some(time.len()));
     let (kinetic, elastic, contact, reference) = (of("kinetic")?, of("elastic")?, of("contact")?, of("reference")?);
+    // The sum of the parts, which is made again.
+    of("total")?;
     let sample = |k: usize| {
         let parts = Parts { kinetic: kinetic[k], elastic: elastic[k], contact: contact[k] };
         Sample { time: time[k], parts, reference: reference[k] }
