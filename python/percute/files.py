@@ -8,7 +8,7 @@ from pathlib import Path
 from percute import _percute
 from percute.checks import encodable, flag, text, wrong
 from percute.checks import path as file_name
-from percute.errors import ExistingFileError, InputError, MissingFileError, StorageError
+from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate, pace
 from percute.history import History, absolute, history_of_the_exception
 from percute.progress import ProgressOption, shown
@@ -78,25 +78,24 @@ def run(
     Raises
     ------
     InputError
-        The case is wrong; the message has the line.
-    MissingFileError, StorageError
-        The case cannot be read, or the history cannot be written.
+        The case is wrong; the message has the line. Or two of its files and the case are one.
+    ExistingFileError, MissingFileError, StorageError
+        A file exists already; the case cannot be read, or the files of history and estimate cannot be written. All of them are
+        checked before any work.
     SimulationError, EstimateError, KeyboardInterrupt
         As for `simulate` and `estimate`.
     """
     told = None if store is None else file_name("store", store)
     replace, (threads, window) = flag("overwrite", overwrite), pace(threads, window)
     with shown(progress) as tell, history_of_the_exception():
-        name, content = _read(case)
+        name, content, source = _read(case)
         read = _percute.CaseData(name, content)
-        asked = read.outputs()
-        file = told if told is not None else asked["history"]
-        report = asked["estimate"]
+        asked = read.outputs(source, told, replace)
+        # The working directory may change in a callback.
+        file, report = absolute(asked["history"]), absolute(asked["estimate"])
         # Maps are what an estimate file is for; nobody else asked for them.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
-        if report is not None and report.exists() and not replace:
-            raise ExistingFileError(f"{os.fspath(report)!r} exists already; name another file, or say `overwrite=True`")
-        history = History._of(_percute.simulate_case(read, absolute(file), replace, tell), name=name)
+        history = History._of(_percute.simulate_case(read, file, replace, tell), name=name)
         try:
             estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=fields)
             if report is not None:
@@ -107,15 +106,15 @@ def run(
             raise
 
 
-def _read(case: str | os.PathLike[str]) -> tuple[str, str]:
-    """Name and text of a case: a text has several lines, the name of a file has one."""
+def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
+    """Name, text and file of a case: a text has several lines, the name of a file has one."""
     if isinstance(case, str) and "\n" in case:
-        return "case", text("case", case)
+        return "case", text("case", case), None
     if not isinstance(case, str | os.PathLike):
         raise wrong("case", case, "the name of a case file, or its text")
     path = Path(file_name("case", case))
     try:
-        return encodable(os.fspath(path)), path.read_text(encoding="utf-8")
+        return encodable(os.fspath(path)), path.read_text(encoding="utf-8"), os.fspath(path)
     except FileNotFoundError:
         raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}") from None
     except UnicodeDecodeError:

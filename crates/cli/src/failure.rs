@@ -34,6 +34,14 @@ pub enum Failure {
     /// An argument that cannot be met.
     #[error("{0}")]
     Argument(String),
+    /// A file that is not to be lost.
+    #[error("{what} {file}: the file exists already; give another name, or --force to replace it", file = .file.display())]
+    Exists {
+        /// The argument or key that names it.
+        what: &'static str,
+        /// The file.
+        file: PathBuf,
+    },
     /// Simulation or estimate failed.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -71,9 +79,12 @@ impl Failure {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Case(_) | Self::Unreadable { .. } | Self::Argument(_) | Self::History { .. } | Self::Unsayable(_) => {
-                BAD_INPUT
-            }
+            Self::Case(_)
+            | Self::Unreadable { .. }
+            | Self::Argument(_)
+            | Self::Exists { .. }
+            | Self::History { .. }
+            | Self::Unsayable(_) => BAD_INPUT,
             Self::File(error) => file_code(&error.cause),
             Self::Run(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
         }

@@ -11,6 +11,7 @@ mod command;
 mod failure;
 pub mod history;
 pub mod info;
+pub mod outputs;
 pub mod picture;
 mod process;
 mod progress;

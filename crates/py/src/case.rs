@@ -3,8 +3,10 @@
 use crate::any::{Any, each};
 use crate::{door, errors};
 use percute::case::{Case, CaseOf, Instants, Source};
+use percute::outputs;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
 
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]
@@ -26,12 +28,26 @@ impl CaseData {
         })
     }
 
-    /// The files that the case asks for: history and estimate, and what the latter holds.
-    fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    /// The files of a run, checked before any work: the history in `store` or as the case says, and the estimate,
+    /// with what it holds. `case` is the case file.
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        case: Option<PathBuf>,
+        store: Option<PathBuf>,
+        overwrite: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let output = each!(&self.case, case => &case.output);
+        let chosen = [
+            outputs::chosen(["`store`", "[output] history"], store.as_deref(), output.history.as_deref()),
+            outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
+        ];
+        let checked = outputs::check(case.as_deref().map(|file| ("case file", file)), &chosen, None, overwrite);
+        checked.map_err(|error| errors::output(py, &error))?;
         let asked = PyDict::new(py);
-        asked.set_item("history", output.history.as_ref())?;
-        asked.set_item("estimate", output.estimate.as_ref())?;
+        for (name, file) in ["history", "estimate"].into_iter().zip(chosen) {
+            asked.set_item(name, file.map(|output| output.file))?;
+        }
         match &output.instants {
             Instants::Count(count) => asked.set_item("instants", count)?,
             Instants::Times(times) => asked.set_item("instants", times)?,

@@ -156,6 +156,19 @@ pub(crate) fn failure(py: Python<'_>, error: &Failure) -> PyErr {
     }
 }
 
+/// A file that is not to be made.
+pub(crate) fn output(py: Python<'_>, error: &Failure) -> PyErr {
+    match error {
+        Failure::Exists { what, file } => {
+            let file = file.display();
+            let message = format!("{what} {file}: the file exists already; give another name, or overwrite=True");
+            exception(py, "ExistingFileError", &message)
+        }
+        Failure::Unwritable { .. } => exception(py, "StorageError", &error.to_string()),
+        other => input(py, &other.to_string()),
+    }
+}
+
 /// A case file that is wrong.
 pub(crate) fn case(py: Python<'_>, error: &CaseError) -> PyErr {
     input(py, &error.to_string())

@@ -1,12 +1,13 @@
 //! `percute estimate`.
 
 use super::Console;
-use super::outputs::{Output, check, with_work};
+use super::outputs::with_work;
 use super::result::{Given, give};
 use super::run::request;
 use crate::args::EstimateArguments;
 use crate::failure::Failure;
 use crate::history::{AnyStored, Stored, open};
+use crate::outputs::{Output, check};
 use crate::picture::Drawn;
 use crate::progress::Watch;
 use crate::report::Report;
@@ -17,7 +18,7 @@ use std::time::Instant;
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     let output = arguments.output.as_deref().map(|file| Output { what: "--output", file });
     let picture = arguments.print.picture.as_deref();
-    check(("history", &arguments.history), &[output], picture, arguments.work.force)?;
+    check(Some(("history", &arguments.history)), &[output], picture, arguments.work.force)?;
     match open(&arguments.history)? {
         AnyStored::Bar(stored) => estimate(&stored, output, arguments, console),
         AnyStored::Plane(stored) => estimate(&stored, output, arguments, console),

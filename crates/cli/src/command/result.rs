@@ -1,10 +1,11 @@
 //! What a run and the estimate of a history have in common: report, picture, estimate file.
 
 use super::Console;
-use super::outputs::{Output, overwrite, taken};
+use super::outputs::{overwrite, taken};
 use crate::args::{PrintArguments, WorkArguments};
 use crate::case::statement;
 use crate::failure::{DONE, Failure, INTERRUPTED};
+use crate::outputs::Output;
 use crate::picture::{self, Drawn};
 use crate::report::{Report, summary};
 use percute_core::problem::Problem;

@@ -1,12 +1,13 @@
 //! `percute run`.
 
-use super::outputs::{Output, begin_history, check, chosen, with_work};
+use super::outputs::{begin_history, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
 use crate::args::RunArguments;
 use crate::case::{Case, CaseOf};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::history::stored_case;
+use crate::outputs::{Output, check, chosen};
 use crate::picture::Drawn;
 use crate::progress::Watch;
 use crate::report::{Report, many_steps};
@@ -32,7 +33,7 @@ where
 {
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
-    check(("case file", &arguments.case), &[history, stored], print.picture.as_deref(), work.force)?;
+    check(Some(("case file", &arguments.case)), &[history, stored], print.picture.as_deref(), work.force)?;
     let options = with_work(case.options, work.threads, work.window);
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;

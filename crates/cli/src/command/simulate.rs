@@ -1,10 +1,11 @@
 //! `percute simulate`.
 
-use super::outputs::{Output, begin_history, check, chosen};
+use super::outputs::begin_history;
 use super::{Console, case};
 use crate::args::SimulateArguments;
 use crate::case::{Case, CaseOf};
 use crate::failure::{DONE, Failure, INTERRUPTED};
+use crate::outputs::{Output, check, chosen};
 use crate::progress::Watch;
 use crate::report::build::{balance_summary, problem_summary};
 use crate::report::many_steps;
@@ -32,7 +33,7 @@ fn simulate<const D: usize, const N: usize>(
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(Output { what: "history", file: &named });
-    check(("case file", &arguments.case), &[Some(history)], None, force)?;
+    check(Some(("case file", &arguments.case)), &[Some(history)], None, force)?;
     if !quiet {
         console.warn(&many_steps(case.times.step_count()));
     }
