@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import re
 from pathlib import Path
 
 import h5py
@@ -144,3 +145,89 @@ def test_a_saved_estimate_comes_back(make: object, fields: bool, tmp_path: Path)
     plt.close("all")
     with pytest.raises(pc.InputError, match="copy that"):
         opened.save(tmp_path / "other.vtkhdf")  # type: ignore[union-attr]
+
+
+CASE = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text() + "\n[output]\n"
+
+
+@pytest.mark.parametrize(
+    ("outputs", "store", "error", "message"),
+    [
+        ('estimate = "one.vtkhdf"', "one.vtkhdf", pc.InputError, "[output] estimate one.vtkhdf is the file of `store` too"),
+        ('estimate = "one.vtkhdf"', "./one.vtkhdf", pc.InputError, "is the file of `store` too"),
+        ('history = "one.vtkhdf"\nestimate = "one.vtkhdf"', None, pc.InputError, "is the file of [output] history too"),
+        ('estimate = "case.toml"', None, pc.InputError, "[output] estimate case.toml is the case file itself"),
+        ("", "case.toml", pc.InputError, "`store` case.toml is the case file itself"),
+        ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.StorageError, "[output] estimate: cannot write none/one.vtkhdf"),
+        ('estimate = "folder"', "two.vtkhdf", pc.StorageError, "it is no regular file"),
+    ],
+)
+def test_outputs_of_a_case_that_cannot_be(
+    outputs: str, store: str | None, error: type[Exception], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the simulation: a run may take hours."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "case.toml").write_text(CASE + outputs)
+    heard: list[pc.Progress] = []
+    with pytest.raises(error, match=re.escape(message)):
+        pc.run("case.toml", store=store, overwrite=True, progress=heard.append)
+    assert heard == [] and sorted(each.name for each in tmp_path.iterdir()) == ["case.toml", "folder"]
+
+
+@pytest.mark.parametrize("taken", ["history.vtkhdf", "error.vtkhdf"])
+def test_outputs_of_a_case_that_are_there_already(taken: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path(taken).write_text("mine")
+    heard: list[pc.Progress] = []
+    with pytest.raises(pc.ExistingFileError, match=f"{taken}: .*overwrite=True"):
+        pc.run(CASE + 'history = "history.vtkhdf"\nestimate = "error.vtkhdf"', progress=heard.append)
+    assert heard == [] and os.listdir() == [taken] and Path(taken).read_text() == "mine"
+
+
+def test_files_of_a_run_go_where_they_were_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A callback may change the working directory."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "error.vtkhdf").write_text("mine")
+    text = CASE + 'history = "history.vtkhdf"\nestimate = "error.vtkhdf"'
+    estimate = pc.run(text, overwrite=True, progress=lambda _: os.chdir(tmp_path / "folder"))
+    assert isinstance(pc.open(tmp_path / "history.vtkhdf"), pc.History)
+    assert pc.open(tmp_path / "error.vtkhdf").by_element.tobytes() == estimate.by_element.tobytes()  # type: ignore[union-attr]
+    assert (tmp_path / "folder" / "error.vtkhdf").read_text() == "mine"
+
+
+def test_an_estimate_does_not_replace_its_history(stored: pc.History, tmp_path: Path) -> None:
+    assert stored.path is not None
+    before = stored.path.read_bytes()
+    link = tmp_path / "link.vtkhdf"
+    link.symlink_to(stored.path)
+    estimate = pc.estimate(pc.open(stored.path))  # type: ignore[arg-type]
+    for path in (stored.path, link, tmp_path / "." / "block.vtkhdf"):
+        with pytest.raises(pc.InputError, match="the file of the history"):
+            estimate.save(path, overwrite=True)
+    assert stored.path.read_bytes() == before
+
+
+def test_the_arrays_of_a_history_are_those_of_one_file(stored: pc.History, tmp_path: Path) -> None:
+    """Whichever was asked for before another file came in its place."""
+    assert stored.path is not None
+    reaction, touching = stored.reaction.copy(), stored.touching.copy()
+    again, late = pc.open(stored.path), pc.open(stored.path)
+    assert isinstance(again, pc.History) and isinstance(late, pc.History)
+    assert again.displacement.any()
+    pc.simulate(block(friction=0.0), end=13e-6, courant=0.9, store=stored.path, overwrite=True)
+    assert np.array_equal(again.reaction, reaction) and np.array_equal(again.touching, touching)
+    with pytest.raises(pc.StorageError, match="replaced"):
+        _ = late.reaction
+
+
+def test_a_history_whose_file_is_gone_or_short(stored: pc.History) -> None:
+    assert stored.path is not None
+    short, gone = pc.open(stored.path), pc.open(stored.path)
+    os.truncate(stored.path, 5000)
+    with pytest.raises(pc.PercuteError, match="block.vtkhdf"):
+        _ = short.touching  # type: ignore[union-attr]
+    stored.path.unlink()
+    with pytest.raises(pc.MissingFileError, match="block.vtkhdf"):
+        _ = gone.touching  # type: ignore[union-attr]
