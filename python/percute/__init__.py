@@ -27,11 +27,12 @@ from percute.errors import (
     SimulationError,
     StorageError,
 )
-from percute.estimation import ElementMap, Estimate, OverTime, Parts, WorstElement, estimate
+from percute.estimation import Estimate, estimate
 from percute.files import open, run
 from percute.history import Balance, History, simulate
 from percute.mesh import Mesh
 from percute.problem import Problem
+from percute.records import ElementMap, OverTime, Parts, WorstElement
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
 __all__ = [

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, cast
@@ -20,97 +19,13 @@ from percute.history import History
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
+from percute.records import ElementMap, OverTime, Parts, WorstElement
 from percute.stored import StoredEstimate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["ElementMap", "Estimate", "OverTime", "Parts", "WorstElement", "estimate"]
-
-
-@dataclass(frozen=True)
-class Parts:
-    """The parts of η (J), eq. [14]."""
-
-    kinetic: float
-    """From inertia: ½∫ρ(u̇_DA − u̇_CA)²."""
-    elastic: float
-    """From stress: ½∫(σ_DA − σ_CA):K⁻¹(σ_DA − σ_CA)."""
-    contact: float
-    """From friction: 2∫∫[b(−w_CA, F_DA) + w_CA·F_DA]."""
-
-    @property
-    def total(self) -> float:
-        """η (J)."""
-        return self.kinetic + self.elastic + self.contact
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class OverTime:
-    """η, its parts and d at each sample, each of shape (samples,).
-
-    Where the contact zone changes, an instant has two samples, before and after.
-    """
-
-    time: NDArray[np.float64]
-    """t (s)."""
-    kinetic: NDArray[np.float64]
-    """Kinetic part of η (J), eq. [14]."""
-    elastic: NDArray[np.float64]
-    """Elastic part of η (J)."""
-    contact: NDArray[np.float64]
-    """Contact part of η (J)."""
-    total: NDArray[np.float64]
-    """η (J)."""
-    reference: NDArray[np.float64]
-    """d (J), eq. [24]."""
-
-    def __repr__(self) -> str:
-        return f"<percute.OverTime: {len(self.time)} samples to {self.time[-1]:.4g} s, sup of η {self.total.max():.4g} J>"
-
-
-@dataclass(frozen=True)
-class WorstElement:
-    """An element and what it contributes."""
-
-    element: int
-    """Its number."""
-    error: float
-    """e_E (J^½), eq. [20]."""
-    centroid: tuple[float, ...]
-    """Its centroid in the undeformed mesh (m)."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class ElementMap:
-    """What each element contributes at an instant, and on request the admissible fields there."""
-
-    time: float
-    """t_n (s)."""
-    kinetic: NDArray[np.float64]
-    """Kinetic part of η_E (J), shape (elements,)."""
-    elastic: NDArray[np.float64]
-    """Elastic part of η_E (J), shape (elements,)."""
-    contact: NDArray[np.float64]
-    """Contact part of η_E (J), shape (elements,)."""
-    total: NDArray[np.float64]
-    """η_E (J), shape (elements,)."""
-    error: NDArray[np.float64]
-    """√((1/T)∫η_E dt) up to here (J^½), shape (elements,); at the end e_E, eq. [20]."""
-    displacement: NDArray[np.float64] | None = None
-    """u_CA (m), shape (nodes, dimension)."""
-    velocity: NDArray[np.float64] | None = None
-    """du_CA/dt (m/s), shape (nodes, dimension)."""
-    acceleration: NDArray[np.float64] | None = None
-    """Mean of Γ_DA/ρ (m/s²), shape (elements, dimension)."""
-    stress: NDArray[np.float64] | None = None
-    """Mean of σ_DA (Pa), shape (elements, dimension, dimension)."""
-    compatible_stress: NDArray[np.float64] | None = None
-    """σ_CA = Kε(u_CA) (Pa), shape (elements, dimension, dimension)."""
-
-    def __repr__(self) -> str:
-        fields = "" if self.stress is None else ", with fields"
-        return f"<percute.ElementMap: {len(self.total)} elements at {self.time:.4g} s{fields}>"
+__all__ = ["Estimate", "estimate"]
 
 
 class Estimate:
@@ -276,11 +191,14 @@ class Estimate:
         ExistingFileError, StorageError
             The file exists already or cannot be written.
         InputError
-            The estimate comes from a file: copy that.
+            The estimate comes from a file: copy that. Or ``path`` is the file of the history, which is not to be lost.
         """
         file, replace = file_name("path", path), flag("overwrite", overwrite)
         if isinstance(self._data, StoredEstimate):
             raise InputError(f"the estimate comes from the file {self._data.path!r}; copy that")
+        history = self._history.path if self._history is not None else None
+        if history is not None and os.path.exists(file) and history.exists() and history.samefile(file):
+            raise InputError(f"`path` is {file!r}, the file of the history that was estimated; give another name")
         self._data.save(os.path.abspath(file), replace, self._name)
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
