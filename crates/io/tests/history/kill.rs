@@ -36,17 +36,25 @@ fn child() {
     writer.finish().unwrap();
 }
 
-/// Starts a run and kills it: a quarter of the times wherever it may be, else once its file is there.
-fn kill(run: usize, path: &Path, random: &mut Random) {
+/// When a run is killed.
+#[derive(Clone, Copy, PartialEq)]
+enum When {
+    /// At any moment, perhaps before its file has its name.
+    Ever,
+    /// At any moment once its file is there.
+    Writing,
+}
+
+/// Starts a run and kills it.
+fn kill(run: usize, path: &Path, when: When, random: &mut Random) {
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "kill::child"])
         .envs([(RUN, run.to_string()), (FILE, path.to_str().unwrap().to_string())])
         .stdout(Stdio::null())
         .spawn()
         .unwrap();
-    let anywhere = random.bits().is_multiple_of(4);
     let start = Instant::now();
-    while !anywhere && !path.exists() && start.elapsed() < Duration::from_secs(20) {
+    while when == When::Writing && !path.exists() && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(1));
     }
     std::thread::sleep(Duration::from_micros(random.between(0.0, 60_000.0) as u64));
@@ -55,13 +63,13 @@ fn kill(run: usize, path: &Path, random: &mut Random) {
 }
 
 /// Kills that many runs. Returns how many files there were, and how many of them were not complete.
-fn check(runs: std::ops::Range<usize>) -> (usize, usize) {
+fn check(runs: std::ops::Range<usize>, when: When) -> (usize, usize) {
     let folder = folder();
     let mut random = Random::new(42);
     let (mut files, mut unfinished) = (0, 0);
     for run in runs {
         let path = folder.path().join(format!("{run}.vtkhdf"));
-        kill(run, &path, &mut random);
+        kill(run, &path, when, &mut random);
         if !path.exists() {
             continue;
         }
@@ -86,16 +94,23 @@ fn check(runs: std::ops::Range<usize>) -> (usize, usize) {
     (files, unfinished)
 }
 
-/// A run takes longer than the 60 ms within which it is killed, so that most files are unfinished ones.
+/// Every run leaves its file. A run takes longer than the 60 ms within which it is killed, so that most
+/// files are unfinished ones.
 #[test]
 fn twenty_kills() {
-    let (files, unfinished) = check(0..20);
-    assert!(files >= 14 && unfinished >= 10, "{files} files, {unfinished} of them unfinished");
+    let (files, unfinished) = check(0..20, When::Writing);
+    assert!(files == 20 && unfinished >= 14, "{files} files, {unfinished} of them unfinished");
+}
+
+/// While the file is made too: it has no name then, or it is whole.
+#[test]
+fn kills_from_the_start() {
+    check(40..46, When::Ever);
 }
 
 #[test]
 #[ignore = "a minute; twenty of them run always"]
 fn a_hundred_kills() {
-    let (files, unfinished) = check(0..100);
-    assert!(files >= 70 && unfinished >= 50, "{files} files, {unfinished} of them unfinished");
+    let (files, unfinished) = check(0..100, When::Writing);
+    assert!(files == 100 && unfinished >= 70, "{files} files, {unfinished} of them unfinished");
 }
