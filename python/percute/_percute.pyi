@@ -13,6 +13,7 @@ __all__ = [
     "CaseData",
     "EstimateData",
     "HistoryData",
+    "MOST_THREADS",
     "MeshData",
     "ProblemData",
     "Progress",
@@ -25,6 +26,7 @@ __all__ = [
     "simulate_case",
 ]
 
+MOST_THREADS: int
 __version__: str
 
 _Floats = NDArray[np.float64]

@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.checks import flag, instance, numbers, text, whole, wrong
+from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.history import History
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
-from percute.statement import numbers
 from percute.stored import StoredEstimate
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class Parts:
         return self.kinetic + self.elastic + self.contact
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class OverTime:
     """η, its parts and d at each sample, each of shape (samples,).
 
@@ -64,6 +65,9 @@ class OverTime:
     reference: NDArray[np.float64]
     """d (J), eq. [24]."""
 
+    def __repr__(self) -> str:
+        return f"<percute.OverTime: {len(self.time)} samples to {self.time[-1]:.4g} s, sup of η {self.total.max():.4g} J>"
+
 
 @dataclass(frozen=True)
 class WorstElement:
@@ -77,7 +81,7 @@ class WorstElement:
     """Its centroid in the undeformed mesh (m)."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class ElementMap:
     """What each element contributes at an instant, and on request the admissible fields there."""
 
@@ -103,6 +107,10 @@ class ElementMap:
     """Mean of σ_DA (Pa), shape (elements, dimension, dimension)."""
     compatible_stress: NDArray[np.float64] | None = None
     """σ_CA = Kε(u_CA) (Pa), shape (elements, dimension, dimension)."""
+
+    def __repr__(self) -> str:
+        fields = "" if self.stress is None else ", with fields"
+        return f"<percute.ElementMap: {len(self.total)} elements at {self.time:.4g} s{fields}>"
 
 
 class Estimate:
@@ -241,11 +249,10 @@ class Estimate:
 
     def worst_elements(self, n: int = 5) -> list[WorstElement]:
         """Give the ``n`` elements that contribute most, largest first."""
-        if n < 0:
-            raise InputError(f"`n` is {n}; it must be 0 or more")
+        count = whole("n", n, least=0)
         mesh = self.mesh
         worst = []
-        for element, error in self._data.worst_elements(n):
+        for element, error in self._data.worst_elements(count):
             centroid = mesh.points[mesh.cells[element]].mean(axis=0)
             worst.append(WorstElement(element, error, tuple(centroid.tolist())))
         return worst
@@ -271,9 +278,10 @@ class Estimate:
         InputError
             The estimate comes from a file: copy that.
         """
+        file, replace = file_name("path", path), flag("overwrite", overwrite)
         if isinstance(self._data, StoredEstimate):
             raise InputError(f"the estimate comes from the file {self._data.path!r}; copy that")
-        self._data.save(os.path.abspath(path), overwrite, self._name)
+        self._data.save(os.path.abspath(file), replace, self._name)
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
         """Draw e_E, what each element contributes (J^½), eq. [20].
@@ -360,16 +368,6 @@ def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:
     return restored
 
 
-def _whole(name: str, value: int | np.integer[Any] | None) -> int | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise InputError(f"`{name}` is {value!r}; it must be a whole number")
-    if value < 1:
-        raise InputError(f"`{name}` is {value}; it must be at least 1")
-    return int(value)
-
-
 def estimate(
     history: History,
     *,
@@ -397,13 +395,13 @@ def estimate(
     every : int, optional
         The error is sampled at every so many steps, and at the end. By default as stated, else at every step.
     threads : int, optional
-        How many threads to use, one for each core by default. The result does not depend on it.
+        How many threads to use, at most 1024; one for each core by default. The result does not depend on it.
     window : int, optional
         How many steps are worked on at once. The result does not depend on it.
     instants : int or (n,) floats, optional
         At how many instants, evenly spaced, or near which (s), ``maps`` are kept; none by default.
     fields : bool, default: False
-        Whether these hold the admissible fields too.
+        Whether these hold the admissible fields too; it needs ``instants``.
     progress : bool or callable, optional
         As for `simulate`.
 
@@ -418,21 +416,36 @@ def estimate(
     EstimateError
         The history cannot be estimated: fewer than two instants, or steps that do not fit the problem.
     """
-    if not isinstance(history, History):
-        raise InputError(f"`history` is {history!r}; it must be a History")
-    wanted: int | list[float] | None
-    if instants is None or (isinstance(instants, int | np.integer)):
-        wanted = _whole("instants", instants)
-    else:
-        times = np.atleast_1d(numbers("instants", instants, most=1))
-        if not np.all(np.isfinite(times) & (times >= 0)):
-            raise InputError(f"`instants` is {times}; times must be finite and not negative (s)")
-        wanted = times.tolist()
-    stated = history._data.options()
-    contact_force_, acceleration_ = contact_force or stated[0], acceleration or stated[1]
-    every_, threads, window = _whole("every", every) or stated[2], _whole("threads", threads), _whole("window", window)
+    stated = instance("history", history, History)._data.options()
+    options = (
+        stated[0] if contact_force is None else text("contact_force", contact_force),
+        stated[1] if acceleration is None else text("acceleration", acceleration),
+        stated[2] if every is None else whole("every", every),
+    )
+    work = pace(threads, window)
+    wanted = _wanted(instants)
+    if flag("fields", fields) and wanted is None:
+        raise InputError("`fields` needs `instants`: say at how many instants, or near which (s), they are kept")
     with shown(progress) as tell:
-        data = _percute.estimate(
-            history._data, contact_force_, acceleration_, every_, threads, window, wanted, fields, tell
-        )
+        data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), tell)
     return Estimate._of(data, history, history._name)
+
+
+def pace(threads: int | None, window: int | None) -> tuple[int | None, int | None]:
+    """Check how the work is done."""
+    return (
+        None if threads is None else whole("threads", threads, most=_percute.MOST_THREADS),
+        None if window is None else whole("window", window),
+    )
+
+
+def _wanted(instants: int | ArrayLike | None) -> int | list[float] | None:
+    """Tell how many instants, or which (s)."""
+    if instants is None:
+        return None
+    if isinstance(instants, int | np.integer):
+        return whole("instants", instants)
+    times = np.atleast_1d(numbers("instants", instants, most=1))
+    if len(times) == 0 or not np.all(np.isfinite(times) & (times >= 0)):
+        raise wrong("instants", instants, "a number of instants, or at least one time (s), finite and not negative")
+    return cast("list[float]", times.tolist())

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.checks import instance, number, numbers
 from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History
-from percute.statement import numbers
 
 __all__ = ["BarImpact", "Effectivity", "TrueError", "bar_impact"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class TrueError:
     """The true error of a simulated bar, eq. [60]: the energy norm of the difference to the exact fields."""
 
@@ -33,6 +33,9 @@ class TrueError:
     """Elastic part of e² (J), shape (instants,)."""
     total: NDArray[np.float64]
     """e² (J), shape (instants,)."""
+
+    def __repr__(self) -> str:
+        return f"<percute.exact.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {len(self.time)} instants>"
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class BarImpact:
 
     def __post_init__(self) -> None:
         names = ("length", "young", "density", "section", "speed", "gap")
-        values = [float(getattr(self, name)) for name in names]
+        values = [number(name, getattr(self, name)) for name in names]
         object.__setattr__(self, "_data", _percute.BarImpactData(*values))
         for name, value in zip(names, values, strict=True):
             object.__setattr__(self, name, value)
@@ -109,7 +112,7 @@ class BarImpact:
         InputError
             If it is a simulation of another one.
         """
-        sup, mean, over_time = self._data.error(history._data)
+        sup, mean, over_time = self._data.error(instance("history", history, History)._data)
         return TrueError(sup=sup, mean=mean, **over_time)
 
     def effectivity(self, estimate: Estimate, history: History | None = None) -> Effectivity:
@@ -122,6 +125,7 @@ class BarImpact:
         history : History, optional
             What it is the estimate of; needed only if the estimate comes from a file.
         """
+        instance("estimate", estimate, Estimate)
         measured = history if history is not None else estimate.history
         if measured is None:
             raise InputError("`history` is missing: an estimate from a file does not hold it")
@@ -129,9 +133,18 @@ class BarImpact:
         return Effectivity(sup=estimate.sup / true.sup, mean=estimate.mean / true.mean)
 
     def _at(self, values: Any, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
-        places, instants = np.broadcast_arrays(numbers("x", x, most=32), numbers("t", t, most=32))
+        places, instants = _together(
+            numbers("x", x, most=32, finite=True), numbers("t", t, most=32, finite=True)
+        )
         found: NDArray[np.float64] = values(places.ravel(), instants.ravel())
         return found.reshape(places.shape)
+
+
+def _together(x: NDArray[np.float64], t: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+    try:
+        return np.broadcast_arrays(x, t)
+    except ValueError:
+        raise InputError(f"`x` has the shape {x.shape} and `t` {t.shape}; they cannot be broadcast") from None
 
 
 def _rebuild(*values: float) -> BarImpact:

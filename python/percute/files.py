@@ -6,8 +6,10 @@ import os
 from pathlib import Path
 
 from percute import _percute
+from percute.checks import encodable, flag, text, wrong
+from percute.checks import path as file_name
 from percute.errors import ExistingFileError, InputError, MissingFileError, StorageError
-from percute.estimation import Estimate, estimate
+from percute.estimation import Estimate, estimate, pace
 from percute.history import History, absolute, history_of_the_exception
 from percute.progress import ProgressOption, shown
 from percute.stored import StoredEstimate
@@ -37,10 +39,11 @@ def open(path: str | os.PathLike[str]) -> History | Estimate:
     StorageError
         It cannot be read, or another program is writing it.
     """
-    file = os.path.abspath(path)
+    given = file_name("path", path)
+    file = os.path.abspath(given)
     if _percute.is_estimate(file):
-        return Estimate._of(StoredEstimate(file), None, os.fspath(path))
-    return History._of(_percute.open_history(file), name=os.fspath(path))
+        return Estimate._of(StoredEstimate(file), None, encodable(given))
+    return History._of(_percute.open_history(file), name=encodable(given))
 
 
 def run(
@@ -81,21 +84,23 @@ def run(
     SimulationError, EstimateError, KeyboardInterrupt
         As for `simulate` and `estimate`.
     """
-    name, text = _read(case)
-    read = _percute.CaseData(name, text)
-    asked = read.outputs()
-    file = store if store is not None else asked["history"]
-    report = asked["estimate"]
-    # Maps are what an estimate file is for; nobody else asked for them.
-    instants = asked["instants"] if report is not None else None
-    if report is not None and report.exists() and not overwrite:
-        raise ExistingFileError(f"{os.fspath(report)!r} exists already; name another file, or say `overwrite=True`")
+    told = None if store is None else file_name("store", store)
+    replace, (threads, window) = flag("overwrite", overwrite), pace(threads, window)
     with shown(progress) as tell, history_of_the_exception():
-        history = History._of(_percute.simulate_case(read, absolute(file), overwrite, tell), name=name)
+        name, content = _read(case)
+        read = _percute.CaseData(name, content)
+        asked = read.outputs()
+        file = told if told is not None else asked["history"]
+        report = asked["estimate"]
+        # Maps are what an estimate file is for; nobody else asked for them.
+        instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
+        if report is not None and report.exists() and not replace:
+            raise ExistingFileError(f"{os.fspath(report)!r} exists already; name another file, or say `overwrite=True`")
+        history = History._of(_percute.simulate_case(read, absolute(file), replace, tell), name=name)
         try:
-            estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=asked["fields"])
+            estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=fields)
             if report is not None:
-                estimated.save(report, overwrite=overwrite)
+                estimated.save(report, overwrite=replace)
             return estimated
         except BaseException as error:
             error.history = history  # type: ignore[attr-defined]
@@ -105,12 +110,12 @@ def run(
 def _read(case: str | os.PathLike[str]) -> tuple[str, str]:
     """Name and text of a case: a text has several lines, the name of a file has one."""
     if isinstance(case, str) and "\n" in case:
-        return "case", case
+        return "case", text("case", case)
     if not isinstance(case, str | os.PathLike):
-        raise InputError(f"`case` is {case!r}; it must be the name of a case file, or its text")
-    path = Path(case)
+        raise wrong("case", case, "the name of a case file, or its text")
+    path = Path(file_name("case", case))
     try:
-        return os.fspath(path), path.read_text(encoding="utf-8")
+        return encodable(os.fspath(path)), path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}") from None
     except UnicodeDecodeError:

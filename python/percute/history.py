@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.errors import InputError
+from percute.checks import encodable, flag, instance, numbers, optional_number
+from percute.checks import path as file_name
+from percute.errors import PercuteError
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
-from percute.statement import numbers
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["Balance", "History", "simulate"]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Balance:
     """Energies and works (J) and drifts at each instant, each of shape (instants,)."""
 
@@ -45,6 +46,10 @@ class Balance:
     """Largest error of the energy balance so far, over the largest energy or work."""
     impulse_drift: NDArray[np.float64]
     """The same of momentum and impulses."""
+
+    def __repr__(self) -> str:
+        drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"
+        return f"<percute.Balance: {len(self.kinetic)} instants, {drifts}>"
 
 
 class History:
@@ -271,31 +276,36 @@ def simulate(
     ExistingFileError, StorageError
         The file exists already or cannot be written; the steps before that are in it.
     KeyboardInterrupt
-        After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``.
+        After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``; None before the first.
     """
-    if not isinstance(problem, Problem):
-        raise InputError(f"`problem` is {problem!r}; it must be a Problem")
+    instance("problem", problem, Problem)
     lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
-    times = (end, courant, step, lengths)
+    times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
+    file = None if store is None else file_name("store", store)
+    replace = flag("overwrite", overwrite)
     with shown(progress) as tell, history_of_the_exception(problem):
-        data = _percute.simulate(problem._data, times, absolute(store), overwrite, tell)
-    return History._of(data, problem, "" if store is None else os.fspath(store))
+        data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
+    return History._of(data, problem, "" if file is None else encodable(file))
 
 
-def absolute(store: str | os.PathLike[str] | None) -> str | None:
+def absolute(file: str | os.PathLike[str] | None) -> str | None:
     """Give a name that stays good when the working directory changes."""
-    return None if store is None else os.path.abspath(store)
+    return None if file is None else os.path.abspath(file)
 
 
 @contextmanager
 def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
-    """Make a `History` of the data that hangs on an exception."""
+    """Make a `History` of the data that hangs on an exception; what interrupted before the first step gets None."""
     try:
         yield
     except BaseException as error:
         done = getattr(error, "history", None)
         if isinstance(done, _percute.HistoryData):
-            error.history = History._of(done, problem)  # type: ignore[attr-defined]
+            done = History._of(done, problem)
         elif isinstance(done, Path):
-            error.history = History._at(str(done), problem, str(done))  # type: ignore[attr-defined]
+            done = History._at(str(done), problem, encodable(str(done)))
+        if done is not None or not isinstance(error, PercuteError):
+            # An exception that takes no attributes is raised all the same.
+            with suppress(AttributeError):
+                error.history = done  # type: ignore[attr-defined]
         raise

@@ -11,30 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.checks import integers, number, numbers, table, whole
 from percute.errors import InputError
-from percute.statement import numbers
 
 __all__ = ["Mesh"]
 
-
-def _integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
-    """Whole numbers in rows of so many columns; without columns, one after the other."""
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        array = np.asarray(None)
-    if array.size == 0 and array.dtype.kind == "f":
-        array = array.astype(np.int64)
-    if array.dtype.kind not in "iu":
-        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcb" else repr(value)
-        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0")
-    if columns == 1 and array.ndim == 1:
-        array = array[:, None]
-    shape = (-1,) if columns is None else (-1, columns)
-    if array.ndim != len(shape) or (columns is not None and array.shape[1] != columns):
-        needed = "(n,)" if columns is None else f"(n, {columns})"
-        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}")
-    return np.ascontiguousarray(array, dtype=np.int64)
+MOST = 20_000_000
+"""Elements that a generated mesh may have, as the generators say."""
 
 
 class Mesh:
@@ -72,11 +55,13 @@ class Mesh:
         if places.ndim != 2 or places.shape[1] not in (1, 2):
             raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2)")
         dimension = places.shape[1]
+        facets = {} if groups is None else table("groups", groups, "edges")
+        parts = {} if elements is None else table("elements", elements, "elements")
         self._data = _percute.MeshData.from_arrays(
             places,
-            _integers("cells", cells, dimension + 1),
-            {name: _integers(f"groups[{name!r}]", edges, dimension) for name, edges in (groups or {}).items()},
-            {name: _integers(f"elements[{name!r}]", each, None) for name, each in (elements or {}).items()},
+            integers("cells", cells, dimension + 1),
+            {name: integers(f"groups[{name!r}]", edges, dimension) for name, edges in facets.items()},
+            {name: integers(f"elements[{name!r}]", each, None) for name, each in parts.items()},
         )
 
     @classmethod
@@ -101,7 +86,8 @@ class Mesh:
         Mesh
             Its sides are the groups ``left``, ``right``, ``bottom`` and ``top``.
         """
-        return cls._of(_percute.MeshData.rectangle(width, height, nx, ny))
+        sides = number("width", width), number("height", height)
+        return cls._of(_percute.MeshData.rectangle(*sides, whole("nx", nx, most=MOST), whole("ny", ny, most=MOST)))
 
     @classmethod
     def bar(cls, length: float, *, elements: int) -> Mesh:
@@ -112,7 +98,7 @@ class Mesh:
         Mesh
             Its ends are the groups ``start`` (at 0) and ``end``.
         """
-        return cls._of(_percute.MeshData.bar(length, elements))
+        return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
 
     @property
     def dimension(self) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percute.checks import number, text, whole, wrong
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
@@ -28,11 +29,12 @@ SIGNED = "RdBu_r"
 def _axes(axes: Axes | None) -> Axes:
     try:
         import matplotlib.pyplot as plt
+        from matplotlib.axes import Axes as Kind
     except ImportError as error:
         raise PercuteError('pictures need matplotlib: pip install "percute[plot]"') from error
-    if axes is not None:
-        return axes
-    return plt.subplots(layout="constrained")[1]
+    if axes is not None and not isinstance(axes, Kind):
+        raise wrong("axes", axes, "axes of matplotlib, such as `plt.subplots()[1]`")
+    return axes if axes is not None else plt.subplots(layout="constrained")[1]
 
 
 def _prefix(values: Floats) -> tuple[float, str]:
@@ -158,9 +160,8 @@ def _field(history: History, quantity: str, step: int) -> tuple[Floats, str, str
 
 def plot_field(history: History, quantity: str, step: int, scale: float, axes: Axes | None) -> Axes:
     """Draw a field of a history on the deformed body."""
-    if not -len(history) <= step < len(history):
-        raise InputError(f"`step` is {step}; the history has the steps 0 to {len(history) - 1}")
-    values, name, unit, colours = _field(history, quantity, step)
+    step, scale = whole("step", step, least=-len(history), most=len(history) - 1), number("scale", scale, finite=True)
+    values, name, unit, colours = _field(history, text("quantity", quantity), step)
     axes = _axes(axes)
     mesh = history.problem.mesh
     factor, prefix = _prefix(values)

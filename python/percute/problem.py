@@ -4,40 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.errors import InputError
+from percute.checks import instance, items, numbers, table
 from percute.mesh import Mesh
-from percute.statement import BodyForce, Elastic, Plane, Support, Traction, numbers
+from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
 __all__ = ["Problem"]
-
-T = TypeVar("T")
-
-
-def _all_of(name: str, given: Iterable[T], kind: type[T]) -> list[T]:
-    if isinstance(given, kind):
-        raise InputError(f"`{name}` is one {kind.__name__}; give a list of them")
-    objects = list(given)
-    for i, each in enumerate(objects):
-        if not isinstance(each, kind):
-            raise InputError(f"`{name}[{i}]` is {each!r}; it must be a {kind.__name__}")
-    return objects
-
 
 def _materials(material: Elastic | Mapping[str, Elastic]) -> list[tuple[str | None, Elastic]]:
     if isinstance(material, Elastic):
         return [(None, material)]
-    if not isinstance(material, Mapping):
-        raise InputError(f"`material` is {material!r}; it must be one Elastic, or a dict of group to Elastic")
-    for group, each in material.items():
-        if not isinstance(group, str) or not isinstance(each, Elastic):
-            raise InputError(f"`material[{group!r}]` is {each!r}; it must be an Elastic for the name of a group of elements")
-    return list(material.items())
+    groups = table("material", material, "Elastic, or one Elastic")
+    return [(group, instance(f"material[{group!r}]", each, Elastic)) for group, each in groups.items()]
 
 
 def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64] | None:
@@ -93,16 +76,14 @@ class Problem:
         initial_velocity: ArrayLike | None = None,
         initial_displacement: ArrayLike | None = None,
     ) -> None:
-        if not isinstance(mesh, Mesh):
-            raise InputError(f"`mesh` is {mesh!r}; it must be a Mesh")
-        self._mesh = mesh
+        self._mesh = instance("mesh", mesh, Mesh)
         self._data = _percute.ProblemData(
             mesh._data,
             _materials(material),
-            _all_of("obstacles", obstacles, Plane),
-            _all_of("supports", supports, Support),
-            _all_of("tractions", tractions, Traction),
-            _all_of("body_forces", body_forces, BodyForce),
+            items("obstacles", obstacles, Plane),
+            items("supports", supports, Support),
+            items("tractions", tractions, Traction),
+            items("body_forces", body_forces, BodyForce),
             _field("initial_velocity", initial_velocity, mesh),
             _field("initial_displacement", initial_displacement, mesh),
         )

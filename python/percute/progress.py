@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import Any, Protocol
 
 from percute._percute import Progress
+from percute.checks import wrong
 
 __all__ = ["Progress", "shown"]
 
@@ -105,6 +106,8 @@ def _display() -> _Display | None:
 @contextmanager
 def shown(progress: ProgressOption) -> Iterator[Callable[[Progress], object] | None]:
     """Give what is to be told, for an option ``progress``, and clean up at the end."""
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise wrong("progress", progress, "True, False or a function that is called with a Progress")
     if progress is not True:
         yield progress or None
         return

@@ -5,45 +5,20 @@ The types of their parts are checked here; whether they make sense on a mesh is 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from percute.checks import number, numbers, text, wrong
 from percute.errors import InputError
 
 __all__ = ["BodyForce", "Elastic", "Plane", "Support", "Traction"]
 
 Vector = tuple[float, ...]
 Rows = tuple[Vector, ...]
-
-
-def _number(name: str, value: object) -> float:
-    try:
-        return float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise InputError(f"`{name}` is {value!r}; it must be a number") from None
-
-
-def _text(name: str, value: object) -> str:
-    if not isinstance(value, str):
-        raise InputError(f"`{name}` is {value!r}; it must be a text")
-    return value
-
-
-def numbers(name: str, value: object, *, most: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Give an array of numbers of at most so many dimensions, or say what is wrong with ``name``."""
-    try:
-        array = np.asarray(value)
-    except ValueError:
-        array = np.asarray(None)
-    if array.dtype.kind not in "fiu":
-        raise InputError(f"`{name}` is {value!r}; it must be numbers in rows of equal length")
-    if array.ndim > most:
-        raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
-    return np.ascontiguousarray(array, dtype=np.float64)
 
 
 def _vector(name: str, value: object) -> Vector:
@@ -94,12 +69,12 @@ class Elastic:
 
     def __post_init__(self) -> None:
         for name in ("young", "density", "thickness"):
-            object.__setattr__(self, name, _number(name, getattr(self, name)))
+            object.__setattr__(self, name, number(name, getattr(self, name)))
         for name in ("poisson", "section"):
             if getattr(self, name) is not None:
-                object.__setattr__(self, name, _number(name, getattr(self, name)))
-        if self.plane not in (None, "stress", "strain"):
-            raise InputError(f"`plane` is {self.plane!r}; it must be 'stress' or 'strain'")
+                object.__setattr__(self, name, number(name, getattr(self, name)))
+        if self.plane is not None and text("plane", self.plane) not in ("stress", "strain"):
+            raise wrong("plane", self.plane, "'stress' or 'strain'")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,9 +101,9 @@ class Plane:
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", _vector("point", self.point))
         object.__setattr__(self, "normal", _vector("normal", self.normal))
-        object.__setattr__(self, "friction", _number("friction", self.friction))
+        object.__setattr__(self, "friction", number("friction", self.friction))
         if self.group is not None:
-            _text("group", self.group)
+            text("group", self.group)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,9 +129,11 @@ class Support:
     time: Vector | ArrayLike | None = None
 
     def __post_init__(self) -> None:
-        _text("group", self.group)
-        given = (self.components,) if isinstance(self.components, str) else tuple(self.components)
-        components = tuple(_text("components", name) for name in given)
+        text("group", self.group)
+        given = (self.components,) if isinstance(self.components, str) else self.components
+        if not isinstance(given, Iterable):
+            raise wrong("components", given, "'x', 'y' or both")
+        components = tuple(text("components", name) for name in given)
         if len(set(components)) < len(components):
             raise InputError(f"`components` is {components!r}; it must not name an axis twice")
         object.__setattr__(self, "components", components)
@@ -192,7 +169,7 @@ class Traction:
     profile: tuple[float, Vector | ArrayLike] | None = None
 
     def __post_init__(self) -> None:
-        _text("group", self.group)
+        text("group", self.group)
         value, time = _table("value", self.value, self.time, None)
         object.__setattr__(self, "value", value)
         object.__setattr__(self, "time", time)
@@ -200,8 +177,8 @@ class Traction:
             try:
                 at_origin, gradient = self.profile
             except (TypeError, ValueError):
-                raise InputError(f"`profile` is {self.profile!r}; it must be a value and a gradient") from None
-            object.__setattr__(self, "profile", (_number("profile", at_origin), _vector("profile", gradient)))
+                raise wrong("profile", self.profile, "a value and a gradient") from None
+            object.__setattr__(self, "profile", (number("profile", at_origin), _vector("profile", gradient)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,4 +204,4 @@ class BodyForce:
         object.__setattr__(self, "value", value)
         object.__setattr__(self, "time", time)
         if self.group is not None:
-            _text("group", self.group)
+            text("group", self.group)

@@ -2,13 +2,10 @@
 
 use crate::case::Instants;
 use clap::{Args, Parser, Subcommand};
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, ContactForce, MOST_THREADS};
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the steps done is still printed).";
-
-/// More threads than any machine has cores for are a slip.
-const MOST_THREADS: usize = 1024;
 
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]

@@ -1,5 +1,6 @@
 //! What can keep an estimate from being made.
 
+use crate::options::MOST_THREADS;
 use crate::request::RequestError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{SinkError, StepError};
@@ -13,6 +14,12 @@ pub enum EstimateError {
     Zero {
         /// The option.
         name: &'static str,
+    },
+    /// More threads than make sense.
+    #[error("`threads` is {threads}; it must be a whole number from 1 to {MOST_THREADS}")]
+    TooManyThreads {
+        /// How many were asked for.
+        threads: usize,
     },
     /// Maps that cannot be kept.
     #[error(transparent)]

@@ -4,6 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
+/// The most threads that an estimate may use: more than any machine has cores for are a slip.
+pub const MOST_THREADS: usize = 1024;
+
 /// How contact reactions become admissible densities.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactForce {
@@ -41,7 +44,7 @@ pub struct Options {
     /// How many steps are worked on at once; by default as many as fit into a modest memory. The
     /// result does not depend on it.
     pub window: Option<usize>,
-    /// How many threads; by default one for each core. The result does not depend on it.
+    /// How many threads, at most [`MOST_THREADS`]; by default one for each core. The result does not depend on it.
     pub threads: Option<usize>,
 }
 

@@ -108,7 +108,9 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
 pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Simulation(error) => simulation(py, error),
-        RunError::Estimate(EstimateError::Zero { .. } | EstimateError::Request(_)) => input(py, &error.to_string()),
+        RunError::Estimate(
+            EstimateError::Zero { .. } | EstimateError::TooManyThreads { .. } | EstimateError::Request(_),
+        ) => input(py, &error.to_string()),
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),
     }

@@ -40,9 +40,10 @@ mod _percute {
     #[pymodule_export]
     use super::simulate::{open_history, simulate, simulate_case};
 
-    /// Adds what is no function.
+    /// Adds the constants.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("MOST_THREADS", percute_estimator::MOST_THREADS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 

@@ -3,7 +3,7 @@
 use crate::any::{Any, AnyMesh, each};
 use crate::{door, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -21,15 +21,13 @@ type Elements<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
 #[pymethods]
 impl MeshData {
     #[staticmethod]
-    fn rectangle(py: Python<'_>, width: f64, height: f64, nx: i64, ny: i64) -> PyResult<Self> {
-        let (nx, ny) = (count(py, "nx", nx)?, count(py, "ny", ny)?);
+    fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize) -> PyResult<Self> {
         let mesh = door::through(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
         Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     #[staticmethod]
-    fn bar(py: Python<'_>, length: f64, elements: i64) -> PyResult<Self> {
-        let elements = count(py, "elements", elements)?;
+    fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
         let mesh = door::through(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
         Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
@@ -111,12 +109,6 @@ fn rows<'py>(py: Python<'py>, numbers: Vec<i64>, columns: usize) -> PyResult<Bou
     let array = array.reshape([array.len()? / columns, columns])?;
     array.readwrite().make_nonwriteable();
     Ok(array)
-}
-
-/// A number of elements: what is negative is refused as what is zero is.
-fn count(py: Python<'_>, name: &'static str, value: i64) -> PyResult<usize> {
-    let allowed = "a number of elements from 1 to 20 000 000";
-    usize::try_from(value).map_err(|_| errors::mesh(py, &MeshError::Generator { name, value: value as f64, allowed }))
 }
 
 fn from_arrays<const D: usize, const N: usize>(

@@ -11,7 +11,7 @@ mod window;
 
 use crate::error::EstimateError;
 use crate::estimate::Estimate;
-use crate::options::Options;
+use crate::options::{MOST_THREADS, Options};
 use crate::request::Request;
 use maps::Maps;
 use percute_core::history::{SinkError, Step, StepSink};
@@ -56,6 +56,9 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
             if value == Some(0) {
                 return Err(EstimateError::Zero { name });
             }
+        }
+        if let Some(threads) = options.threads.filter(|&threads| threads > MOST_THREADS) {
+            return Err(EstimateError::TooManyThreads { threads });
         }
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();

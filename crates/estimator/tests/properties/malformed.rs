@@ -5,7 +5,7 @@ use crate::estimating::history;
 use percute_core::history::{SinkError, Step, StepError, StepSink};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Estimator, Options};
+use percute_estimator::{EstimateError, Estimator, MOST_THREADS, Options};
 use percute_testkit::random_rectangle;
 
 /// A step that can be spoilt.
@@ -152,6 +152,9 @@ fn too_few_steps_and_impossible_options() {
         let made = Estimator::new(&problem, &times, options);
         assert!(matches!(made.err(), Some(EstimateError::Zero { .. })), "{options:?}");
     }
+    let options = Options { threads: Some(MOST_THREADS + 1), ..Options::default() };
+    let refused = Estimator::new(&problem, &times, options).err();
+    assert_eq!(refused, Some(EstimateError::TooManyThreads { threads: 1025 }));
 }
 
 /// Finite, but too large for what is made of it: the estimate must not look sound.

@@ -1,0 +1,184 @@
+"""Checks of arguments: each gives the value in the type that the work takes, or says what is wrong with which argument."""
+
+from __future__ import annotations
+
+import operator
+import os
+import reprlib
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percute.errors import InputError
+
+__all__ = [
+    "encodable",
+    "flag",
+    "instance",
+    "integers",
+    "items",
+    "number",
+    "numbers",
+    "optional_number",
+    "path",
+    "table",
+    "text",
+    "whole",
+    "wrong",
+]
+
+T = TypeVar("T")
+
+LARGEST = 2**63 - 1
+"""The largest whole number that the work takes."""
+
+_short = reprlib.Repr()
+_short.maxstring = _short.maxother = _short.maxlong = 80
+
+
+def _told(value: object) -> str:
+    """Show a value in one line that is not too long."""
+    try:
+        return " ".join(_short.repr(value).split())
+    except Exception:  # What a value says of itself may fail: whole numbers of more than 4300 digits do.
+        return f"of the type {type(value).__name__}"
+
+
+def wrong(name: str, value: object, allowed: str) -> InputError:
+    """Say what an argument is and what it must be."""
+    return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
+
+
+def instance(name: str, value: object, kind: type[T]) -> T:
+    """Give an object of a class."""
+    if not isinstance(value, kind):
+        raise wrong(name, value, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
+    return value
+
+
+def flag(name: str, value: object) -> bool:
+    """Give a yes or no."""
+    if not isinstance(value, bool | np.bool_):
+        raise wrong(name, value, "True or False")
+    return bool(value)
+
+
+def text(name: str, value: object) -> str:
+    """Give a text."""
+    if not isinstance(value, str):
+        raise wrong(name, value, "a text")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise wrong(name, value, "a text without lone surrogates") from None
+    return value
+
+
+def path(name: str, value: object) -> str:
+    """Give the name of a file."""
+    try:
+        file = os.fspath(value)  # type: ignore[call-overload]
+    except TypeError:
+        file = None
+    if not isinstance(file, str) or not file or "\0" in file:
+        raise wrong(name, value, "the name of a file, as a text or a pathlib.Path")
+    try:
+        os.fsencode(file)
+    except UnicodeEncodeError:
+        raise wrong(name, value, "a name that this system can write") from None
+    return file
+
+
+def encodable(file: str) -> str:
+    """Give the name of a file as it can be printed: on Linux it may be of any bytes."""
+    return os.fsencode(file).decode(errors="replace")
+
+
+def number(name: str, value: object, *, finite: bool = False) -> float:
+    """Give a number; whether one that is not finite makes sense is for the work to say, unless it must be ``finite``."""
+    allowed = "a finite number" if finite else "a number"
+    try:
+        array = np.asarray(value)
+        # Texts and truth values could be converted, but are hardly meant to be numbers.
+        given = float(value) if array.ndim == 0 and array.dtype.kind in "fiuO" else None  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        given = None
+    if given is None or (finite and not np.isfinite(given)):
+        raise wrong(name, value, allowed)
+    return given
+
+
+def optional_number(name: str, value: object) -> float | None:
+    """Give a number, or None."""
+    return None if value is None else number(name, value)
+
+
+def whole(name: str, value: object, *, least: int = 1, most: int = LARGEST) -> int:
+    """Give a whole number in a range."""
+    try:
+        given = None if isinstance(value, bool | np.bool_) else operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        given = None
+    if given is None or (not least <= given <= most and most < LARGEST):
+        raise wrong(name, value, f"a whole number from {least} to {most}" if most < LARGEST else "a whole number")
+    if not least <= given <= most:
+        raise wrong(name, value, f"at least {least}" if given < least else f"at most {most}")
+    return given
+
+
+def _array(value: object) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except (TypeError, ValueError, OverflowError):
+        return np.asarray(None)
+
+
+def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
+    """Give an array of numbers of at most so many dimensions."""
+    array = _array(value)
+    if array.dtype.kind not in "fiu":
+        raise wrong(name, value, "numbers in rows of equal length")
+    if array.ndim > most:
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
+    if finite and not np.all(np.isfinite(array)):
+        raise wrong(name, value, "finite numbers")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
+    """Give whole numbers in rows of so many columns; without columns, one after the other."""
+    array = _array(value)
+    if array.size == 0 and array.dtype.kind == "f":
+        array = array.astype(np.int64)
+    if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):
+        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" else _told(value)
+        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0")
+    if columns == 1 and array.ndim == 1:
+        array = array[:, None]
+    shape = (-1,) if columns is None else (-1, columns)
+    if array.ndim != len(shape) or (columns is not None and array.shape[1] != columns):
+        needed = "(n,)" if columns is None else f"(n, {columns})"
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}")
+    return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def items(name: str, value: object, kind: type[T]) -> list[T]:
+    """Give a list of objects of a class."""
+    if isinstance(value, kind):
+        raise InputError(f"`{name}` is one {kind.__name__}; give a list of them")
+    if not isinstance(value, Iterable):
+        raise wrong(name, value, f"a list of {kind.__name__}")
+    return [instance(f"{name}[{i}]", each, kind) for i, each in enumerate(value)]
+
+
+def table(name: str, value: object, of: str) -> dict[str, Any]:
+    """Give a dict that names groups."""
+    if not isinstance(value, Mapping):
+        raise wrong(name, value, f"a dict of group to {of}")
+    for group in value:
+        if not isinstance(group, str):
+            raise InputError(f"`{name}` has the key {_told(group)}; it must be the name of a group, a text")
+        text(f"{name}[{group!r}]", group)
+    return dict(value)
