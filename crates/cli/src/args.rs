@@ -5,7 +5,7 @@ use clap::{Args, Parser, Subcommand};
 use percute_estimator::{Acceleration, ContactForce, MOST_THREADS};
 use std::path::PathBuf;
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C; the summary of the steps done is still printed).";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the steps done is still printed).";
 
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]

@@ -1,4 +1,4 @@
-//! The command as a process: standard output and error, a terminal, Ctrl-C.
+//! The command as a process: standard output and error, a terminal, signals.
 
 use crate::command::{Console, command_line};
 use crate::failure::INTERRUPTED;
@@ -12,7 +12,8 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// error of this process, and returns its exit code.
 ///
 /// From here on Ctrl-C is the command's, not the caller's: the first asks for a clean stop, a
-/// second one ends the process. Where no handler can be set, the first ends it.
+/// second one ends the process; so do SIGTERM and SIGHUP, with which batch systems and terminals end
+/// what they run. Where no handler can be set, the first ends it.
 pub fn process<I>(arguments: I) -> u8
 where
     I: IntoIterator,

@@ -19,6 +19,12 @@ pub enum TimeError {
     /// No steps at all.
     #[error("`steps` is empty; give at least one time step in seconds")]
     Empty,
+    /// Instants that make no step.
+    #[error("there are {count} instants; at least 2 make a step")]
+    TooFew {
+        /// How many.
+        count: usize,
+    },
     /// A first instant that is not 0.
     #[error("the first instant is {time:e} s; it must be 0")]
     Start {
@@ -122,7 +128,7 @@ impl TimeGrid {
     /// Fewer than two instants, a first that is not 0, one that is not after that before it.
     pub fn from_instants(instants: Vec<f64>) -> Result<Self, TimeError> {
         if instants.len() < 2 {
-            return Err(TimeError::Empty);
+            return Err(TimeError::TooFew { count: instants.len() });
         }
         if instants[0] != 0.0 {
             return Err(TimeError::Start { time: instants[0] });
@@ -214,7 +220,7 @@ mod tests {
     fn instants_come_back_bit_by_bit_or_are_refused() {
         let grid = TimeGrid::with_step(1.3e-5, 2.9e-7).unwrap();
         assert_eq!(TimeGrid::from_instants(grid.instants().to_vec()), Ok(grid));
-        assert_eq!(TimeGrid::from_instants(vec![0.0]), Err(TimeError::Empty));
+        assert_eq!(TimeGrid::from_instants(vec![0.0]), Err(TimeError::TooFew { count: 1 }));
         assert_eq!(TimeGrid::from_instants(vec![1.0, 2.0]), Err(TimeError::Start { time: 1.0 }));
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = TimeGrid::from_instants(vec![0.0, 1.0, wrong]);

@@ -42,15 +42,15 @@ pub(crate) fn write_steps(
     Ok(())
 }
 
-/// Notes which instants VTK may read. It wants just as many `Values` as `NSteps` says: with more, it writes beyond
-/// its memory.
-pub(crate) fn note_steps(vtk: &Group, instants: &[f64]) -> Result<(), FileCause> {
-    let note = || {
-        let steps = vtk.group("Steps")?;
-        let values = steps.dataset("Values")?;
-        values.resize([instants.len()])?;
-        values.write_raw(instants)?;
-        steps.attr("NSteps")?.write_scalar(&(instants.len() as i64))
-    };
-    note().map_err(|error: hdf5::Error| refused(&error))
+/// Gives VTK the instants that it may read; for how many it looks, [`note_steps`] says, to be called once these are in
+/// the file.
+pub(crate) fn give_steps(vtk: &Group, instants: &[f64]) -> hdf5::Result<()> {
+    let values = vtk.group("Steps")?.dataset("Values")?;
+    values.resize([instants.len()])?;
+    values.write_raw(instants)
+}
+
+/// Notes how many instants VTK may read. It wants just as many `Values`: with more, it writes beyond its memory.
+pub(crate) fn note_steps(vtk: &Group, count: usize) -> hdf5::Result<()> {
+    vtk.group("Steps")?.attr("NSteps")?.write_scalar(&(count as i64))
 }

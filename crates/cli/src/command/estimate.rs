@@ -38,7 +38,8 @@ where
     let options = with_work(options(stored.options, arguments), work.threads, work.window);
     let instants = maps.instants.clone().unwrap_or_default();
     let times = stored.file.times();
-    let request = request(output, || Request { steps: instants.steps(times, options.every), fields: maps.fields });
+    let wanted = || Request { steps: instants.steps(times, options.every), fields: maps.fields };
+    let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
     let (simulation, estimate) = stored.estimate(options, &request, watch)?;

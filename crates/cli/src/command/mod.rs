@@ -91,6 +91,10 @@ fn case(file: &Path) -> Result<Case, Failure> {
 fn read(file: &Path) -> Result<Source, Failure> {
     let bytes = std::fs::read(file).map_err(|cause| Failure::Unreadable { file: file.to_path_buf(), cause })?;
     let name = file.display().to_string();
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") {
+        let message = "this is an HDF5 file and no case; a history is for `percute estimate`, any for `percute info`";
+        return Err(Failure::Argument(format!("{name}: {message}")));
+    }
     String::from_utf8(bytes).map(|text| Source::new(&name, text)).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
         Failure::Argument(format!("{name}:{line}: this is no UTF-8 text"))

@@ -3,7 +3,7 @@
 use super::outputs::{begin_history, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
-use crate::args::RunArguments;
+use crate::args::{MapArguments, RunArguments};
 use crate::case::{Case, CaseOf};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::history::stored_case;
@@ -37,7 +37,8 @@ where
     let options = with_work(case.options, work.threads, work.window);
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
-    let request = request(stored, || Request { steps: instants.steps(&case.times, options.every), fields });
+    let wanted = || Request { steps: instants.steps(&case.times, options.every), fields };
+    let request = request(stored, "--estimate", maps, wanted)?;
     let early = many_steps(case.times.step_count()).filter(|_| !work.quiet);
     console.warn(&early);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
@@ -79,7 +80,16 @@ fn files<'a, const D: usize, const N: usize>(
     ]
 }
 
-/// Maps are kept for a file only.
-pub(super) fn request(file: Option<Output<'_>>, wanted: impl FnOnce() -> Request) -> Request {
-    file.map_or_else(Request::default, |_| wanted())
+/// Maps are kept for a file only, which `flag` names.
+pub(super) fn request(
+    file: Option<Output<'_>>,
+    flag: &str,
+    given: &MapArguments,
+    wanted: impl FnOnce() -> Request,
+) -> Result<Request, Failure> {
+    if file.is_none() && (given.instants.is_some() || given.fields) {
+        let message = "--instants and --fields say what an estimate file holds; name one with";
+        return Err(Failure::Argument(format!("{message} {flag} FILE, or leave them out")));
+    }
+    Ok(file.map_or_else(Request::default, |_| wanted()))
 }

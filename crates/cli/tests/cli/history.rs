@@ -350,3 +350,21 @@ fn an_estimate_is_no_history() {
         assert!(stderr(&output).contains("this is an estimate, but a history is needed"), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn what_an_estimate_file_holds_needs_one() {
+    let bench = Bench::new(BLOCK);
+    bench.percute(&["simulate", "case.toml", "--quiet"]);
+    for (arguments, flag) in [
+        (["run", "case.toml", "--fields", "--quiet"], "--estimate FILE"),
+        (["run", "case.toml", "--instants", "3"], "--estimate FILE"),
+        (["estimate", "case.vtkhdf", "--instants", "3"], "--output FILE"),
+    ] {
+        let said = bench.percute(&arguments);
+        assert_eq!(said.status.code(), Some(2));
+        assert!(stderr(&said).contains(flag), "{}", stderr(&said));
+    }
+    let said = bench.percute(&["run", "case.vtkhdf"]);
+    assert_eq!(said.status.code(), Some(2));
+    assert!(stderr(&said).contains("a history is for `percute estimate`"), "{}", stderr(&said));
+}

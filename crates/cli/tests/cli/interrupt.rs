@@ -1,4 +1,4 @@
-//! Ctrl-C.
+//! Ctrl-C, and the signals of batch systems and closed terminals.
 
 use crate::common::{BLOCK, Bench, stderr, stdout};
 use crate::history::result;
@@ -35,7 +35,11 @@ fn interrupt(child: Child) -> Output {
 }
 
 fn send_interrupt(child: Child) -> Output {
-    let sent = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    send("INT", child)
+}
+
+fn send(signal: &str, child: Child) -> Output {
+    let sent = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status().unwrap();
     assert!(sent.success());
     child.wait_with_output().unwrap()
 }
@@ -116,6 +120,17 @@ fn ctrl_c_keeps_history_and_estimate_of_the_steps_done() {
 /// A run whose estimate takes half a minute.
 fn endless_with_file() -> Bench {
     Bench::new(&BLOCK.replace("end = 5e-6", "end = 5e-3").replace("nx = 5, ny = 4", "nx = 20, ny = 16"))
+}
+
+#[test]
+fn other_signals_close_a_history_too() {
+    for signal in ["TERM", "HUP"] {
+        let bench = long();
+        let output = send(signal, simulating(&bench));
+        assert_eq!(output.status.code(), Some(130), "{signal}: {}", stderr(&output));
+        let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
+        assert!(info.contains("; complete"), "{signal}: {info}");
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Writes an estimate, whole or not at all.
 
-use crate::create::{Overwrite, Unnamed};
+use crate::create::{Overwrite, Unnamed, refused};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{in_space, write_grid, write_groups};
-use crate::steps::{note_steps, write_steps};
+use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
 use percute_core::problem::Problem;
@@ -114,7 +114,7 @@ impl<const D: usize, const N: usize> Work<'_, D, N> {
         }
         let instants: Vec<f64> = maps.iter().map(|map| map.time).collect();
         write_steps(vtk, &instants, &point_offsets, &cell_offsets)?;
-        note_steps(vtk, &instants)
+        give_steps(vtk, &instants).and_then(|()| note_steps(vtk, instants.len())).map_err(|error| refused(&error))
     }
 
     fn fields(

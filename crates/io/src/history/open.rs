@@ -87,10 +87,8 @@ fn fields<const D: usize>(
 
 /// All instants: of a file that VTK may not read to its end yet, they are beside those that it sees.
 fn times(vtk: &Part<'_>, ours: &Part<'_>) -> Result<TimeGrid, FileCause> {
-    let values = match ours.optional("times")? {
-        Some(times) => times,
-        None => vtk.group("Steps")?.data("Values")?,
-    };
+    let seen = || vtk.group("Steps")?.data("Values");
+    let values = ours.optional("times")?.map_or_else(seen, Ok)?;
     values.expect_dimensions(1, "(instants)")?;
     TimeGrid::from_instants(values.floats()?).map_err(|cause| FileCause::Times { name: values.name, cause })
 }

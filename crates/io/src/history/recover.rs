@@ -4,7 +4,7 @@ use super::open::open;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};
-use crate::steps::note_steps;
+use crate::steps::{give_steps, note_steps};
 use std::fs::File;
 use std::path::Path;
 
@@ -42,28 +42,28 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     Ok(recovered)
 }
 
-/// Notes how many instants VTK may read: the first one at least, as it wants one.
+/// Lets VTK read so many instants: the first one at least, as it wants one. In two goes, so that a kill
+/// between them leaves it with the first.
 pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
-    let _alone = alone();
-    let file = writable(path)?;
-    let times = file.dataset("percute/times").and_then(|times| times.read_raw::<f64>());
-    let times = times.map_err(|error| detail(&error))?;
-    let vtk = file.group("VTKHDF").map_err(|error| detail(&error))?;
-    note_steps(&vtk, times.get(..count.max(1)).unwrap_or(&times)).map_err(|cause| cause.to_string())?;
-    drop(vtk);
-    file.close().map_err(|error| detail(&error))
+    change(path, |file| {
+        let times = file.dataset("percute/times")?.read_raw::<f64>()?;
+        give_steps(&file.group("VTKHDF")?, times.get(..count.max(1)).unwrap_or(&times))
+    })?;
+    change(path, |file| note_steps(&file.group("VTKHDF")?, count.max(1)))
 }
 
 fn set_complete(path: &Path) -> Result<(), String> {
-    let _alone = alone();
-    let file = writable(path)?;
-    let complete = file.dataset("percute/complete").and_then(|set| set.write_scalar(&1_u8));
-    complete.map_err(|error| detail(&error))?;
-    file.close().map_err(|error| detail(&error))
+    change(path, |file| file.dataset("percute/complete")?.write_scalar(&1_u8))
 }
 
-/// Opened without a lock: whoever reads the file while its writer finishes it holds one, and only a number
-/// changes.
-fn writable(path: &Path) -> Result<hdf5::File, String> {
-    hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path).map_err(|error| detail(&error))
+/// Changes a file. It is opened without a lock: whoever reads it while its writer finishes it holds one, and only
+/// what VTK sees changes.
+fn change(path: &Path, make: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> Result<(), String> {
+    let _alone = alone();
+    let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path);
+    let changed = file.and_then(|file| {
+        make(&file)?;
+        file.close()
+    });
+    changed.map_err(|error| detail(&error))
 }
