@@ -89,12 +89,15 @@ class StoredEstimate:
 
     def measures(self) -> dict[str, Any]:
         """Single numbers."""
-        single = {name: self.report[name] for name in ("time_of_sup", "steps", "end", "kept_impulse")}
-        return {name: self.report["error"][name] for name in MEASURES} | single
+        report, kept = self.report, self.report["kept_impulse"]
+        single: dict[str, Any] = {name: float(report[name]) for name in ("time_of_sup", "end")}
+        single["steps"] = int(report["steps"])
+        single["kept_impulse"] = None if kept is None else float(kept)
+        return {name: float(report["error"][name]) for name in MEASURES} | single
 
     def parts(self) -> tuple[float, float, float]:
         """Parts of η at the time of the sup (J)."""
-        kinetic, elastic, contact = (self.report["parts"][name] for name in PARTS)
+        kinetic, elastic, contact = (float(self.report["parts"][name]) for name in PARTS)
         return kinetic, elastic, contact
 
     def over_time(self) -> dict[str, NDArray[np.float64]]:
