@@ -103,26 +103,34 @@ class History:
     @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        mapped = self._mapped.get("displacement")
+        mapped = self._view("displacement")
         return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
 
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
-        mapped = self._mapped.get("reaction")
+        mapped = self._view("reaction")
         return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
-        mapped = self._mapped.get("touching")
+        mapped = self._view("touching")
         # Any byte but 0 says yes; as a bool of numpy only 1 may.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
         return mapped.view(np.bool_)
 
+    def _view(self, name: str) -> NDArray[Any] | None:
+        """Give an array of the file; None if there is none that can be mapped."""
+        array = self._mapped.get(name)
+        # Whoever reads what was cut off a mapped file ends by a signal.
+        if array is not None and array._mmap.size() < array.offset + array.nbytes:  # type: ignore[attr-defined]
+            raise FileFormatError(f"{self.path}: the file has been truncated")
+        return None if array is None else array[: len(self)]
+
     @cached_property
-    def _mapped(self) -> dict[str, NDArray[Any]]:
+    def _mapped(self) -> dict[str, np.memmap[Any, Any]]:
         """Map the arrays of the file that can be into memory: all at once, so that they are those of one run."""
         path = self.path
         if path is None:
@@ -132,7 +140,7 @@ class History:
                 # Asked once the file is open: this fails if it is another one than before.
                 arrays = {name: (shape, offset) for name, shape, offset in self._data.arrays() if 0 not in shape}
                 return {
-                    name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))[: len(self)]
+                    name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))
                     for name, dtype in MAPPED.items()
                     if name in arrays
                 }

@@ -224,10 +224,12 @@ def test_the_arrays_of_a_history_are_those_of_one_file(stored: pc.History, tmp_p
 
 def test_a_history_whose_file_is_gone_or_short(stored: pc.History) -> None:
     assert stored.path is not None
-    short, gone = pc.open(stored.path), pc.open(stored.path)
+    mapped, short, gone = pc.open(stored.path), pc.open(stored.path), pc.open(stored.path)
+    assert mapped.displacement.any()  # type: ignore[union-attr]
     os.truncate(stored.path, 5000)
-    with pytest.raises(pc.PercuteError, match="block.vtkhdf"):
-        _ = short.touching  # type: ignore[union-attr]
+    for history in (mapped, short):
+        with pytest.raises(pc.PercuteError, match="block.vtkhdf"):
+            _ = history.touching  # type: ignore[union-attr]
     stored.path.unlink()
     with pytest.raises(pc.MissingFileError, match="block.vtkhdf"):
         _ = gone.touching  # type: ignore[union-attr]
