@@ -18,10 +18,12 @@ __all__ = [
     "ProblemData",
     "Progress",
     "__version__",
+    "check_writable",
     "command",
     "estimate",
     "is_estimate",
     "open_history",
+    "same_file",
     "simulate",
     "simulate_case",
 ]
@@ -189,6 +191,8 @@ class BarImpactData:
     def contact_force(self, x: _Floats, t: _Floats) -> _Floats: ...
     def error(self, history: HistoryData) -> tuple[float, float, dict[str, _Floats]]: ...
 
+def check_writable(what: str, file: str | PathLike[str]) -> None: ...
+def same_file(a: str | PathLike[str], b: str | PathLike[str]) -> bool: ...
 def command(arguments: Sequence[str]) -> int: ...
 def simulate(
     problem: ProblemData,

@@ -94,8 +94,7 @@ def run(
         report = asked["estimate"]
         # Maps are what an estimate file is for; nobody else asked for them.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
-        if report is not None and report.exists() and not replace:
-            raise ExistingFileError(f"{os.fspath(report)!r} exists already; name another file, or say `overwrite=True`")
+        _check_outputs(name, "[output] history" if told is None else "`store`", file, report, replace)
         history = History._of(_percute.simulate_case(read, absolute(file), replace, tell), name=name)
         try:
             estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=fields)
@@ -105,6 +104,22 @@ def run(
         except BaseException as error:
             error.history = history  # type: ignore[attr-defined]
             raise
+
+
+def _check_outputs(
+    case: str, what: str, history: str | os.PathLike[str] | None, report: Path | None, replace: bool
+) -> None:
+    """Make sure that all files can be made, that the two are not one, and that neither is the case."""
+    outputs = [(what, history), ("[output] estimate", report)]
+    files = [(key, os.fspath(file)) for key, file in outputs if file is not None]
+    if len(files) == 2 and _percute.same_file(files[0][1], files[1][1]):
+        raise InputError(f"{what} {files[0][1]!r} is the file of [output] estimate too; give it another")
+    for key, file in files:
+        if _percute.same_file(file, case):
+            raise InputError(f"{key} {file!r} is the case itself; give it another file")
+        if os.path.lexists(file) and not replace:
+            raise ExistingFileError(f"{key} {file!r}: the file exists already; give another name, or overwrite=True")
+        _percute.check_writable(key, file)
 
 
 def _read(case: str | os.PathLike[str]) -> tuple[str, str]:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.checks import encodable, flag, instance, numbers, optional_number
 from percute.checks import path as file_name
-from percute.errors import PercuteError
+from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = ["Balance", "History", "simulate"]
+
+MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction": np.dtype("<f8"), "touching": np.dtype("u1")}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -101,35 +103,55 @@ class History:
     @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        mapped = self._mapped("displacement", np.dtype("<f8"))
+        mapped = self._view("displacement")
         return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
 
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
-        mapped = self._mapped("reaction", np.dtype("<f8"))
+        mapped = self._view("reaction")
         return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
-        mapped = self._mapped("touching", np.dtype("u1"))
+        mapped = self._view("touching")
         # Any byte but 0 says yes; as a bool of numpy only 1 may.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
         return mapped.view(np.bool_)
 
-    def _mapped(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any] | None:
-        """Map an array of the file into memory; None if there is none that can be."""
-        path = self.path
-        for known, shape, offset in self._arrays if path is not None else ():
-            if known == name and path is not None and 0 not in shape:
-                return np.memmap(path, dtype, "r", offset, tuple(shape))[: len(self)]
-        return None
+    def _view(self, name: str) -> NDArray[Any] | None:
+        """Give an array of the file; None if there is none that can be mapped."""
+        array = self._mapped.get(name)
+        # Whoever reads what was cut off a mapped file ends by a signal.
+        if array is not None and array._mmap.size() < array.offset + array.nbytes:  # type: ignore[attr-defined]
+            raise FileFormatError(f"{self.path}: the file has been truncated")
+        return None if array is None else array[: len(self)]
 
     @cached_property
-    def _arrays(self) -> Sequence[tuple[str, list[int], int]]:
-        return self._data.arrays()
+    def _mapped(self) -> dict[str, np.memmap[Any, Any]]:
+        """Map the arrays of the file that can be into memory: all at once, so that they are those of one run."""
+        path = self.path
+        if path is None:
+            return {}
+        try:
+            with path.open("rb") as file:
+                # Asked once the file is open: this fails if it is another one than before.
+                arrays = {name: (shape, offset) for name, shape, offset in self._data.arrays() if 0 not in shape}
+                return {
+                    name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))
+                    for name, dtype in MAPPED.items()
+                    if name in arrays
+                }
+        except PercuteError:
+            raise
+        except FileNotFoundError:
+            raise MissingFileError(f"{path}: the file is no longer there") from None
+        except OSError as error:
+            raise StorageError(f"{path}: cannot be read: {error.strerror}") from error
+        except ValueError:
+            raise FileFormatError(f"{path}: the file has been truncated") from None
 
     @cached_property
     def contact_nodes(self) -> NDArray[np.int64]:

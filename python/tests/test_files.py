@@ -1,7 +1,9 @@
 """Files of histories, and the ways in which they are missing, taken or wrong."""
 
+import json
 import os
 import pickle
+import re
 from pathlib import Path
 
 import h5py
@@ -144,3 +146,115 @@ def test_a_saved_estimate_comes_back(make: object, fields: bool, tmp_path: Path)
     plt.close("all")
     with pytest.raises(pc.InputError, match="copy that"):
         opened.save(tmp_path / "other.vtkhdf")  # type: ignore[union-attr]
+
+
+CASE = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text() + "\n[output]\n"
+
+
+@pytest.mark.parametrize(
+    ("outputs", "store", "error", "message"),
+    [
+        ('estimate = "one.vtkhdf"', "one.vtkhdf", pc.InputError, "`store` 'one.vtkhdf' is the file of [output] estimate too"),
+        ('estimate = "one.vtkhdf"', "./one.vtkhdf", pc.InputError, "`store`"),
+        ('history = "one.vtkhdf"\nestimate = "one.vtkhdf"', None, pc.InputError, "[output] history 'one.vtkhdf' is the"),
+        ('estimate = "case.toml"', None, pc.InputError, "[output] estimate 'case.toml' is the case itself"),
+        ("", "case.toml", pc.InputError, "`store` 'case.toml' is the case itself"),
+        ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.StorageError, "[output] estimate: none/one.vtkhdf"),
+        ('estimate = "folder"', "two.vtkhdf", pc.StorageError, "it is no regular file"),
+    ],
+)
+def test_outputs_of_a_case_that_cannot_be(
+    outputs: str, store: str | None, error: type[Exception], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before the simulation: a run may take hours."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "case.toml").write_text(CASE + outputs)
+    heard: list[pc.Progress] = []
+    with pytest.raises(error, match=re.escape(message)):
+        pc.run("case.toml", store=store, overwrite=True, progress=heard.append)
+    assert heard == [] and sorted(each.name for each in tmp_path.iterdir()) == ["case.toml", "folder"]
+
+
+def test_the_arrays_of_a_history_are_those_of_one_file(stored: pc.History, tmp_path: Path) -> None:
+    """Whichever was asked for before another file came in its place."""
+    assert stored.path is not None
+    reaction, touching = stored.reaction.copy(), stored.touching.copy()
+    again, late = pc.open(stored.path), pc.open(stored.path)
+    assert isinstance(again, pc.History) and isinstance(late, pc.History)
+    assert again.displacement.any()
+    pc.simulate(block(friction=0.0), end=13e-6, courant=0.9, store=stored.path, overwrite=True)
+    assert np.array_equal(again.reaction, reaction) and np.array_equal(again.touching, touching)
+    with pytest.raises(pc.StorageError, match="replaced"):
+        _ = late.reaction
+
+
+def test_a_history_whose_file_is_gone_or_short(stored: pc.History) -> None:
+    assert stored.path is not None
+    mapped, short, gone = pc.open(stored.path), pc.open(stored.path), pc.open(stored.path)
+    assert mapped.displacement.any()  # type: ignore[union-attr]
+    os.truncate(stored.path, 5000)
+    for history in (mapped, short):
+        with pytest.raises(pc.PercuteError, match="block.vtkhdf"):
+            _ = history.touching  # type: ignore[union-attr]
+    stored.path.unlink()
+    with pytest.raises(pc.MissingFileError, match="block.vtkhdf"):
+        _ = gone.touching  # type: ignore[union-attr]
+
+
+def test_groups_of_any_name_come_back_from_an_estimate(tmp_path: Path) -> None:
+    names = ["a/b", "%", "", ".", "..", "é\0x", "100% steel", "%2F", "x%25"]
+    mesh = pc.Mesh([0.0, 0.5, 1.0], [[0, 1], [1, 2]], {name: [0] for name in names}, {name: [1] for name in names})
+    problem = pc.Problem(mesh, material=pc.Elastic(young=1.0, density=1.0, section=1.0), initial_velocity=[0.0, 0.0, 1.0])
+    pc.estimate(pc.simulate(problem, end=1.0, courant=0.9)).save(tmp_path / "error.vtkhdf")
+    again = pc.open(tmp_path / "error.vtkhdf").mesh  # type: ignore[union-attr]
+    assert set(again.groups) == set(again.elements) == set(names)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("percute/report", "{"),
+        ("percute/report", "[]"),
+        ("percute/report", '{"error": 3}'),
+        ("percute/report", {"sup": None}),
+        ("percute/report", {"mean": "much"}),
+        ("VTKHDF/CellData/total", None),
+        ("VTKHDF/CellData/total", np.zeros(3)),
+        ("VTKHDF/CellData/by_element", np.zeros(3)),
+        ("VTKHDF/CellData/compatible_stress", None),
+        ("VTKHDF/Steps/Values", np.zeros(9)),
+        ("VTKHDF/Connectivity", np.zeros(4, int)),
+        ("VTKHDF/Connectivity", (2**36,)),
+        ("VTKHDF/CellData/total", (2**36,)),
+        ("VTKHDF/Points", (2**36, 3)),
+        ("percute/over_time/total", None),
+        ("percute/over_time/total", (2**36,)),
+    ],
+)
+def test_an_estimate_file_that_is_damaged(name: str, content: object, tmp_path: Path) -> None:
+    path = tmp_path / "error.vtkhdf"
+    pc.estimate(pc.simulate(block(), end=2e-6, courant=0.9), instants=3, fields=True).save(path)
+    with h5py.File(path, "r+") as file:
+        report = json.loads(file["percute/report"].asstr()[()])
+        del file[name]
+        if isinstance(content, dict):
+            file[name] = json.dumps(report | {"error": report["error"] | content})
+        elif isinstance(content, tuple):
+            # Chunks that were never written: a small file that claims to be huge.
+            file.create_dataset(name, content, "f8", chunks=(1024, *content[1:]))
+        elif content is not None:
+            file[name] = content
+    with pytest.raises(pc.FileFormatError, match="error.vtkhdf"):
+        opened = pc.open(path)
+        assert isinstance(opened, pc.Estimate)
+        _ = opened.mesh, opened.maps, opened.over_time, opened.by_element
+
+
+def test_an_estimate_whose_file_is_gone(tmp_path: Path) -> None:
+    path = tmp_path / "error.vtkhdf"
+    pc.estimate(pc.simulate(bar(), end=2e-6, courant=0.9)).save(path)
+    opened = pc.open(path)
+    path.unlink()
+    with pytest.raises(pc.MissingFileError, match="error.vtkhdf"):
+        _ = opened.mesh  # type: ignore[union-attr]

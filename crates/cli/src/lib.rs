@@ -16,7 +16,7 @@ mod process;
 mod progress;
 pub mod report;
 pub mod run;
-mod writable;
+pub mod writable;
 
 pub use command::{Console, command_line};
 pub use failure::{BAD_INPUT, DONE, FAILED, Failure, INTERRUPTED};

@@ -5,7 +5,10 @@ use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Makes sure that a file can be made or replaced. What is there is left as it is.
-pub(crate) fn check(file: &Path) -> Result<()> {
+///
+/// # Errors
+/// No folder, no permission, or something else than a file in its place.
+pub fn check(file: &Path) -> Result<()> {
     // Not the target of a link: a link to nothing must not be taken for a new file and removed.
     let new = match std::fs::symlink_metadata(file) {
         Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
@@ -18,7 +21,8 @@ pub(crate) fn check(file: &Path) -> Result<()> {
 }
 
 /// Whether two paths name one file, be it there or not.
-pub(crate) fn same(a: &Path, b: &Path) -> bool {
+#[must_use]
+pub fn same(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
 }
 

@@ -3,8 +3,23 @@
 use crate::any::{Any, each};
 use crate::{door, errors};
 use percute::case::{Case, CaseOf, Instants, Source};
+use percute::writable;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// Makes sure that a file can be made, which `what` names.
+#[pyfunction]
+pub(crate) fn check_writable(py: Python<'_>, what: &str, file: PathBuf) -> PyResult<()> {
+    let refused = |cause: std::io::Error| errors::storage(py, &format!("{what}: {}: {cause}", file.display()));
+    writable::check(&file).map_err(refused)
+}
+
+/// Whether two paths name one file, be it there or not.
+#[pyfunction]
+pub(crate) fn same_file(a: PathBuf, b: PathBuf) -> bool {
+    writable::same(&a, &b)
+}
 
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]

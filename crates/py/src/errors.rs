@@ -32,6 +32,11 @@ pub(crate) fn input(py: Python<'_>, message: &str) -> PyErr {
     exception(py, "InputError", message)
 }
 
+/// A file that cannot be made.
+pub(crate) fn storage(py: Python<'_>, message: &str) -> PyErr {
+    exception(py, "StorageError", message)
+}
+
 /// A mesh that was refused.
 pub(crate) fn mesh(py: Python<'_>, error: &MeshError) -> PyErr {
     input(py, &error.to_string())

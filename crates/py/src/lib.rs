@@ -24,7 +24,7 @@ mod _percute {
     use std::ffi::OsString;
 
     #[pymodule_export]
-    use super::case::CaseData;
+    use super::case::{CaseData, check_writable, same_file};
     #[pymodule_export]
     use super::door::ProgressNow;
     #[pymodule_export]
