@@ -4,7 +4,7 @@ use crate::case::{CaseError, Unsayable};
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
 use percute_estimator::{EstimateError, RunError};
-use percute_io::{FileCause, FileError};
+use percute_io::FileError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -85,7 +85,8 @@ impl Failure {
             | Self::Exists { .. }
             | Self::History { .. }
             | Self::Unsayable(_) => BAD_INPUT,
-            Self::File(error) => file_code(&error.cause),
+            Self::File(error) if error.cause.is_of_the_system() => FAILED,
+            Self::File(_) => BAD_INPUT,
             Self::Run(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
         }
     }
@@ -114,25 +115,10 @@ impl From<SimulationError> for Failure {
     }
 }
 
-/// What the system does not let happen is no fault of the input.
-fn file_code(cause: &FileCause) -> u8 {
-    match cause {
-        FileCause::InUse
-        | FileCause::Create { .. }
-        | FileCause::NoSpace { .. }
-        | FileCause::Write { .. }
-        | FileCause::Finish { .. }
-        | FileCause::Lost
-        | FileCause::Read { .. }
-        | FileCause::Replaced
-        | FileCause::TooLarge { .. } => FAILED,
-        _ => BAD_INPUT,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use percute_io::FileCause;
 
     #[test]
     fn a_run_that_fails_is_not_bad_input() {

@@ -41,8 +41,6 @@ pub struct Stored<const D: usize, const N: usize> {
     pub problem: Problem<D, N>,
     /// Options of the estimate, from the same statement.
     pub options: Options,
-    /// Δt_c (s), eq. \[34\].
-    pub critical_step: f64,
     /// The name of the file, as it was given.
     pub name: String,
 }
@@ -73,14 +71,16 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         let source = Source::new(format!("{name}, statement of the problem"), file.statement());
         let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());
         let (problem, options) = problem_from(&source, file.mesh().clone(), u, v)?;
-        Ok(Self { critical_step: critical_time_step(&problem), file, problem, options, name })
+        Ok(Self { file, problem, options, name })
     }
 
-    /// What a report on it is about.
+    /// What a report on it is about: computes the critical step, which takes a while on a large mesh and
+    /// which only reports need.
     #[must_use]
     pub fn subject(&self) -> Subject<'_, D, N> {
-        let Self { file, problem, critical_step, name, .. } = self;
-        Subject { name, problem, times: file.times(), critical_step: *critical_step, held: Some(file.count()) }
+        let Self { file, problem, name, .. } = self;
+        let critical_step = critical_time_step(problem);
+        Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()) }
     }
 
     /// Estimates the error of the steps it holds; with the same options, bit by bit what a run that

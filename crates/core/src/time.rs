@@ -5,6 +5,18 @@ use thiserror::Error;
 /// Runs longer than this many steps are taken for a mistake of unit.
 const MOST_STEPS: f64 = 1e8;
 
+/// A step may exceed the critical one by this much, so that a ratio of 1 and a step copied from a summary
+/// with seven digits are not refused.
+const SLACK: f64 = 1e-6;
+/// An end agrees with the sum of steps if they differ by no more than this, relatively.
+const AGREES: f64 = 1e-9;
+
+/// Whether a step (s) is at most the critical one (s), but for the digits that a printed one lacks.
+#[must_use]
+pub fn is_stable(step: f64, critical: f64) -> bool {
+    step <= critical * (1.0 + SLACK)
+}
+
 /// Why a time grid was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TimeError {
@@ -165,6 +177,12 @@ impl TimeGrid {
     pub fn step(&self, n: usize) -> f64 {
         let n = n.min(self.step_count() - 1);
         self.instants[n + 1] - self.instants[n]
+    }
+
+    /// Whether the grid ends at `end` (s), but for rounding of what was added up; not at NaN.
+    #[must_use]
+    pub fn ends_at(&self, end: f64) -> bool {
+        (end - self.end()).abs() <= AGREES * self.end()
     }
 
     /// Longest step (s).

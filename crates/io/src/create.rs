@@ -24,6 +24,14 @@ pub enum Overwrite {
     Replace,
 }
 
+impl Overwrite {
+    /// Replaces if that is allowed.
+    #[must_use]
+    pub fn allowed(replace: bool) -> Self {
+        if replace { Self::Replace } else { Self::Refuse }
+    }
+}
+
 /// A file that has no name yet.
 pub(crate) struct Unnamed {
     temporary: NamedTempFile,

@@ -208,6 +208,23 @@ pub enum FileCause {
 }
 
 impl FileCause {
+    /// Whether the system does not let it happen: no fault of what was given.
+    #[must_use]
+    pub fn is_of_the_system(&self) -> bool {
+        matches!(
+            self,
+            Self::InUse
+                | Self::Create { .. }
+                | Self::NoSpace { .. }
+                | Self::Write { .. }
+                | Self::Finish { .. }
+                | Self::Lost
+                | Self::Read { .. }
+                | Self::Replaced
+                | Self::TooLarge { .. }
+        )
+    }
+
     /// Joins the cause to its file.
     #[must_use]
     pub fn at(self, path: &Path) -> FileError {

@@ -21,4 +21,5 @@ pub use create::Overwrite;
 pub use error::{FileCause, FileError};
 pub use kind::{Kind, kind};
 pub use library::hdf5_version;
+pub use read::is_hdf5;
 pub use write::{Case, Provenance};

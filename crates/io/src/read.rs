@@ -94,12 +94,23 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
         return Err(FileCause::NotAFile);
     }
     let held = Held::shared(File::open(path).map_err(refused)?)?;
+    if begins_as_hdf5(held.file()).map_err(refused)? { Ok((held, found.len())) } else { Err(FileCause::NotHdf5) }
+}
+
+/// Whether a file is HDF5, by its first bytes. What is no regular file is not read.
+///
+/// # Errors
+/// A file that is missing or cannot be read.
+pub fn is_hdf5(path: &Path) -> io::Result<bool> {
+    if path.metadata()?.is_file() { begins_as_hdf5(&File::open(path)?) } else { Ok(false) }
+}
+
+/// A block of the user's own before the signature is possible, but nobody's histories have one.
+fn begins_as_hdf5(file: &File) -> io::Result<bool> {
     let mut first = [0; 8];
-    match held.file().read_exact_at(&mut first, 0) {
-        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(refused(error)),
-        // A block of the user's own before the signature is possible, but nobody's histories have one.
-        _ if first != SIGNATURE => Err(FileCause::NotHdf5),
-        _ => Ok((held, found.len())),
+    match file.read_exact_at(&mut first, 0) {
+        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(error),
+        _ => Ok(first == SIGNATURE),
     }
 }
 

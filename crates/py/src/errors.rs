@@ -133,16 +133,8 @@ pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
                 format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
             return exception(py, "ExistingFileError", &message);
         }
-        FileCause::NotAFile
-        | FileCause::InUse
-        | FileCause::Create { .. }
-        | FileCause::NoSpace { .. }
-        | FileCause::Write { .. }
-        | FileCause::Finish { .. }
-        | FileCause::Lost
-        | FileCause::Read { .. }
-        | FileCause::Replaced
-        | FileCause::TooLarge { .. } => "StorageError",
+        FileCause::NotAFile => "StorageError",
+        cause if cause.is_of_the_system() => "StorageError",
         _ => "FileFormatError",
     };
     exception(py, name, &error.to_string())

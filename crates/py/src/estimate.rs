@@ -253,7 +253,7 @@ impl EstimateData {
 
     /// Writes an estimate file.
     fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool, name: String) -> PyResult<()> {
-        let overwrite = if overwrite { Overwrite::Replace } else { Overwrite::Refuse };
+        let overwrite = Overwrite::allowed(overwrite);
         let saved = each!(&self.made, made => {
             let made = made.clone();
             door::through(py, None, move |_| made.save(&path, overwrite, &name))?

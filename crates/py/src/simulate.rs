@@ -143,7 +143,7 @@ fn into_file<const D: usize, const N: usize>(
     store: &Store,
     mut watch: Watch,
 ) -> Result<(), StoreError> {
-    let overwrite = if store.overwrite { Overwrite::Replace } else { Overwrite::Refuse };
+    let overwrite = Overwrite::allowed(store.overwrite);
     let plan = plan(problem, times, &store.options, store.case.as_ref())?;
     let mut writer = plan.create(&store.path, overwrite)?;
     store.ours.store(true, Relaxed);

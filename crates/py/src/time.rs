@@ -1,13 +1,8 @@
 //! The instants of a run, as `simulate` takes them.
 
 use crate::errors;
-use percute_core::time::TimeGrid;
+use percute_core::time::{TimeGrid, is_stable};
 use pyo3::prelude::*;
-
-/// A step may exceed the critical one by this much, as in case files.
-const SLACK: f64 = 1e-6;
-/// `end` agrees with the sum of `steps` if they differ by no more than this, relatively.
-const AGREES: f64 = 1e-9;
 
 /// The instants from 0 to `end`: by the ratio to the critical step, by the step, or step by step (s).
 ///
@@ -47,7 +42,7 @@ pub(crate) fn grid(
     };
     let grid = made.map_err(|error| errors::time(py, &error))?;
     match end {
-        Some(end) if (end - grid.end()).abs() > AGREES * grid.end() || end.is_nan() => Err(refused(format!(
+        Some(end) if !grid.ends_at(end) => Err(refused(format!(
             "`end` is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree",
             grid.end()
         ))),
@@ -60,7 +55,7 @@ fn needed(py: Python<'_>, end: Option<f64>) -> PyResult<f64> {
 }
 
 fn below(py: Python<'_>, name: &str, step: f64, critical: f64) -> PyResult<()> {
-    if step <= critical * (1.0 + SLACK) || step.is_nan() {
+    if is_stable(step, critical) || step.is_nan() {
         return Ok(());
     }
     let message = format!(

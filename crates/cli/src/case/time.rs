@@ -4,13 +4,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use crate::report::number::trimmed;
-use percute_core::time::{TimeError, TimeGrid};
-
-/// A step may exceed the critical one by this much, so that `courant = 1` and a step copied from a
-/// summary with seven digits are not refused.
-const SLACK: f64 = 1e-6;
-/// `end` agrees with the sum of `steps` if they differ by no more than this, relatively.
-const AGREES: f64 = 1e-9;
+use percute_core::time::{TimeError, TimeGrid, is_stable};
 
 /// How the steps were stated.
 enum Steps<'a> {
@@ -82,7 +76,7 @@ impl Wanted<'_> {
 
     fn agrees(&self, grid: &TimeGrid) -> Result<(), CaseError> {
         match &self.end {
-            Some((end, at)) if (end - grid.end()).abs() > AGREES * grid.end() => {
+            Some((end, at)) if !grid.ends_at(*end) => {
                 let (given, sum) = (at.shown(), trimmed(grid.end(), 10));
                 Err(at.error(format!(
                     "is {given} s, but `steps` add up to {sum} s; leave `end` out or make the two agree"
@@ -94,7 +88,7 @@ impl Wanted<'_> {
 }
 
 fn below(step: f64, critical: f64, at: &Value<'_>) -> Result<(), CaseError> {
-    if step <= critical * (1.0 + SLACK) {
+    if is_stable(step, critical) {
         return Ok(());
     }
     let given = at.shown();

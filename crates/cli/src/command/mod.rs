@@ -13,6 +13,7 @@ use crate::case::{Case, Source};
 use crate::failure::{BAD_INPUT, DONE, FAILED, Failure};
 use crate::report::Warning;
 use clap::Parser;
+use percute_io::is_hdf5;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
@@ -89,12 +90,14 @@ fn case(file: &Path) -> Result<Case, Failure> {
 
 /// Reads a text; one that is no UTF-8 is refused with the line where it stops being so.
 fn read(file: &Path) -> Result<Source, Failure> {
-    let bytes = std::fs::read(file).map_err(|cause| Failure::Unreadable { file: file.to_path_buf(), cause })?;
+    let unreadable = |cause| Failure::Unreadable { file: file.to_path_buf(), cause };
     let name = file.display().to_string();
-    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") {
+    // Asked first: a history may be larger than memory.
+    if is_hdf5(file).map_err(unreadable)? {
         let message = "this is an HDF5 file and no case; a history is for `percute estimate`, any for `percute info`";
         return Err(Failure::Argument(format!("{name}: {message}")));
     }
+    let bytes = std::fs::read(file).map_err(unreadable)?;
     String::from_utf8(bytes).map(|text| Source::new(&name, text)).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
         Failure::Argument(format!("{name}:{line}: this is no UTF-8 text"))

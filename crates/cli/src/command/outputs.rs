@@ -10,11 +10,6 @@ use percute_estimator::Options;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
 
-/// Whether files that are there may be replaced.
-pub(super) fn overwrite(force: bool) -> Overwrite {
-    if force { Overwrite::Replace } else { Overwrite::Refuse }
-}
-
 /// A file that somebody else has made since it was checked.
 pub(super) fn taken(error: FileError) -> Failure {
     match error.cause {
@@ -32,7 +27,7 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
     console: &mut Console<'_>,
 ) -> Result<Writer<D>, Failure> {
     let plan = history::plan(&case.problem, &case.times, &case.options, Some(&case.source))?;
-    let writer = plan.create(output.file, overwrite(force)).map_err(taken)?;
+    let writer = plan.create(output.file, Overwrite::allowed(force)).map_err(taken)?;
     if !quiet {
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }

@@ -1,7 +1,7 @@
 //! What a run and the estimate of a history have in common: report, picture, estimate file.
 
 use super::Console;
-use super::outputs::{overwrite, taken};
+use super::outputs::taken;
 use crate::args::{PrintArguments, WorkArguments};
 use crate::case::statement;
 use crate::failure::{DONE, Failure, INTERRUPTED};
@@ -10,7 +10,7 @@ use crate::picture::{self, Drawn};
 use crate::report::{Report, summary};
 use percute_core::problem::Problem;
 use percute_estimator::{Estimate, Options};
-use percute_io::{Case, estimate_file};
+use percute_io::{Case, Overwrite, estimate_file};
 
 /// What is to be given to the user.
 pub(super) struct Given<'a, const D: usize, const N: usize> {
@@ -59,6 +59,6 @@ fn store<const D: usize, const N: usize>(
 ) -> Result<(), Failure> {
     let Given { problem, options, case, estimate, .. } = given;
     let statement = statement(problem, Some(options))?;
-    estimate_file::write(output.file, overwrite(force), problem, estimate, &statement, case.as_ref(), json)
+    estimate_file::write(output.file, Overwrite::allowed(force), problem, estimate, &statement, case.as_ref(), json)
         .map_err(taken)
 }

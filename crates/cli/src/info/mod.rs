@@ -136,7 +136,7 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
 /// What a history holds.
 #[must_use]
 pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info {
-    let (file, problem) = (&stored.file, &stored.problem);
+    let (file, problem, subject) = (&stored.file, &stored.problem, stored.subject());
     let [velocity, acceleration] = file.given();
     Info::History(Box::new(HistoryInfo {
         format: FORMAT,
@@ -144,8 +144,8 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         file: stored.name.clone(),
         written_by: WrittenBy::new(file.provenance()),
         case: file.case().map(|case| case.name.clone()),
-        problem: problem_summary(&stored.subject()),
-        time: TimeInfo::new(file.times(), stored.critical_step),
+        problem: problem_summary(&subject),
+        time: TimeInfo::new(file.times(), subject.critical_step),
         steps: file.count().checked_sub(1),
         complete: file.is_complete(),
         given: Given { velocity, acceleration },
