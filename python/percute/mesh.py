@@ -16,8 +16,8 @@ from percute.errors import InputError
 
 __all__ = ["Mesh"]
 
-MOST = 20_000_000
-"""Elements that a generated mesh may have, as the generators say."""
+MOST, MOST_RINGS = 20_000_000, 1825
+"""Elements, and rings of a disc, that a generated mesh may have, as the generators say."""
 
 
 class Mesh:
@@ -88,6 +88,17 @@ class Mesh:
         """
         sides = number("width", width), number("height", height)
         return cls._of(_percute.MeshData.rectangle(*sides, whole("nx", nx, most=MOST), whole("ny", ny, most=MOST)))
+
+    @classmethod
+    def disc(cls, radius: float, *, rings: int) -> Mesh:
+        """Make a disc of this radius (m) around the origin, of 6 ``rings``² triangles of nearly one size.
+
+        Returns
+        -------
+        Mesh
+            Its outline, which has a node at the lowest point, is the group ``boundary``.
+        """
+        return cls._of(_percute.MeshData.disc(number("radius", radius), whole("rings", rings, most=MOST_RINGS)))
 
     @classmethod
     def bar(cls, length: float, *, elements: int) -> Mesh:

@@ -27,6 +27,12 @@ impl MeshData {
     }
 
     #[staticmethod]
+    fn disc(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
+        let mesh = door::through(py, None, move |_| TriangleMesh::disc(radius, rings))?;
+        Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+    }
+
+    #[staticmethod]
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
         let mesh = door::through(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
         Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })

@@ -5,8 +5,9 @@ use super::table::Table;
 use super::value::Value;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 
-const KEYS: [&str; 6] = ["rectangle", "bar", "points", "cells", "groups", "elements"];
+const KEYS: [&str; 7] = ["rectangle", "disc", "bar", "points", "cells", "groups", "elements"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
+const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
 const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
 const ELEMENTS: &str = "{ core = [0, 1, 2] }";
@@ -20,9 +21,9 @@ pub(super) enum AnyMesh {
 /// Reads the mesh.
 pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     table.only(&KEYS)?;
-    let ways: Vec<Value<'_>> = ["rectangle", "bar", "points"].iter().filter_map(|key| table.get(key)).collect();
+    let ways: Vec<Value<'_>> = ["rectangle", "disc", "bar", "points"].iter().filter_map(|key| table.get(key)).collect();
     let [way] = ways.as_slice() else {
-        let message = "needs exactly one of `rectangle`, `bar` and `points` (the last with `cells`)";
+        let message = "needs exactly one of `rectangle`, `disc`, `bar` and `points` (the last with `cells`)";
         return Err(ways.get(1).map_or_else(|| table.error(message), |second| second.error(message)));
     };
     if table.get("points").is_none() {
@@ -30,9 +31,10 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
             table.refuse(key, "goes with `points`; a generated mesh has its own elements and groups")?;
         }
     }
-    match (table.get("rectangle"), table.get("bar")) {
-        (Some(value), _) => rectangle(&value).map(AnyMesh::Plane),
-        (_, Some(value)) => bar(&value).map(AnyMesh::Bar),
+    match (table.get("rectangle"), table.get("disc"), table.get("bar")) {
+        (Some(value), ..) => rectangle(&value).map(AnyMesh::Plane),
+        (_, Some(value), _) => disc(&value).map(AnyMesh::Plane),
+        (.., Some(value)) => bar(&value).map(AnyMesh::Bar),
         _ => from_arrays(table, way),
     }
 }
@@ -43,6 +45,13 @@ fn rectangle(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
     TriangleMesh::rectangle(width, height, nx, ny).map_err(|error| generator(&table, &error))
+}
+
+fn disc(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
+    let table = value.table(&["radius", "rings"], DISC)?;
+    let radius = table.require("radius", "a length in m")?.number("m")?;
+    let rings = table.require("rings", "a number of rings")?.count(1)?;
+    TriangleMesh::disc(radius, rings).map_err(|error| generator(&table, &error))
 }
 
 fn bar(value: &Value<'_>) -> Result<BarMesh, CaseError> {
