@@ -53,6 +53,7 @@ where
         options,
         case: stored.file.case().cloned(),
         estimate: &estimate,
+        contact: &contact,
         report: &report,
         told: false,
         interrupted: simulation.interrupted,

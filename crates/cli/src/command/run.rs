@@ -62,6 +62,7 @@ where
         options,
         case: Some(stored_case(&case.source)),
         estimate: &estimate,
+        contact: &contact,
         report: &report,
         told: early.is_some(),
         interrupted: simulation.interrupted,
