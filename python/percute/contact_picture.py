@@ -35,6 +35,9 @@ def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None) -> 
     _draw_forces(panels[0], contact)
     for plane, panel in enumerate(panels[1:]):
         _draw_zone(panel, contact, plane, colour)
+    # Axes of their own share the time: the last one has its name.
+    for panel in panels[-1:] if axes is None else panels:
+        panel.set_xlabel(f"t ({_prefix(contact.time)[1]}s)")
     return panels
 
 
@@ -51,7 +54,7 @@ def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
 
 def _draw_forces(axes: Axes, contact: Contact) -> None:
     """Draw normal and tangential resultants of each plane."""
-    seconds, second = _prefix(contact.time)
+    seconds, _ = _prefix(contact.time)
     factor, prefix = _prefix(contact.resultants.normal_force)
     several = len(contact.obstacles) > 1
     for plane, resultants in enumerate(contact.obstacles):
@@ -60,10 +63,9 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
         if contact.mesh.dimension == 2:
             along, name = _along(contact, plane)
             force = resultants.force @ along / factor
-            axes.plot(contact.time / seconds, force, line, color="tab:red", label=f"tangential ({name}){of}")
+            label = f"tangential ({name}){of}" if len(name) == 1 else f"tangential{of}"
+            axes.plot(contact.time / seconds, force, line, color="tab:red", label=label)
     axes.set_ylabel(f"force of contact ({prefix}N)")
-    if not axes.get_shared_x_axes().get_siblings(axes)[1:]:
-        axes.set_xlabel(f"t ({second}s)")
     axes.margins(x=0.0)
     axes.grid(alpha=0.3)
     axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
@@ -80,7 +82,7 @@ def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
 
 def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
     """Draw which nodes of a plane are in contact when: what belongs to t_n fills the step after it."""
-    seconds, second = _prefix(contact.time)
+    seconds, _ = _prefix(contact.time)
     rows = np.flatnonzero(contact.obstacle == plane)
     thin = -(-(len(contact.time) - 1) // MOST_COLUMNS)
     steps = np.arange(0, len(contact.time) - 1, thin)
@@ -91,9 +93,8 @@ def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
     shown = np.ma.masked_where(status == ContactStatus.FREE, values / factor)
     style = _style(colour, float(shown.max()) if shown.count() else 1.0)
     drawn: Any = None
-    for piece, edges in _cells(axes, contact, plane, rows, contact.status[:-1, rows].any(axis=0)):
+    for piece, edges in _cells(axes, contact, plane, rows, np.asarray(contact.status[:-1, rows].any(axis=0))):
         drawn = axes.pcolormesh(time, edges, shown[:, piece].T, rasterized=True, **style)
-    axes.set_xlabel(f"t ({second}s)")
     axes.set_xlim(time[0], time[-1])
     if len(contact.obstacles) > 1:
         axes.set_title(f"plane {plane}", fontsize="medium")
@@ -120,15 +121,16 @@ def _cells(
     """Give the pieces of the contact surface with the borders of its nodes' shares, and look at what was touched."""
     if contact.mesh.dimension == 1:
         axes.set_yticks(np.arange(len(rows)), [f"node {node}" for node in contact.nodes[rows]])
-        return [(slice(None), np.arange(len(rows) + 1) - 0.5)]
+        return [(slice(None), np.arange(len(rows) + 1, dtype=np.float64) - 0.5)]
     along, name = _along(contact, plane)
-    places = contact.points[rows] @ along
+    places: Floats = contact.points[rows] @ along
     factor, prefix = _prefix(places)
     axes.set_ylabel(f"{name} ({prefix}m)")
-    pieces, seen = [], []
+    pieces: list[tuple[slice, Floats]] = []
+    seen: list[Floats] = []
     for piece in _pieces(contact, rows):
         at = places[piece] / factor
-        edges = np.concatenate([at[:1], (at[1:] + at[:-1]) / 2, at[-1:]])
+        edges: Floats = np.concatenate([at[:1], (at[1:] + at[:-1]) / 2, at[-1:]])
         pieces.append((piece, edges))
         here = touched[piece]
         seen += [edges[:-1][here], edges[1:][here]]

@@ -32,7 +32,7 @@ def test_every_public_name_is_in_the_reference() -> None:
     page = (ROOT / "docs" / "python.md").read_text()
     for name in pc.__all__:
         assert name == "__version__" or f"`{name}" in page or f".{name}" in page, name
-    for kind in (pc.Mesh, pc.Problem, pc.History, pc.Estimate, pc.exact.BarImpact):
+    for kind in (pc.Mesh, pc.Problem, pc.History, pc.Contact, pc.Estimate, pc.exact.BarImpact):
         for name, value in vars(kind).items():
             if not name.startswith("_") and (callable(value) or value.__doc__):
                 assert f"`{name}" in page or f".{name}(" in page, f"{kind.__name__}.{name}"

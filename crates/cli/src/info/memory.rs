@@ -1,10 +1,17 @@
 //! How much memory a run will take, before it begins.
 
+use percute_core::contact_results::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::mesh::Facet;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+
+/// How many bytes the contact results of all nodes at all instants take, which an estimate file asks for.
+pub(super) fn of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
+    let rows = (problem.surface().nodes().len() as u64).saturating_mul(times.step_count() as u64 + 1);
+    rows.saturating_mul(ContactSteps::<D>::BYTES as u64)
+}
 
 /// About how many bytes problem and simulation take, most of it in proportion to the mesh.
 pub(super) fn of_run<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
@@ -20,7 +27,10 @@ pub(super) fn of_run<const D: usize, const N: usize>(problem: &Problem<D, N>, ti
         + D * vector;
     // With what is supported of it.
     let facet = size_of::<Facet<D>>() + D;
-    let instant = size_of::<f64>() + size_of::<Balance>();
+    let instant = size_of::<f64>()
+        + size_of::<Balance>()
+        + size_of::<f64>()
+        + (1 + problem.obstacles().len()) * size_of::<Resultant<D>>();
     let total = [
         (mesh.node_count(), node),
         (mesh.element_count(), element),

@@ -40,6 +40,7 @@ pub struct CaseInfo {
     pub history_bytes: u64,
     pub run_memory: u64,
     pub estimate_memory: u64,
+    pub contact_memory: u64,
     pub output_history: Option<String>,
     pub output_estimate: Option<String>,
 }
@@ -128,6 +129,7 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
         history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source))?.bytes(),
         run_memory: memory::of_run(&case.problem, &case.times),
         estimate_memory: percute_estimator::memory(&case.problem, &case.times, &case.options) as u64,
+        contact_memory: memory::of_contact(&case.problem, &case.times),
         output_history: name(history),
         output_estimate: name(estimate),
     })))
@@ -181,6 +183,12 @@ impl CaseInfo {
         lines.push(("history", format!("{} on disk", bytes(self.history_bytes))));
         let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));
         lines.push(("memory", format!("about {run} for the run, and {estimate} for the estimate")));
+        if self.output_estimate.is_some() {
+            lines.push((
+                "",
+                format!("and {} for what contact does, as there is an estimate file", bytes(self.contact_memory)),
+            ));
+        }
         for (name, file) in [("history", &self.output_history), ("estimate", &self.output_estimate)] {
             lines.extend(file.as_ref().map(|file| ("output", format!("{name} to {file}"))));
         }

@@ -3,6 +3,7 @@
 // What helpers unwrap makes a test fail too; the general allowance covers test functions only.
 #![allow(clippy::unwrap_used)]
 
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
@@ -11,9 +12,11 @@ use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Request, run};
-use percute_io::estimate_file::{EstimateFile, open, write};
+use percute_io::estimate_file::{EstimateContents, EstimateFile, open, write};
 use percute_io::{Case, FileCause, FileError, Kind, Overwrite, history, kind};
 use std::path::Path;
+
+mod contact;
 
 const STATEMENT: &str = "[material]\nyoung = 7e10\n";
 const REPORT: &str = "{\"sup\": 195.1, \"unit\": \"J^½\"}";
@@ -38,8 +41,18 @@ fn written<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     estimate: &Estimate<D>,
 ) -> Result<EstimateFile, FileError> {
-    let case = Case { name: "block.toml".to_string(), text: "# a case".to_string() };
-    write(path, Overwrite::Refuse, problem, estimate, STATEMENT, Some(&case), REPORT)?;
+    with_contact(path, problem, estimate, None)
+}
+
+fn with_contact<const D: usize, const N: usize>(
+    path: &Path,
+    problem: &Problem<D, N>,
+    estimate: &Estimate<D>,
+    contact: Option<&ContactResults<D>>,
+) -> Result<EstimateFile, FileError> {
+    let case = Some(&Case { name: "block.toml".to_string(), text: "# a case".to_string() });
+    let contents = EstimateContents { problem, estimate, contact, statement: STATEMENT, case, report: REPORT };
+    write(path, Overwrite::Refuse, &contents)?;
     open(path)
 }
 
@@ -131,7 +144,10 @@ fn refusals() {
     written(&path, &problem, &estimate).unwrap();
     let error = written(&path, &problem, &estimate).unwrap_err();
     assert!(matches!(error.cause, FileCause::Exists), "{error}");
-    write(&path, Overwrite::Replace, &problem, &estimate, STATEMENT, None, "").unwrap();
+    let (contact, case) = (None, None);
+    let contents =
+        EstimateContents { problem: &problem, estimate: &estimate, contact, statement: STATEMENT, case, report: "" };
+    write(&path, Overwrite::Replace, &contents).unwrap();
     assert_eq!((open(&path).unwrap().case, open(&path).unwrap().report.as_str()), (None, ""));
 
     let error = history::open(&path).unwrap_err();
