@@ -129,9 +129,7 @@ fn estimates_from_the_file_are_those_beside_the_run() {
     let times = steps(&problem, 60);
     let plan = Plan::new(&problem, &times, STATEMENT, None);
     let mut writer = plan.create(&path, Overwrite::Refuse).unwrap();
-    let beside =
-        run_and_estimate(&problem, &times, Options::default(), &Request::default(), &mut Discard, &mut Unobserved)
-            .unwrap();
+    let beside = run_and_estimate(&problem, &times, Options::default(), &Request::default(), &mut Unobserved).unwrap();
     simulate(&problem, &times, &mut writer, &mut Unobserved).unwrap();
     writer.finish().unwrap();
 
