@@ -1,11 +1,14 @@
-//! `[mesh]`: a generator, or points, cells and groups.
+//! `[mesh]`: a generator, a file of Gmsh, or points, cells and groups.
 
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_io::FileCause;
+use percute_io::gmsh::{self, GmshCause, MeshFile};
 
-const KEYS: [&str; 6] = ["rectangle", "bar", "points", "cells", "groups", "elements"];
+const KEYS: [&str; 8] = ["rectangle", "bar", "file", "scale", "points", "cells", "groups", "elements"];
+const WAYS: [&str; 4] = ["rectangle", "bar", "file", "points"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
 const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
@@ -20,20 +23,44 @@ pub(super) enum AnyMesh {
 /// Reads the mesh.
 pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     table.only(&KEYS)?;
-    let ways: Vec<Value<'_>> = ["rectangle", "bar", "points"].iter().filter_map(|key| table.get(key)).collect();
+    let ways: Vec<Value<'_>> = WAYS.iter().filter_map(|key| table.get(key)).collect();
     let [way] = ways.as_slice() else {
-        let message = "needs exactly one of `rectangle`, `bar` and `points` (the last with `cells`)";
+        let message = "needs exactly one of `rectangle`, `bar`, `file` and `points` (the last with `cells`)";
         return Err(ways.get(1).map_or_else(|| table.error(message), |second| second.error(message)));
     };
     if table.get("points").is_none() {
         for key in ["cells", "groups", "elements"] {
-            table.refuse(key, "goes with `points`; a generated mesh has its own elements and groups")?;
+            table.refuse(
+                key,
+                "goes with `points`; a mesh that is generated or in a file has its own elements and groups",
+            )?;
         }
     }
-    match (table.get("rectangle"), table.get("bar")) {
-        (Some(value), _) => rectangle(&value).map(AnyMesh::Plane),
-        (_, Some(value)) => bar(&value).map(AnyMesh::Bar),
+    if table.get("file").is_none() {
+        table.refuse("scale", "goes with `file`; all other lengths are in metres")?;
+    }
+    match (table.get("rectangle"), table.get("bar"), table.get("file")) {
+        (Some(value), _, _) => rectangle(&value).map(AnyMesh::Plane),
+        (_, Some(value), _) => bar(&value).map(AnyMesh::Bar),
+        (_, _, Some(value)) => from_file(table, &value),
         _ => from_arrays(table, way),
+    }
+}
+
+/// A mesh in a file of Gmsh, relative to the folder of the case.
+fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError> {
+    let file = value.source.beside(value.text("the name of a Gmsh file, such as \"block.msh\"")?.as_ref());
+    let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.number("metres per unit of length in the file"))?;
+    match gmsh::read(&file, scale) {
+        Ok(MeshFile::Bar(read)) => Ok(AnyMesh::Bar(read.mesh)),
+        Ok(MeshFile::Plane(read)) => Ok(AnyMesh::Plane(read.mesh)),
+        Err(error) => match (&error.cause, table.get("scale")) {
+            (GmshCause::Scale { .. }, Some(scale)) => Err(scale.error(error.cause.to_string())),
+            (GmshCause::File(FileCause::Missing), _) => {
+                Err(value.error(format!("{error}; names are relative to the folder of the case file")))
+            }
+            _ => Err(value.error(error.to_string())),
+        },
     }
 }
 
