@@ -40,6 +40,9 @@ class Calls:
     def rectangle(self, **wrong: Any) -> object:
         return pc.Mesh.rectangle(**({"width": 1.0, "height": 1.0, "nx": 1, "ny": 1} | wrong))
 
+    def disc(self, **wrong: Any) -> object:
+        return pc.Mesh.disc(**({"radius": 1.0, "rings": 2} | wrong))
+
     def uniform_bar(self, **wrong: Any) -> object:
         return pc.Mesh.bar(**({"length": 1.0, "elements": 2} | wrong))
 
@@ -123,6 +126,8 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.rectangle, "height", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "nx", (None, *NO_WHOLES, 0, 10**9)),
     (Calls.rectangle, "ny", (None, *NO_WHOLES, 0, 10**9)),
+    (Calls.disc, "radius", (None, *NO_NUMBERS, NAN, 0, -1.0)),
+    (Calls.disc, "rings", (None, *NO_WHOLES, 0, 1826)),
     (Calls.uniform_bar, "length", (None, *NO_NUMBERS, NAN)),
     (Calls.uniform_bar, "elements", (None, *NO_WHOLES, 0, 10**9)),
     (Calls.elastic, "young", (None, *NO_NUMBERS)),

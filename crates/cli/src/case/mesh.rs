@@ -7,9 +7,9 @@ use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, T
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause, MeshFile};
 
-const KEYS: [&str; 8] = ["rectangle", "bar", "file", "scale", "points", "cells", "groups", "elements"];
-const WAYS: [&str; 4] = ["rectangle", "bar", "file", "points"];
+const KEYS: [&str; 9] = ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "groups", "elements"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
+const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
 const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
 const ELEMENTS: &str = "{ core = [0, 1, 2] }";
@@ -20,31 +20,35 @@ pub(super) enum AnyMesh {
     Plane(TriangleMesh),
 }
 
+/// Reads the mesh from the table and the value of the key that says how it is given.
+type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<AnyMesh, CaseError>;
+
+const WAYS: [(&str, Reader); 5] = [
+    ("rectangle", |_, value| rectangle(value).map(AnyMesh::Plane)),
+    ("disc", |_, value| disc(value).map(AnyMesh::Plane)),
+    ("bar", |_, value| bar(value).map(AnyMesh::Bar)),
+    ("file", from_file),
+    ("points", from_arrays),
+];
+
 /// Reads the mesh.
 pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     table.only(&KEYS)?;
-    let ways: Vec<Value<'_>> = WAYS.iter().filter_map(|key| table.get(key)).collect();
-    let [way] = ways.as_slice() else {
-        let message = "needs exactly one of `rectangle`, `bar`, `file` and `points` (the last with `cells`)";
-        return Err(ways.get(1).map_or_else(|| table.error(message), |second| second.error(message)));
+    let ways: Vec<_> = WAYS.iter().filter_map(|(key, reader)| Some((table.get(key)?, reader))).collect();
+    let [(value, reader)] = ways.as_slice() else {
+        let message = "needs exactly one of `rectangle`, `disc`, `bar`, `file` and `points` (the last with `cells`)";
+        return Err(ways.get(1).map_or_else(|| table.error(message), |(second, _)| second.error(message)));
     };
     if table.get("points").is_none() {
         for key in ["cells", "groups", "elements"] {
-            table.refuse(
-                key,
-                "goes with `points`; a mesh that is generated or in a file has its own elements and groups",
-            )?;
+            let why = "goes with `points`; a mesh that is generated or in a file has its own elements and groups";
+            table.refuse(key, why)?;
         }
     }
     if table.get("file").is_none() {
         table.refuse("scale", "goes with `file`; all other lengths are in metres")?;
     }
-    match (table.get("rectangle"), table.get("bar"), table.get("file")) {
-        (Some(value), _, _) => rectangle(&value).map(AnyMesh::Plane),
-        (_, Some(value), _) => bar(&value).map(AnyMesh::Bar),
-        (_, _, Some(value)) => from_file(table, &value),
-        _ => from_arrays(table, way),
-    }
+    reader(table, value)
 }
 
 /// A mesh in a file of Gmsh, relative to the folder of the case.
@@ -70,6 +74,13 @@ fn rectangle(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
     TriangleMesh::rectangle(width, height, nx, ny).map_err(|error| generator(&table, &error))
+}
+
+fn disc(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
+    let table = value.table(&["radius", "rings"], DISC)?;
+    let radius = table.require("radius", "a length in m")?.number("m")?;
+    let rings = table.require("rings", "a number of rings")?.count(1)?;
+    TriangleMesh::disc(radius, rings).map_err(|error| generator(&table, &error))
 }
 
 fn bar(value: &Value<'_>) -> Result<BarMesh, CaseError> {

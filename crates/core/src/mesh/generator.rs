@@ -1,4 +1,4 @@
-//! Uniform bars and rectangles.
+//! Uniform bars, rectangles and discs.
 
 use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
 
@@ -67,5 +67,74 @@ impl TriangleMesh {
             ("right".to_string(), (0..ny).map(|j| [id(nx, j), id(nx, j + 1)]).collect()),
         ]);
         Self::new(points, &cells, &groups, &ElementGroups::new())
+    }
+
+    /// A disc of this radius (m) around the origin, in `rings` rings: 6 rings² triangles of nearly one size, on 6 k
+    /// equal arcs around ring k. Its outline, which starts at the lowest point, is the group `boundary`.
+    ///
+    /// # Errors
+    /// A radius that is not positive, or no rings.
+    pub fn disc(radius: f64, rings: usize) -> Result<Self, MeshError> {
+        positive("radius", radius)?;
+        // 1825 rings have 20 million triangles.
+        if !(1..=1825).contains(&rings) {
+            return Err(MeshError::Generator {
+                name: "rings",
+                value: rings as f64,
+                allowed: "a number of rings from 1 to 1825",
+            });
+        }
+        let first = |k: usize| if k == 0 { 0 } else { 3 * k * (k - 1) + 1 };
+        let id = |k: usize, j: usize| if k == 0 { 0 } else { first(k) + j % (6 * k) };
+        let mut points = vec![[0.0, 0.0]];
+        for k in 1..=rings {
+            let ring = radius * k as f64 / rings as f64;
+            points.extend((0..6 * k).map(|j| {
+                let angle = std::f64::consts::TAU * j as f64 / (6 * k) as f64;
+                [ring * angle.sin(), -ring * angle.cos()]
+            }));
+        }
+        let mut cells = Vec::with_capacity(6 * rings * rings);
+        for k in 1..=rings {
+            for sextant in 0..6 {
+                let (inner, outer) = (sextant * (k - 1), sextant * k);
+                for j in 0..k {
+                    cells.push([id(k - 1, inner + j), id(k, outer + j), id(k, outer + j + 1)]);
+                    if j + 1 < k {
+                        cells.push([id(k - 1, inner + j), id(k, outer + j + 1), id(k - 1, inner + j + 1)]);
+                    }
+                }
+            }
+        }
+        let outline = (0..6 * rings).map(|j| [id(rings, j), id(rings, j + 1)]).collect();
+        let groups = FacetGroups::from([("boundary".to_string(), outline)]);
+        Self::new(points, &cells, &groups, &ElementGroups::new())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The disc has the area of its regular outline of 6 n sides, ½ 6n r² sin(2π/6n); its lowest node lies at (0, −r)
+    /// exactly, and each node has its mirror image.
+    #[test]
+    fn a_disc_is_a_regular_polygon() {
+        for rings in [1, 2, 7] {
+            let disc = TriangleMesh::disc(0.5, rings).unwrap();
+            assert_eq!((disc.element_count(), disc.node_count()), (6 * rings * rings, 3 * rings * (rings + 1) + 1));
+            assert_eq!((disc.mended_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
+            let area: f64 =
+                (0..disc.element_count()).map(|e| disc.cell_geometry(crate::ids::ElementId::new(e)).volume).sum();
+            let sides = 6.0 * rings as f64;
+            let exact = 0.5 * sides * 0.25 * (std::f64::consts::TAU / sides).sin();
+            // Rounding of a sum of at most 300 terms.
+            assert!((area - exact).abs() < 1e-13 * exact, "{area} {exact}");
+            assert_eq!(disc.points().iter().filter(|p| **p == [0.0, -0.5]).count(), 1);
+            for p in disc.points() {
+                let image = |q: &&[f64; 2]| (q[0] + p[0]).abs() + (q[1] - p[1]).abs() < 1e-15;
+                assert_eq!(disc.points().iter().filter(image).count(), 1, "{p:?}");
+            }
+        }
     }
 }

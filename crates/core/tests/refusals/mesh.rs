@@ -47,6 +47,11 @@ fn generators() {
         name(TriangleMesh::rectangle(1.0, f64::INFINITY, 1, 1).unwrap_err()),
         ("height", f64::INFINITY, allowed)
     );
+    assert_eq!(name(TriangleMesh::disc(-1.0, 1).unwrap_err()), ("radius", -1.0, allowed));
+    for rings in [0, 1826] {
+        let (what, value, _) = name(TriangleMesh::disc(1.0, rings).unwrap_err());
+        assert_eq!((what, value), ("rings", rings as f64));
+    }
     assert_eq!(name(BarMesh::uniform_bar(1.0, 0).unwrap_err()).0, "elements");
     assert_eq!(name(TriangleMesh::rectangle(1.0, 1.0, 0, 1).unwrap_err()).0, "nx");
     assert_eq!(name(TriangleMesh::rectangle(1.0, 1.0, 1, 200_000_000).unwrap_err()), ("ny", 2e8, counts));

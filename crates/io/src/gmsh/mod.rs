@@ -17,10 +17,12 @@ mod raw;
 mod sections;
 mod v2;
 mod v4;
+mod write;
 
 pub use error::{GmshCause, GmshError, Place};
 pub use header::Version;
 pub use kind::ElementKind;
+pub use write::{Format, write};
 
 use crate::error::FileCause;
 use cursor::{Cursor, Form};
