@@ -7,7 +7,7 @@ import io
 import os
 import tempfile
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute.checks import encodable
-from percute.errors import ExistingFileError, FileFormatError, InputError, MeshWarning, MissingFileError, StorageError
+from percute.errors import (
+    ExistingFileError,
+    FileFormatError,
+    InputError,
+    MeshWarning,
+    MissingFileError,
+    PercuteError,
+    StorageError,
+)
 
 if TYPE_CHECKING:
     from percute.mesh import Mesh
@@ -59,21 +67,25 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> Mesh:
     name, meshlane = encodable(file), _meshlane(file)
     if not os.path.isfile(file):
         raise MissingFileError(f"{name}: there is no such file")
-    said = io.StringIO()
-    try:
-        # It prints what is wrong, and may end the process.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = meshlane.read(file)
-    except (SystemExit, Exception) as error:
-        told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
-        raise FileFormatError(f"{name}: meshlane cannot read it: {told or type(error).__name__}") from error
+    found = _quietly(lambda: meshlane.read(file), FileFormatError, f"cannot read {name}")
     try:
         points, cells, groups, elements = _Reader(name, found).arrays(scale)
         mesh = kind(points, cells, groups, elements)
     except InputError as error:
         raise FileFormatError(f"{name}: {error}") from None
     return mesh
+
+
+def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str) -> Any:
+    """Let meshlane work, which prints what is wrong and may end the process."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return work()
+    except (SystemExit, Exception) as error:
+        told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
+        raise kind(f"meshlane {what}: {told or type(error).__name__}") from error
 
 
 class _Reader:
@@ -191,16 +203,21 @@ def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
     for at, (group, edges) in enumerate(((g, e) for g, e in mesh.groups.items() if len(e)), start=1):
         parts = sets.setdefault(group, [empty] * len(cells))
         parts[at] = np.arange(len(edges))
-    said = io.StringIO()
     with tempfile.TemporaryDirectory(prefix=".percute-", dir=_folder(target, name)) as folder:
         draft = Path(folder) / target.name
-        try:
-            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-                meshlane.write(draft, meshlane.Mesh(space, cells, cell_sets=sets))
-        except (SystemExit, Exception) as error:
-            told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
-            raise InputError(f"`path`: meshlane cannot write {name!r}: {told or type(error).__name__}") from error
-        os.replace(draft, target)
+        _quietly(lambda: meshlane.write(draft, meshlane.Mesh(space, cells, cell_sets=sets)), InputError, f"cannot write {name}")
+        lost = set(sets) - set(_sets(_quietly(lambda: meshlane.read(draft), InputError, f"cannot read what it wrote to {name}")))
+        # Some formats take several files.
+        drafts = sorted(Path(folder).iterdir())
+        for other in drafts:
+            if other != draft and os.path.lexists(target.parent / other.name) and not overwrite:
+                beside = encodable(os.fspath(target.parent / other.name))
+                raise ExistingFileError(f"{beside}: the file exists already; give another name, or overwrite=True")
+        for each in drafts:
+            os.replace(each, target.parent / each.name)
+    if lost:
+        message = f"{name}: this format does not keep the groups {', '.join(sorted(map(repr, lost)))}; .msh files do"
+        warnings.warn(message, MeshWarning, stacklevel=3)
 
 
 def _folder(target: Path, name: str) -> Path:

@@ -57,13 +57,21 @@ pub enum MeshFile {
 pub fn read(path: &Path, scale: f64) -> Result<MeshFile, GmshError> {
     let whole = |cause: GmshCause| GmshError { path: path.to_path_buf(), place: None, cause };
     let bytes = bytes(path).map_err(|cause| whole(cause.into()))?;
+    parse(path, &bytes, scale)
+}
+
+/// Reads a mesh from the bytes of a file; errors call it `path`.
+///
+/// # Errors
+/// As for [`read`].
+pub fn parse(path: &Path, bytes: &[u8], scale: f64) -> Result<MeshFile, GmshError> {
     if !(scale.is_finite() && scale > 0.0) {
-        return Err(whole(GmshCause::Scale { value: scale }));
+        return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::Scale { value: scale } });
     }
-    let mut cursor = Cursor::new(&bytes);
+    let mut cursor = Cursor::new(bytes);
     let mesh = sections::read(&mut cursor).and_then(|raw| assemble::mesh(raw, scale));
     let text = cursor.form == Form::Text;
-    mesh.map_err(|fault| fault.of(path, &bytes, text))
+    mesh.map_err(|fault| fault.of(path, bytes, text))
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, FileCause> {

@@ -19,12 +19,13 @@ pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
         shown.push("…".to_string());
     }
     let (count, shown) = (tags.len(), shown.join(", "));
-    let (nodes, tag, were) = if count == 1 { ("node", "tag", "was") } else { ("nodes", "tags", "were") };
+    let (nodes, tag, were, them) = if count == 1 {
+        ("node", "tag", "was", "it; it often is the centre of an arc")
+    } else {
+        ("nodes", "tags", "were", "them; they often are centres of arcs")
+    };
     let element = if dimension == 2 { "triangle" } else { "bar" };
-    let message = format!(
-        "{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses them; they often are centres of \
-         arcs"
-    );
+    let message = format!("{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses {them}");
     Some(Notice { name: "dropped_nodes", brief: format!("{count} unused {nodes} left out"), message, groups: vec![] })
 }
 

@@ -1,7 +1,7 @@
 //! Files to read, and meshes to compare.
 
 use percute_core::mesh::{Mesh, TriangleMesh};
-use percute_io::gmsh::{GmshError, MeshFile, MeshOf, read};
+use percute_io::gmsh::{GmshError, MeshFile, MeshOf, parse};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -55,10 +55,7 @@ pub(crate) fn file(name: &str) -> PathBuf {
 
 /// Reads bytes as the file `a.msh`.
 pub(crate) fn of_bytes(bytes: &[u8]) -> Result<MeshFile, GmshError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.msh");
-    std::fs::write(&path, bytes).unwrap();
-    read(&path, 1.0)
+    parse("a.msh".as_ref(), bytes, 1.0)
 }
 
 pub(crate) fn plane(file: MeshFile) -> MeshOf<2, 3> {
@@ -98,9 +95,11 @@ impl Shape {
             corners
         };
         let facets = mesh.facet_groups().iter();
-        let facets = facets.map(|(name, all)| (format!("facets {name}"), all.iter().map(|f| facet(f.index())).collect()));
+        let facets =
+            facets.map(|(name, all)| (format!("facets {name}"), all.iter().map(|f| facet(f.index())).collect()));
         let elements = mesh.element_groups().iter();
-        let elements = elements.map(|(name, all)| (format!("cells {name}"), all.iter().map(|e| cell(e.index())).collect()));
+        let elements =
+            elements.map(|(name, all)| (format!("cells {name}"), all.iter().map(|e| cell(e.index())).collect()));
         Self { cells: (0..mesh.element_count()).map(cell).collect(), groups: facets.chain(elements).collect() }
     }
 }
