@@ -1,7 +1,7 @@
 //! The arguments of the command.
 
 use crate::case::Instants;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, ContactForce, MOST_THREADS};
 use std::path::PathBuf;
 
@@ -19,6 +19,8 @@ pub struct Arguments {
 /// What to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
+    /// Print a commented case to start from: percute new block > case.toml
+    New(NewArguments),
     /// Simulate a case and estimate its error
     Run(RunArguments),
     /// Simulate a case and store its history, to be estimated later
@@ -29,6 +31,24 @@ pub enum Command {
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
+}
+
+/// Arguments of `percute new`.
+#[derive(Clone, Debug, Args)]
+pub struct NewArguments {
+    /// Which case
+    pub case: Template,
+}
+
+/// Cases to start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Template {
+    /// A bar flies against a wall
+    Bar,
+    /// A block strikes a plane at an angle, with friction
+    Block,
+    /// A disc falls on the ground: the contact grows and shrinks
+    Drop,
 }
 
 /// Arguments of `percute run`.

@@ -2,6 +2,7 @@
 
 mod estimate;
 mod info;
+mod new;
 mod outputs;
 mod recover;
 mod result;
@@ -38,6 +39,7 @@ where
 {
     let outcome = match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command }) => match command {
+            Command::New(arguments) => new::command(&arguments, console),
             Command::Run(arguments) => run::command(&arguments, console),
             Command::Simulate(arguments) => simulate::command(&arguments, console),
             Command::Estimate(arguments) => estimate::command(&arguments, console),

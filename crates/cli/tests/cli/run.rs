@@ -194,3 +194,18 @@ fn the_examples_run() {
         assert!(at(&document, "balance.energy_drift").as_f64().unwrap() < 0.1);
     }
 }
+
+/// What `percute new` prints is the example of that name, and a case that runs.
+#[test]
+fn new_cases_are_the_examples() {
+    for name in ["bar", "block", "drop"] {
+        let bench = Bench::new("");
+        let printed = bench.percute(&["new", name]);
+        assert_eq!(printed.status.code(), Some(0), "{}", stderr(&printed));
+        let example = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../examples/{name}.toml"));
+        assert_eq!(stdout(&printed), std::fs::read_to_string(example).unwrap());
+        std::fs::write(bench.path("case.toml"), &printed.stdout).unwrap();
+        let checked = bench.percute(&["info", "case.toml"]);
+        assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    }
+}
