@@ -69,7 +69,8 @@ fn a_mesh_of_gmsh_is_run_from_every_format() {
         let (mass, exact) = (report["problem"]["mass"].as_f64().unwrap(), 8e-4 * 7800.0 + 12e-4 * 2700.0);
         assert!((mass - exact).abs() < 1e-13 * exact, "{format}: {mass}");
         assert_eq!(report["largest_residual"]["admissible"], true, "{format}");
-        let names: Vec<_> = report["warnings"].as_array().unwrap().iter().map(|w| w["name"].as_str().unwrap()).collect();
+        let names: Vec<_> =
+            report["warnings"].as_array().unwrap().iter().map(|w| w["name"].as_str().unwrap()).collect();
         for name in ["dropped_nodes", "points_left_out", "inner_facets"] {
             assert!(names.contains(&name), "{format}: {names:?}");
         }
@@ -134,4 +135,27 @@ fn a_damaged_mesh_is_named_with_its_line() {
     let lines = whole[..whole.len() / 2].lines().count();
     assert!(said.contains("case.toml:2: [mesh], file: meshes/block.msh, line"), "{said}");
     assert!(said.contains(&format!("line {lines}")) && said.contains("it was cut off"), "{said}");
+}
+
+/// Version 2.2 does not say that there are surfaces: curves along x alone look like a bar.
+#[test]
+fn a_plane_body_of_which_only_a_curve_was_saved_is_told_so() {
+    let case = CASE.replace("group = \"steel\"", "").replace("scale = 1e-3", "");
+    let bench = Bench::new(&case.replace("meshes/block.msh", "line.msh"));
+    let line = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"bottom\"\n$EndPhysicalNames\n$Nodes\n2\n\
+                1 0 0 0\n2 1 0 0\n$EndNodes\n$Elements\n1\n1 1 2 1 1 1 2\n$EndElements\n";
+    std::fs::write(bench.path("line.msh"), line).unwrap();
+    let said = stderr(&bench.percute(&["run", "case.toml"]));
+    assert!(said.contains("does not apply to a bar") && said.contains("Physical Surface(\"body\")"), "{said}");
+}
+
+#[test]
+fn no_output_takes_the_place_of_the_mesh() {
+    let bench = bench(CASE, "4.1");
+    let before = std::fs::read(bench.path("meshes/block.msh")).unwrap();
+    for flag in ["--history", "--estimate"] {
+        let output = bench.percute(&["run", "case.toml", "--force", flag, "meshes/../meshes/block.msh"]);
+        assert!(stderr(&output).contains("block.msh is the mesh file itself"), "{}", stderr(&output));
+    }
+    assert_eq!(std::fs::read(bench.path("meshes/block.msh")).unwrap(), before);
 }
