@@ -35,6 +35,9 @@ _Integers = NDArray[np.int64]
 KINDS = {"vertex": 0, "line": 1, "triangle": 2}
 """Kinds of cells that percute knows, with their dimensions."""
 
+LARGE = 10.0
+"""Size (m) above which a mesh is more likely in millimetres, as for files of Gmsh."""
+
 REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:tag")
 """Whole numbers of cells that name groups, as formats without names have them."""
 
@@ -71,9 +74,12 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
     reader = _Reader(name, found)
     points, cells, groups, elements = reader.arrays(scale)
     try:
-        return kind(points, cells, groups, elements), reader.notices
+        mesh = kind(points, cells, groups, elements)
     except InputError as error:
         raise FileFormatError(f"{name}: {error}") from None
+    if scale == 1 and mesh.size > LARGE:
+        reader.notices.append(f"the mesh is {mesh.size:.3f} m large, corner to corner: if in millimetres, give `scale` = 1e-3")
+    return mesh, reader.notices
 
 
 def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "") -> Any:

@@ -131,6 +131,10 @@ fn read<const D: usize, const N: usize>(
 fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     DeTable::parse(source.text()).map_err(|error| {
         let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+        if source.text().starts_with("$MeshFormat") {
+            let message = "this is a mesh of Gmsh and no case; a case names it: [mesh], and `file = \"block.msh\"` in the next line";
+            return source.error(&at, message);
+        }
         source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
     })
 }

@@ -159,3 +159,9 @@ fn no_output_takes_the_place_of_the_mesh() {
     }
     assert_eq!(std::fs::read(bench.path("meshes/block.msh")).unwrap(), before);
 }
+
+#[test]
+fn a_mesh_is_no_case() {
+    let said = stderr(&bench(CASE, "4.1").percute(&["run", "meshes/block.msh"]));
+    assert!(said.contains("this is a mesh of Gmsh and no case"), "{said}");
+}
