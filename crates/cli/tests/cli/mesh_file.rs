@@ -165,3 +165,22 @@ fn a_mesh_is_no_case() {
     let said = stderr(&bench(CASE, "4.1").percute(&["run", "meshes/block.msh"]));
     assert!(said.contains("this is a mesh of Gmsh and no case"), "{said}");
 }
+
+/// What Gmsh called by which name, in the unit of the file.
+#[test]
+fn info_names_the_groups_of_a_mesh() {
+    let output = bench(CASE, "4.1").percute(&["info", "meshes/block.msh", "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let document: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((&document["kind"], &document["dimension"]), (&Value::from("mesh"), &Value::from(2)));
+    assert_eq!(document["upper_corner"], serde_json::json!([50.0, 40.0]));
+    let case = report(&bench(CASE, "4.1"));
+    for key in ["nodes", "elements"] {
+        assert_eq!(document[key], case["problem"][key], "{key}");
+    }
+    let names = |key: &str| document[key].as_array().unwrap().iter().map(|g| g["name"].clone()).collect::<Vec<_>>();
+    assert_eq!(names("element_groups"), ["30", "aluminium", "steel"]);
+    assert!(names("facet_groups").contains(&Value::from("bottom")));
+    let said = stdout(&bench(CASE, "4.1").percute(&["info", "meshes/block.msh"]));
+    assert!(said.contains("group \"steel\" of") && said.contains("(0, 0) to (50.00, 40.00)"), "{said}");
+}
