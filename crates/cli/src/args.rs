@@ -27,7 +27,7 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate the error of a stored history
     Estimate(EstimateArguments),
-    /// Tell what a case, a history or an estimate file holds
+    /// Tell what a case, a mesh (.msh), a history or an estimate file holds
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
@@ -120,7 +120,7 @@ pub struct EstimateArguments {
 /// Arguments of `percute info`.
 #[derive(Clone, Debug, Default, Args)]
 pub struct InfoArguments {
-    /// A case, a history or an estimate file
+    /// A case, a mesh (.msh), a history or an estimate file
     pub file: PathBuf,
     /// Print one JSON document
     #[arg(long)]

@@ -5,8 +5,8 @@ use crate::args::InfoArguments;
 use crate::case::Case;
 use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
-use crate::info::{Info, of_case, of_estimate, of_history};
-use percute_io::{Kind, estimate_file, kind};
+use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
+use percute_io::{Kind, estimate_file, gmsh, kind};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -18,6 +18,7 @@ pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> R
 fn read(file: &Path) -> Result<Info, Failure> {
     let found = kind(file)?;
     match found {
+        Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => return of_gmsh(file),
         Kind::Other => return of_text(file),
         Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
         // The reader of histories says what a stranger holds instead.
@@ -27,6 +28,12 @@ fn read(file: &Path) -> Result<Info, Failure> {
         AnyStored::Bar(stored) => of_history(&stored),
         AnyStored::Plane(stored) => of_history(&stored),
     })
+}
+
+/// A mesh as it is, in the unit of the file.
+fn of_gmsh(file: &Path) -> Result<Info, Failure> {
+    let mesh = gmsh::read(file, 1.0).map_err(|error| Failure::Argument(error.to_string()))?;
+    Ok(of_mesh(file, &mesh))
 }
 
 /// A case, unless it is no text at all.

@@ -3,8 +3,10 @@
 
 mod estimate;
 mod memory;
+mod mesh;
 
 pub use estimate::{EstimateInfo, of_estimate};
+pub use mesh::{GroupInfo, MeshInfo, of_mesh};
 
 use crate::case::{CaseOf, Output, Unsayable};
 use crate::history::{Stored, plan};
@@ -26,6 +28,8 @@ pub enum Info {
     History(Box<HistoryInfo>),
     /// An estimate.
     Estimate(Box<EstimateInfo>),
+    /// A mesh.
+    Mesh(Box<MeshInfo>),
 }
 
 /// A case: what its run will take.
@@ -164,6 +168,7 @@ impl Info {
             Self::Case(info) => info.lines(),
             Self::History(info) => info.lines(),
             Self::Estimate(info) => info.lines(),
+            Self::Mesh(info) => info.lines(),
         })
     }
 
