@@ -23,7 +23,7 @@ pub enum AnyContact {
 /// Reads the contact results; none if the file holds none.
 ///
 /// # Errors
-/// As [`open`](super::open).
+/// As [`open`](crate::estimate_file::open).
 pub fn contact(path: impl AsRef<Path>) -> Result<Option<AnyContact>, FileError> {
     reading(path.as_ref(), |opened| {
         opened.expect(Kind::Estimate)?;
