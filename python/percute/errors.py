@@ -9,6 +9,7 @@ __all__ = [
     "ExistingFileError",
     "FileFormatError",
     "InputError",
+    "MeshWarning",
     "MissingFileError",
     "PercuteError",
     "SimulationError",
@@ -46,3 +47,7 @@ class SimulationError(PercuteError, RuntimeError):
 
 class EstimateError(PercuteError, RuntimeError):
     """The history cannot be estimated."""
+
+
+class MeshWarning(UserWarning):
+    """Something was noticed, and left out, when a mesh was read; the message says what and why."""

@@ -11,6 +11,7 @@ from percute.checks import path as file_name
 from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate, pace
 from percute.history import History, absolute, history_of_the_exception
+from percute.mesh_files import tell_of_mesh
 from percute.progress import ProgressOption, shown
 from percute.stored import StoredEstimate
 
@@ -89,7 +90,8 @@ def run(
     replace, (threads, window) = flag("overwrite", overwrite), pace(threads, window)
     with shown(progress) as tell, history_of_the_exception():
         name, content, source = _read(case)
-        read = _percute.CaseData(name, content)
+        read = _percute.CaseData(name, content, os.path.dirname(source or ""))
+        tell_of_mesh(read.notices())
         asked = read.outputs(source, told, replace)
         # The working directory may change in a callback.
         file, report = absolute(asked["history"]), absolute(asked["estimate"])

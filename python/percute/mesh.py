@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import integers, number, numbers, table, whole
+from percute.checks import encodable, flag, integers, number, numbers, table, whole, wrong
+from percute.checks import path as file_name
 from percute.errors import InputError
+from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
 
 __all__ = ["Mesh"]
 
@@ -110,6 +113,84 @@ class Mesh:
             Its ends are the groups ``start`` (at 0) and ``end``.
         """
         return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], *, scale: float = 1.0) -> Mesh:
+        """Read a mesh from a file.
+
+        Parameters
+        ----------
+        path : str or path
+            A file of Gmsh (``.msh``, versions 2.2 and 4.1), or of a format that meshlane reads (extra ``mesh``): ``.vtu``, ``.vtk``,
+            ``.inp``, ``.med``, ``.xdmf`` and more.
+        scale : float, default: 1.0
+            Metres per unit of length in the file: 1e-3 for a model in millimetres.
+
+        Returns
+        -------
+        Mesh
+            Of the triangles in the file, if there are any, else of its lines along x. Physical groups, or sets, of surfaces are its
+            ``elements``, those of curves its ``groups``; see ``docs/mesh.md``.
+
+        Warns
+        -----
+        MeshWarning
+            Something was left out, such as nodes that no element uses.
+
+        Raises
+        ------
+        MissingFileError, StorageError
+            There is no such file, or it cannot be read.
+        FileFormatError
+            It is damaged, or holds no mesh that percute can take; the message says where and what to do.
+        InputError
+            Another format without meshlane, or a scale that is none.
+        """
+        file, factor = file_name("path", path), number("scale", scale)
+        if not is_gmsh(file):
+            return read_foreign(cls, file, factor)
+        mesh = cls._of(_percute.MeshData.read(file, factor))
+        tell_of_mesh(mesh._data.notices())
+        return mesh
+
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        version: str = "4.1",
+        binary: bool = False,
+        overwrite: bool = False,
+    ) -> None:
+        """Write the mesh, in metres, to a file: whole or not at all.
+
+        Parameters
+        ----------
+        path : str or path
+            A name that ends in ``.msh``, for Gmsh; from it `read` makes the same mesh, bit by bit. Other endings are written by
+            meshlane (extra ``mesh``), which has its own rules for groups.
+        version : str, default: "4.1"
+            Version of a ``.msh`` file: "4.1" or "2.2".
+        binary : bool, default: False
+            Whether a ``.msh`` file is binary.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        ExistingFileError, StorageError
+            The file exists already, or cannot be written.
+        InputError
+            A version that is not known, another format without meshlane, or names of groups with quotes or line breaks.
+        """
+        file, replace, as_bytes = file_name("path", path), flag("overwrite", overwrite), flag("binary", binary)
+        if version not in ("4.1", "2.2"):
+            raise wrong("version", version, '"4.1" or "2.2"')
+        if is_gmsh(file):
+            self._data.write(file, version == "2.2", as_bytes, replace)
+            return
+        if as_bytes or version != "4.1":
+            raise InputError(f"`version` and `binary` are those of .msh files; {encodable(file)!r} is none")
+        write_foreign(self, file, replace)
 
     @property
     def dimension(self) -> int:

@@ -8,7 +8,7 @@ use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
 use rustix::io::Errno;
 use std::fs::{File, Permissions};
-use std::io;
+use std::io::{self, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -50,12 +50,8 @@ impl Unnamed {
         fill: impl FnOnce(&hdf5::File, &mut Texts) -> Result<T, FileCause>,
     ) -> Result<(Self, T), FileCause> {
         let (path, old) = destination(path, overwrite)?;
-        let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        let temporary = tempfile::Builder::new()
-            .prefix(".percute-")
-            .permissions(Permissions::from_mode(0o666))
-            .tempfile_in(folder)
-            .map_err(|error| no_room(error, folder, bytes))?;
+        let folder = folder_of(&path);
+        let temporary = temporary(folder, bytes)?;
         // A full disk shows here in most cases, before anything is written.
         if let Some(free) = free(folder).filter(|free| *free < bytes) {
             return Err(FileCause::NoSpace { needed: bytes, free });
@@ -100,6 +96,26 @@ impl Unnamed {
             Err(refused) => Err(FileCause::Create { source: refused.error }),
         }
     }
+}
+
+/// Makes a file of these bytes, whole or not at all.
+pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileCause> {
+    let (path, old) = destination(path, overwrite)?;
+    let (folder, length) = (folder_of(&path), bytes.len() as u64);
+    let mut temporary = temporary(folder, length)?;
+    temporary.write_all(bytes).map_err(|error| no_room(error, folder, length))?;
+    Unnamed { temporary, path, old, overwrite }.put().map(|_| ())
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
+}
+
+/// A file under another name, which goes unless it is put in place.
+fn temporary(folder: &Path, bytes: u64) -> Result<NamedTempFile, FileCause> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".percute-").permissions(Permissions::from_mode(0o666));
+    builder.tempfile_in(folder).map_err(|error| no_room(error, folder, bytes))
 }
 
 /// Makes an HDF5 file and closes it.

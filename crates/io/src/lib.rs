@@ -1,4 +1,4 @@
-//! Files of histories and estimates: temporal VTKHDF, which ParaView opens as it is and h5py reads and
+//! Files: meshes of Gmsh, and histories and estimates in temporal VTKHDF, which ParaView opens as it is and h5py reads and
 //! writes. The layouts are described in `docs/history.md` and `docs/estimate.md`.
 //!
 //! A history file holds the mesh, the steps, and the statement of the problem as text in the language of
@@ -7,6 +7,7 @@
 mod create;
 mod error;
 pub mod estimate_file;
+pub mod gmsh;
 mod held;
 pub mod history;
 mod kind;

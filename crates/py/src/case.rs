@@ -16,16 +16,21 @@ pub(crate) struct CaseData {
 
 #[pymethods]
 impl CaseData {
-    /// Reads the text of a case of this name.
+    /// Reads the text of a case of this name; the files that it reads are relative to `folder`.
     #[new]
-    fn parse(py: Python<'_>, name: String, text: String) -> PyResult<Self> {
-        let case = door::through(py, None, move |_| Case::parse(Source::new(name, text)))?;
+    fn parse(py: Python<'_>, name: String, text: String, folder: PathBuf) -> PyResult<Self> {
+        let case = door::through(py, None, move |_| Case::parse(Source::new(name, text).in_folder(folder)))?;
         Ok(Self {
             case: match case.map_err(|error| errors::case(py, &error))? {
                 Case::Bar(case) => Any::Bar(case),
                 Case::Plane(case) => Any::Plane(case),
             },
         })
+    }
+
+    /// What was noticed when its mesh was read.
+    fn notices(&self) -> Vec<String> {
+        each!(&self.case, case => case.problem.mesh().notices().iter().map(|notice| notice.message.clone()).collect())
     }
 
     /// The files of a run, checked before any work: the history in `store` or as the case says, and the estimate,

@@ -8,11 +8,13 @@ use percute_core::mesh::MeshError;
 use percute_core::problem::{Cause, InputError};
 use percute_core::time::TimeError;
 use percute_estimator::{EstimateError, RunError};
+use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
+use std::path::Path;
 
 /// An exception of this name from `percute.errors`.
 fn exception(py: Python<'_>, name: &str, message: &str) -> PyErr {
@@ -126,18 +128,31 @@ pub(crate) fn steps(py: Python<'_>, error: &SinkError) -> PyErr {
 
 /// A file that could not be made, written or read.
 pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
-    let name = match &error.cause {
+    of_file(py, &error.path, &error.cause, &error.to_string())
+}
+
+/// The same of a mesh file.
+pub(crate) fn gmsh(py: Python<'_>, error: &GmshError) -> PyErr {
+    match &error.cause {
+        GmshCause::File(cause) => of_file(py, &error.path, cause, &error.to_string()),
+        cause @ GmshCause::Scale { .. } => input(py, &format!("`scale`: {cause}")),
+        GmshCause::Name { .. } => input(py, &error.to_string()),
+        _ => exception(py, "FileFormatError", &error.to_string()),
+    }
+}
+
+fn of_file(py: Python<'_>, path: &Path, cause: &FileCause, message: &str) -> PyErr {
+    let name = match cause {
         FileCause::Missing => "MissingFileError",
         FileCause::Exists => {
-            let message =
-                format!("{}: the file exists already; give another name, or overwrite=True", error.path.display());
+            let message = format!("{}: the file exists already; give another name, or overwrite=True", path.display());
             return exception(py, "ExistingFileError", &message);
         }
         FileCause::NotAFile => "StorageError",
         cause if cause.is_of_the_system() => "StorageError",
         _ => "FileFormatError",
     };
-    exception(py, name, &error.to_string())
+    exception(py, name, message)
 }
 
 /// A stored history that cannot be used.

@@ -4,9 +4,12 @@ use crate::any::{Any, AnyMesh, each};
 use crate::{door, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_io::Overwrite;
+use percute_io::gmsh::{self, Format, MeshFile, Version};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A checked mesh of either dimension.
@@ -53,6 +56,33 @@ impl MeshData {
             Any::Plane(from_arrays(py, &points, &cells, &groups, &elements)?)
         };
         Ok(Self { mesh })
+    }
+
+    /// A mesh in a file of Gmsh.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
+        let read = door::through(py, None, move |_| gmsh::read(&path, scale))?;
+        let mesh = match read.map_err(|error| errors::gmsh(py, &error))? {
+            MeshFile::Bar(read) => Any::Bar(Arc::new(read.mesh)),
+            MeshFile::Plane(read) => Any::Plane(Arc::new(read.mesh)),
+        };
+        Ok(Self { mesh })
+    }
+
+    /// Writes a file of Gmsh, of version 2.2 if it is `old` and of 4.1 otherwise.
+    fn write(&self, py: Python<'_>, path: PathBuf, old: bool, binary: bool, overwrite: bool) -> PyResult<()> {
+        let format = Format { version: if old { Version::V22 } else { Version::V41 }, binary };
+        let overwrite = Overwrite::allowed(overwrite);
+        let written = each!(&self.mesh, mesh => {
+            let mesh = mesh.clone();
+            door::through(py, None, move |_| gmsh::write(&path, overwrite, &mesh, format))?
+        });
+        written.map_err(|error| errors::gmsh(py, &error))
+    }
+
+    /// What was noticed when it was read.
+    fn notices(&self) -> Vec<String> {
+        each!(&self.mesh, mesh => mesh.notices().iter().map(|notice| notice.message.clone()).collect())
     }
 
     #[getter]

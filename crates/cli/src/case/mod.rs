@@ -4,7 +4,8 @@
 //!
 //! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
 //!   `top`), `disc = { radius, rings }` around the origin (outline `boundary`), `bar = { length, elements }` (ends
-//!   `start`, `end`), or arrays: `points` and `cells`, with
+//!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres per
+//!   unit of length, 1 unless given); or arrays: `points` and `cells`, with
 //!   `groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
 //!   `elements = { name = [element, …] }`;
 //! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and

@@ -5,7 +5,7 @@ use super::spelling::hint;
 use super::table::Table;
 use super::value::Value;
 use super::{load, material, obstacle, place, support};
-use percute_core::mesh::Mesh;
+use percute_core::mesh::{Mesh, Notice};
 use percute_core::problem::{Builder, Cause, Initial, InputError, Problem};
 
 /// Reads all that makes the problem on a mesh.
@@ -13,6 +13,7 @@ pub(super) fn read<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
+    let notices = mesh.notices().to_vec();
     let mut builder = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
@@ -23,7 +24,7 @@ pub(super) fn read<const D: usize, const N: usize>(
             builder = builder.initial_displacement(field(&value, "m")?);
         }
     }
-    build(root, builder)
+    builder.build().map_err(|error| located(root, &error, &notices))
 }
 
 /// Reads materials, planes, supports and loads.
@@ -58,7 +59,7 @@ pub(super) fn build<const D: usize, const N: usize>(
     root: &Table<'_>,
     builder: Builder<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
-    builder.build().map_err(|error| located(root, &error))
+    builder.build().map_err(|error| located(root, &error, &[]))
 }
 
 /// One vector for all nodes, or a list with one for each.
@@ -70,10 +71,23 @@ fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, Ca
 }
 
 /// An error of the core, at its place in the file.
-fn located(root: &Table<'_>, error: &InputError) -> CaseError {
+fn located(root: &Table<'_>, error: &InputError, notices: &[Notice]) -> CaseError {
     let mut message = error.cause.to_string();
     if let Cause::UnknownGroup { name, known } = &error.cause {
         message += &hint(name, known.iter().map(String::as_str));
     }
+    if let Cause::UnknownGroup { name, .. } | Cause::EmptyGroup { name } = &error.cause {
+        let of_group = notices.iter().filter(|notice| notice.groups.contains(name));
+        of_group.for_each(|notice| message += &format!("; {}", notice.message));
+    }
+    if let (Cause::UnknownGroup { name, .. }, true) = (&error.cause, in_file(root)) {
+        let what = if matches!(error.place.table, "material" | "body_force") { "Surface" } else { "Curve" };
+        message += &format!("; in Gmsh, `Physical {what}(\"{name}\") = {{…}};` names one, before the mesh is saved");
+    }
     root.source.error(&place::find(root, error.place), message)
+}
+
+/// Whether the mesh is one of Gmsh's files.
+fn in_file(root: &Table<'_>) -> bool {
+    root.single("mesh").is_ok_and(|mesh| mesh.is_some_and(|mesh| mesh.get("file").is_some()))
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Longer lines of the case file are cut in error messages.
@@ -12,6 +13,7 @@ const LONGEST_EXCERPT: usize = 90;
 pub struct Source {
     name: String,
     text: String,
+    folder: PathBuf,
 }
 
 /// Where in a case file: the path of the key, and its bytes.
@@ -51,10 +53,22 @@ impl fmt::Display for CaseError {
 }
 
 impl Source {
-    /// A case file of this name and text.
+    /// A case file of this name and text. Files that it names are relative to the working directory.
     #[must_use]
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { name: name.into(), text: text.into() }
+        Self { name: name.into(), text: text.into(), folder: PathBuf::new() }
+    }
+
+    /// The same case; the files that it reads are relative to this folder.
+    #[must_use]
+    pub fn in_folder(self, folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into(), ..self }
+    }
+
+    /// Where a file is that the case reads.
+    #[must_use]
+    pub fn beside(&self, file: &Path) -> PathBuf {
+        self.folder.join(file)
     }
 
     /// The name.

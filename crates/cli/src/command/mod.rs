@@ -100,7 +100,8 @@ fn read(file: &Path) -> Result<Source, Failure> {
         return Err(Failure::Argument(format!("{name}: {message}")));
     }
     let bytes = std::fs::read(file).map_err(unreadable)?;
-    String::from_utf8(bytes).map(|text| Source::new(&name, text)).map_err(|error| {
+    let folder = file.parent().unwrap_or(file);
+    String::from_utf8(bytes).map(|text| Source::new(&name, text).in_folder(folder)).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
         Failure::Argument(format!("{name}:{line}: this is no UTF-8 text"))
     })

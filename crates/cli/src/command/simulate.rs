@@ -8,9 +8,9 @@ use crate::failure::{DONE, Failure, INTERRUPTED};
 use crate::outputs::{Output, check, chosen};
 use crate::progress::Watch;
 use crate::report::build::{balance_summary, problem_summary};
-use crate::report::many_steps;
 use crate::report::number::{bytes, short, trimmed};
 use crate::report::summary::{body, drift, energy, layout, step};
+use crate::report::{many_steps, noticed};
 use crate::run::simulate_only;
 use percute_core::dynamics::Simulation;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,7 @@ fn simulate<const D: usize, const N: usize>(
     check(Some(("case file", &arguments.case)), &[Some(history)], None, force)?;
     if !quiet {
         console.warn(&many_steps(case.times.step_count()));
+        console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());
     }
     let writer = begin_history(case, history, force, quiet, console)?;
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);

@@ -1,6 +1,6 @@
 //! From the results of a run to its report.
 
-use super::warnings::{Facts, warnings};
+use super::warnings::{Facts, noticed, warnings};
 use super::{
     ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, Given, LargestResidual, Measures, ObstacleSummary,
     OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
@@ -31,7 +31,8 @@ impl Report {
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
         let facts =
             Facts { problem: &problem, softest, size, drift, interrupted, kept_impulse, residual, steps: planned };
-        let warnings = warnings(&facts);
+        let mut warnings = warnings(&facts);
+        warnings.extend(noticed(subject.problem.mesh()));
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),

@@ -8,7 +8,7 @@ mod warnings;
 
 pub use summary::summary;
 pub use warnings::Warning;
-pub(crate) use warnings::many_steps;
+pub(crate) use warnings::{many_steps, noticed};
 
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;

@@ -2,6 +2,7 @@
 
 use super::number::{percent, short};
 use super::{LargestResidual, ProblemSummary};
+use percute_core::mesh::{Mesh, Notice};
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
@@ -138,6 +139,14 @@ fn mended(facts: &Facts<'_>) -> Option<Warning> {
     let count = facts.problem.mended_elements;
     let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
     if count == 0 { None } else { warning("mended_elements", format!("{count} elements turned round"), message) }
+}
+
+/// What was noticed when the mesh was read.
+pub(crate) fn noticed<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Iterator<Item = Warning> {
+    mesh.notices().iter().map(|Notice { name, brief, message, .. }| {
+        let (brief, message) = (brief.clone(), message.clone());
+        Warning { name, brief, message }
+    })
 }
 
 /// Told before a run too: at its end it would be late.

@@ -6,11 +6,13 @@
 mod check;
 mod generator;
 mod geometry;
+mod notice;
 mod star;
 mod topology;
 
 pub use check::MeshError;
 pub use geometry::CellGeometry;
+pub use notice::Notice;
 pub use star::{Star, Stars, entry_and_exit};
 pub use topology::Facet;
 
@@ -40,6 +42,7 @@ pub struct Mesh<const D: usize, const N: usize> {
     element_groups: BTreeMap<String, Vec<ElementId>>,
     size: f64,
     mended: usize,
+    notices: Vec<Notice>,
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
@@ -65,7 +68,18 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let stars = Stars::new(points.len(), &cells, &facets, &cell_facets)?;
         let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
-        Ok(Self { points, cells, facets, cell_facets, stars, facet_groups, element_groups, size, mended })
+        Ok(Self {
+            points,
+            cells,
+            facets,
+            cell_facets,
+            stars,
+            facet_groups,
+            element_groups,
+            size,
+            mended,
+            notices: Vec::new(),
+        })
     }
 
     /// Coordinates of the nodes (m).
@@ -120,6 +134,18 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     #[must_use]
     pub fn mended_elements(&self) -> usize {
         self.mended
+    }
+
+    /// The same mesh with what was noticed when it was read.
+    #[must_use]
+    pub fn with_notices(self, notices: Vec<Notice>) -> Self {
+        Self { notices, ..self }
+    }
+
+    /// What was noticed when it was read.
+    #[must_use]
+    pub fn notices(&self) -> &[Notice] {
+        &self.notices
     }
 
     /// Number of nodes.

@@ -1,0 +1,93 @@
+//! From the sections of a file to a mesh.
+
+use super::error::{Fault, GmshCause};
+use super::facets::{Boundary, boundary};
+use super::groups::Sorted;
+use super::nodes::{Kept, Nodes};
+use super::raw::{Element, Raw};
+use super::{MeshFile, MeshOf, notices};
+use percute_core::mesh::{Mesh, MeshError};
+use std::mem::take;
+
+/// Makes the mesh of a file: of triangles if there are any, else of bars.
+pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
+    let nodes = Nodes::new(take(&mut raw.nodes))?;
+    let (points, lines, triangles) = (take(&mut raw.points), take(&mut raw.lines), take(&mut raw.triangles));
+    if !triangles.is_empty() {
+        let points = raw.sorted(points)?;
+        return assemble(&raw, &nodes, triangles, lines, Some(&points), scale).map(MeshFile::Plane);
+    }
+    if lines.is_empty() {
+        return Err(GmshCause::NoElements.anywhere());
+    }
+    if raw.surfaces || raw.names.keys().any(|&(dimension, _)| dimension == 2) {
+        return Err(GmshCause::NoTriangles.anywhere());
+    }
+    assemble(&raw, &nodes, lines, points, None, scale).map(MeshFile::Bar)
+}
+
+/// Makes a mesh of `cells`, with groups of its boundary from `facets`; `points` have no part in it.
+fn assemble<const D: usize, const N: usize>(
+    raw: &Raw,
+    nodes: &Nodes,
+    cells: Vec<Element<N>>,
+    facets: Vec<Element<D>>,
+    points: Option<&Sorted<1>>,
+    scale: f64,
+) -> Result<MeshOf<D, N>, Fault> {
+    let Sorted { elements, members } = raw.sorted(cells)?;
+    let located = nodes.located(&elements)?;
+    let kept = nodes.keep(&located, scale);
+    let places = kept.flat()?;
+    let cells = kept.numbered(&located);
+    let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?)?;
+    let parts = raw.named(D, &members, |at| at);
+    let noticed = [
+        notices::dropped(&kept.dropped, D),
+        points.and_then(|points| notices::points(raw, points)),
+        notices::inner(&inner, D),
+        notices::empty(raw, D, &groups, &inner, &parts),
+    ];
+    let mesh = Mesh::new(places, &cells, &groups, &parts).map_err(|error| refused(error, &kept, &elements))?;
+    let element_tags = elements.iter().map(|element| element.tag).collect();
+    let mesh = mesh.with_notices(noticed.into_iter().flatten().collect());
+    Ok(MeshOf { mesh, node_tags: kept.tags, element_tags })
+}
+
+/// What the mesh says, in the tags of the file, and at the element at fault.
+fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>]) -> Fault {
+    let node = |number: usize| kept.tags.get(number).map_or(number, |&tag| tag as usize);
+    let element = |number: usize| elements.get(number).map_or(number, |element| element.tag as usize);
+    let nodes = |numbers: Vec<usize>| numbers.into_iter().map(node).collect();
+    let at = |number: usize| elements.get(number).map(|element| element.at);
+    let (at, advice, error) = match error {
+        MeshError::DuplicateNodes { first, second, distance } => {
+            let advice = "; in Gmsh, join bodies that touch by `Coherence;` (OpenCASCADE: `BooleanFragments`) before meshing, \
+                          or nodes by `Coherence Mesh;` after";
+            (None, advice, MeshError::DuplicateNodes { first: node(first), second: node(second), distance })
+        }
+        MeshError::Degenerate { element: e, nodes: of, volume, diameter } => {
+            let advice = "; in Gmsh, mesh again with another size there, or mend the geometry";
+            let error = MeshError::Degenerate { element: element(e), nodes: nodes(of), volume, diameter };
+            (at(e), advice, error)
+        }
+        MeshError::NonManifoldFacet { nodes: of, elements: all } => {
+            let last = all.last().and_then(|&e| at(e));
+            let error =
+                MeshError::NonManifoldFacet { nodes: nodes(of), elements: all.into_iter().map(element).collect() };
+            (last, OVERLAP, error)
+        }
+        MeshError::Overlap { elements: all } => {
+            (at(all[1]), OVERLAP, MeshError::Overlap { elements: all.map(element) })
+        }
+        MeshError::NonManifoldNode { node: n, elements, reached } => {
+            let advice = "; in Gmsh, let the surfaces share a curve, or keep them apart";
+            (None, advice, MeshError::NonManifoldNode { node: node(n), elements, reached })
+        }
+        other => (None, "", other),
+    };
+    Fault { at, cause: Box::new(GmshCause::Mesh { error: Box::new(error), advice }) }
+}
+
+const OVERLAP: &str =
+    "; in Gmsh, surfaces that overlap are cut apart by `Coherence;` (OpenCASCADE: `BooleanFragments`)";

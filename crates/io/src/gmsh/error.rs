@@ -1,0 +1,247 @@
+//! What can be wrong with a mesh file, where it is, and what to do in Gmsh.
+
+use super::kind::ElementKind;
+use crate::error::FileCause;
+use percute_core::mesh::MeshError;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// An error about a mesh file. Numbers of nodes and elements are the tags that Gmsh gave them.
+#[derive(Debug, Error)]
+#[error("{}{}: {cause}", path.display(), at(*.place))]
+pub struct GmshError {
+    /// The file.
+    pub path: PathBuf,
+    /// Where in it, if there is one place.
+    pub place: Option<Place>,
+    /// What is wrong.
+    pub cause: GmshCause,
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text, from 1.
+    Line(usize),
+    /// A byte of a binary file, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+fn at(place: Option<Place>) -> String {
+    place.map_or_else(String::new, |place| format!(", {place}"))
+}
+
+/// What is wrong.
+#[derive(Debug, Error)]
+pub enum GmshCause {
+    /// The system does not let it be read or made.
+    #[error(transparent)]
+    File(#[from] FileCause),
+    /// A factor that is none.
+    #[error("the scale is {value}; it must be a positive finite number: metres per unit of length in the file")]
+    Scale {
+        /// The factor.
+        value: f64,
+    },
+    /// Something else.
+    #[error("this is no Gmsh mesh: it begins with {found}; {advice}")]
+    NotMsh {
+        /// How it begins.
+        found: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Another version of the format.
+    #[error(
+        "the file has version {found} of the MSH format; percute reads 2.2 and 4.1: \
+         `gmsh old.msh -save -format msh41 -o new.msh` converts it"
+    )]
+    Version {
+        /// The version.
+        found: String,
+    },
+    /// Not what must come here.
+    #[error("{found} stands where {what} should be; {advice}")]
+    Unexpected {
+        /// What is there.
+        found: String,
+        /// What should be.
+        what: &'static str,
+        /// What may have happened.
+        advice: &'static str,
+    },
+    /// Nothing comes any more.
+    #[error("the file ends where {what} should be: it was cut off, or its writer has not finished")]
+    Cut {
+        /// What should come.
+        what: &'static str,
+    },
+    /// A number of entries that the file cannot hold.
+    #[error("{what} is {count}, more than the rest of the file can hold: the file was cut off or damaged")]
+    Count {
+        /// What it counts.
+        what: &'static str,
+        /// The number.
+        count: u64,
+    },
+    /// A section that must be there.
+    #[error("there is no section ${section}; in Gmsh, mesh the surfaces (2D) before saving")]
+    NoSection {
+        /// Its name.
+        section: &'static str,
+    },
+    /// A partitioned mesh.
+    #[error("the mesh is partitioned; in Gmsh, `UnpartitionMesh;` (Mesh > Unpartition) or do not partition it")]
+    Partitioned,
+    /// Elements that percute does not know.
+    #[error("element {element} is {kind}; percute takes 3-node triangles (a bar: 2-node lines): {}", kind.advice())]
+    Kind {
+        /// Tag of the element, or of the first of a block.
+        element: u64,
+        /// What it is.
+        kind: ElementKind,
+    },
+    /// Neither triangles nor lines.
+    #[error(
+        "the file has neither triangles nor lines; in Gmsh, mesh the surfaces (2D) before saving. If there are physical \
+         groups, only what belongs to one is saved: name the body by `Physical Surface(\"body\") = {{…}};`"
+    )]
+    NoElements,
+    /// A plane body was meant, but none of it was saved.
+    #[error(
+        "the file has surfaces but no triangles: once there are physical groups, Gmsh saves only what belongs to one. Name \
+         the body by `Physical Surface(\"body\") = {{…}};` (and mesh in 2D), or save all with `Mesh.SaveAll = 1`"
+    )]
+    NoTriangles,
+    /// A tag given twice.
+    #[error("{what} {tag} is given twice; tags must differ: in Gmsh, open the mesh and save it again")]
+    Twice {
+        /// Nodes or elements.
+        what: &'static str,
+        /// The tag.
+        tag: u64,
+    },
+    /// A tag that is no tag.
+    #[error("the tag of {what} is {tag}; tags are whole numbers from 1")]
+    Tag {
+        /// Whose tag it is.
+        what: &'static str,
+        /// The number.
+        tag: i64,
+    },
+    /// An element on a node that is not there.
+    #[error("element {element} names node {node}, which is not in $Nodes; in Gmsh, save the mesh again")]
+    NoSuchNode {
+        /// Tag of the element.
+        element: u64,
+        /// Tag of the missing node.
+        node: u64,
+    },
+    /// Triangles in space.
+    #[error(
+        "the mesh is not in a plane z = const: node {} has z = {} m and node {} has z = {} m; {advice}",
+        .nodes[0], .values[0], .nodes[1], .values[1]
+    )]
+    NotPlane {
+        /// Tags of a lowest and a highest node.
+        nodes: [u64; 2],
+        /// Their z (m).
+        values: [f64; 2],
+        /// How to turn it in Gmsh.
+        advice: &'static str,
+    },
+    /// Lines that are no bar along x.
+    #[error(
+        "the file has lines but no triangles, and the lines are no bar along x: node {} has {axis} = {} m and node {} has \
+         {axis} = {} m. If a plane body was meant: once there are physical groups, Gmsh saves only what belongs to one; name \
+         the body by `Physical Surface(\"body\") = {{…}};` and mesh in 2D",
+        .nodes[0], .values[0], .nodes[1], .values[1]
+    )]
+    NotOnAxis {
+        /// y or z.
+        axis: char,
+        /// Tags of two nodes.
+        nodes: [u64; 2],
+        /// Their coordinates (m).
+        values: [f64; 2],
+    },
+    /// A line that bounds no triangle, or a point that bounds no line.
+    #[error(
+        "the {what} {element} of nodes {nodes:?}{} is no {part} of any {of}: {advice}",
+        in_groups(.groups)
+    )]
+    Lone {
+        /// Line or point.
+        what: &'static str,
+        /// Edge or end.
+        part: &'static str,
+        /// Triangle or line.
+        of: &'static str,
+        /// Its tag.
+        element: u64,
+        /// Tags of its nodes.
+        nodes: Vec<u64>,
+        /// Names of its physical groups.
+        groups: Vec<String>,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// A mesh that cannot be used, in the tags of the file.
+    #[error("{error} (numbers are the tags in Gmsh){advice}")]
+    Mesh {
+        /// What is wrong.
+        error: Box<MeshError>,
+        /// What to do in Gmsh, after a semicolon.
+        advice: &'static str,
+    },
+    /// A name that the format cannot hold.
+    #[error("the group {name:?} cannot be written: names in MSH files have no quotes and no line breaks")]
+    Name {
+        /// The name.
+        name: String,
+    },
+}
+
+fn in_groups(groups: &[String]) -> String {
+    if groups.is_empty() { String::new() } else { format!(", in {},", super::groups::quoted(groups)) }
+}
+
+/// A cause with the byte where it was met.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) at: Option<usize>,
+    pub(super) cause: Box<GmshCause>,
+}
+
+impl GmshCause {
+    /// Met at this byte.
+    pub(super) fn at(self, byte: usize) -> Fault {
+        Fault { at: Some(byte), cause: Box::new(self) }
+    }
+
+    /// Not met at any one place.
+    pub(super) fn anywhere(self) -> Fault {
+        Fault { at: None, cause: Box::new(self) }
+    }
+}
+
+impl Fault {
+    /// Joins the fault to its file, whose lines count if it is a text.
+    pub(super) fn of(self, path: &Path, bytes: &[u8], text: bool) -> GmshError {
+        let place = self.at.map(|byte| {
+            let before = bytes.get(..byte).unwrap_or(bytes);
+            if text { Place::Line(1 + before.iter().filter(|&&b| b == b'\n').count()) } else { Place::Byte(byte) }
+        });
+        GmshError { path: path.to_path_buf(), place, cause: *self.cause }
+    }
+}

@@ -1,0 +1,52 @@
+//! Kinds of elements by their numbers in Gmsh.
+
+use std::fmt;
+
+/// Numbers of the kinds that are read.
+pub(super) const POINT: i64 = 15;
+pub(super) const LINE: i64 = 1;
+pub(super) const TRIANGLE: i64 = 2;
+
+/// A kind of elements that percute does not compute with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElementKind(pub i64);
+
+impl ElementKind {
+    fn shape(self) -> &'static str {
+        match self.0 {
+            1 | 8 | 26..=28 | 62..=66 => "line",
+            2 | 9 | 20..=25 | 42..=46 | 52..=56 => "triangle",
+            3 | 10 | 16 | 36..=41 | 47..=51 | 57..=61 => "quadrangle",
+            4 | 11 | 29..=35 | 71..=79 => "tetrahedron",
+            5 | 12 | 17 | 92..=105 => "hexahedron",
+            6 | 13 | 18 | 90 | 91 | 106..=112 => "prism",
+            7 | 14 | 19 | 118..=131 => "pyramid",
+            _ => "element of another kind",
+        }
+    }
+
+    fn is_linear(self) -> bool {
+        (1..=7).contains(&self.0)
+    }
+
+    /// What to do about it in Gmsh.
+    #[must_use]
+    pub fn advice(self) -> &'static str {
+        match self.shape() {
+            "quadrangle" => "set `Mesh.RecombineAll = 0`, take out `Recombine Surface`, and mesh again",
+            "line" | "triangle" => "set `Mesh.ElementOrder = 1` (or `SetOrder 1;`) and save again",
+            "tetrahedron" | "hexahedron" | "prism" | "pyramid" => {
+                "mesh in 2D only (`gmsh -2`), or save only surfaces by `Physical Surface` with `Mesh.SaveAll = 0`"
+            }
+            _ => "mesh plane surfaces by triangles",
+        }
+    }
+}
+
+impl fmt::Display for ElementKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let order = if self.is_linear() || self.shape().starts_with("element") { "" } else { " of higher order" };
+        let article = if self.shape().starts_with('e') { "an" } else { "a" };
+        write!(f, "{article} {}{order} (Gmsh's type {})", self.shape(), self.0)
+    }
+}

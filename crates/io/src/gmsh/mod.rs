@@ -1,0 +1,87 @@
+//! Meshes in files of [Gmsh](https://gmsh.info): MSH 4.1 and 2.2, as texts and binary.
+//!
+//! Nothing is assumed of the numbering of nodes and elements, nor of the order of sections; sections that percute has no
+//! use for are skipped. `docs/mesh.md` tells how physical groups become groups of the mesh, and what is refused.
+
+mod assemble;
+mod cursor;
+mod error;
+mod facets;
+mod groups;
+mod header;
+mod kind;
+mod names;
+mod nodes;
+mod notices;
+mod raw;
+mod sections;
+mod v2;
+mod v4;
+mod write;
+
+pub use error::{GmshCause, GmshError, Place};
+pub use header::Version;
+pub use kind::ElementKind;
+pub use write::{Format, write};
+
+use crate::error::FileCause;
+use cursor::{Cursor, Form};
+use percute_core::mesh::Mesh;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// A mesh as it was read. What was left out is among its notices.
+#[derive(Clone, Debug)]
+pub struct MeshOf<const D: usize, const N: usize> {
+    /// The mesh: nodes and elements in the order of their tags in the file.
+    pub mesh: Mesh<D, N>,
+    /// The tag of each node in the file.
+    pub node_tags: Vec<u64>,
+    /// The tag of each element in the file.
+    pub element_tags: Vec<u64>,
+}
+
+/// A mesh of either dimension.
+#[derive(Clone, Debug)]
+pub enum MeshFile {
+    /// Lines along x.
+    Bar(MeshOf<1, 2>),
+    /// Triangles in a plane z = const.
+    Plane(MeshOf<2, 3>),
+}
+
+/// Reads a mesh. `scale` is metres per unit of length in the file: 1e-3 for millimetres.
+///
+/// # Errors
+/// A file that cannot be read or is no such mesh, with the line or byte and what to do in Gmsh.
+pub fn read(path: &Path, scale: f64) -> Result<MeshFile, GmshError> {
+    let whole = |cause: GmshCause| GmshError { path: path.to_path_buf(), place: None, cause };
+    let bytes = bytes(path).map_err(|cause| whole(cause.into()))?;
+    parse(path, &bytes, scale)
+}
+
+/// Reads a mesh from the bytes of a file; errors call it `path`.
+///
+/// # Errors
+/// As for [`read`].
+pub fn parse(path: &Path, bytes: &[u8], scale: f64) -> Result<MeshFile, GmshError> {
+    if !(scale.is_finite() && scale > 0.0) {
+        return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::Scale { value: scale } });
+    }
+    let mut cursor = Cursor::new(bytes);
+    let mesh = sections::read(&mut cursor).and_then(|raw| assemble::mesh(raw, scale));
+    let text = cursor.form == Form::Text;
+    mesh.map_err(|fault| fault.of(path, bytes, text))
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, FileCause> {
+    let cause = |source: std::io::Error| match source.kind() {
+        ErrorKind::NotFound => FileCause::Missing,
+        _ => FileCause::Read { source },
+    };
+    // A device or a pipe might never end.
+    if !std::fs::metadata(path).map_err(cause)?.is_file() {
+        return Err(FileCause::NotAFile);
+    }
+    std::fs::read(path).map_err(cause)
+}

@@ -1,0 +1,91 @@
+//! What the user should know about a file that could be read.
+
+use super::groups::{Sorted, quoted};
+use super::header::Version;
+use super::raw::Raw;
+use percute_core::mesh::Notice;
+use std::collections::BTreeMap;
+
+/// Tags that a message names.
+const SHOWN: usize = 5;
+
+/// Nodes that no element uses.
+pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
+    if tags.is_empty() {
+        return None;
+    }
+    let mut shown: Vec<_> = tags.iter().take(SHOWN).map(u64::to_string).collect();
+    if tags.len() > SHOWN {
+        shown.push("…".to_string());
+    }
+    let (count, shown) = (tags.len(), shown.join(", "));
+    let (nodes, tag, were, them) = if count == 1 {
+        ("node", "tag", "was", "it; it often is the centre of an arc")
+    } else {
+        ("nodes", "tags", "were", "them; they often are centres of arcs")
+    };
+    let element = if dimension == 2 { "triangle" } else { "bar" };
+    let message = format!("{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses {them}");
+    Some(Notice { name: "dropped_nodes", brief: format!("{count} unused {nodes} left out"), message, groups: vec![] })
+}
+
+/// Physical groups of points, in a plane mesh.
+pub(super) fn points(raw: &Raw, points: &Sorted<1>) -> Option<Notice> {
+    let groups: Vec<_> = points.members.keys().map(|&tag| raw.name(0, tag)).collect();
+    let message = format!(
+        "{} of points {} left out: in a plane mesh, curves and surfaces can be named, points cannot",
+        quoted(&groups),
+        were(&groups)
+    );
+    notice("points_left_out", "groups of points left out", message, groups)
+}
+
+/// Parts of physical groups that lie inside the body.
+pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option<Notice> {
+    let groups: Vec<_> = inner.keys().cloned().collect();
+    let count: usize = inner.values().sum();
+    let (edge, edges, of) = if dimension == 2 { ("edge", "edges", "curves") } else { ("point", "points", "points") };
+    let (what, lie, are) = if count == 1 { (edge, "lies", "was") } else { (edges, "lie", "were") };
+    let message = format!(
+        "{count} {what} of {} {lie} inside the body and {are} left out: groups of {of} name parts of its boundary, where it \
+         can be held, loaded or touched",
+        quoted(&groups)
+    );
+    notice("inner_facets", "parts of groups inside the body left out", message, groups)
+}
+
+/// Physical groups that have a name but no elements.
+pub(super) fn empty<T, U>(
+    raw: &Raw,
+    dimension: usize,
+    facets: &BTreeMap<String, Vec<T>>,
+    inner: &BTreeMap<String, usize>,
+    parts: &BTreeMap<String, Vec<U>>,
+) -> Option<Notice> {
+    let no_facets = facets.iter().filter(|(name, all)| all.is_empty() && !inner.contains_key(*name));
+    let no_parts = parts.iter().filter(|(_, all)| all.is_empty());
+    let mut groups: Vec<_> =
+        no_facets.map(|(name, _)| name.clone()).chain(no_parts.map(|(name, _)| name.clone())).collect();
+    let beyond = raw.names.iter().filter(|((of, _), _)| *of > dimension as i64);
+    groups.extend(beyond.map(|(_, name)| name.clone()));
+    groups.sort();
+    groups.dedup();
+    let reason = match raw.version {
+        Version::V22 => "Gmsh writes no groups to MSH 2.2 with `Mesh.SaveAll = 1`; set it to 0, or save as 4.1",
+        Version::V41 => "in Gmsh, does each name parts of the geometry that are there and meshed?",
+    };
+    let message = format!("{} {} no elements in the mesh file: {reason}", quoted(&groups), has(&groups));
+    notice("empty_groups", "groups without elements", message, groups)
+}
+
+fn notice(name: &'static str, brief: &str, message: String, groups: Vec<String>) -> Option<Notice> {
+    if groups.is_empty() { None } else { Some(Notice { name, brief: brief.to_string(), message, groups }) }
+}
+
+fn were(groups: &[String]) -> &'static str {
+    if groups.len() == 1 { "was" } else { "were" }
+}
+
+fn has(groups: &[String]) -> &'static str {
+    if groups.len() == 1 { "has" } else { "have" }
+}

@@ -1,0 +1,73 @@
+//! Meshes written for Gmsh, or to be read again bit by bit.
+
+mod parts;
+mod sink;
+mod v2;
+mod v4;
+
+use super::error::{GmshCause, GmshError};
+use super::header::Version;
+use crate::create::{Overwrite, whole};
+use parts::Parts;
+use percute_core::mesh::Mesh;
+use sink::Sink;
+use std::path::Path;
+
+/// How a mesh is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Format {
+    /// Version of MSH.
+    pub version: Version,
+    /// Numbers as they are in memory instead of a text.
+    pub binary: bool,
+}
+
+/// Writes a mesh in metres, whole or not at all; [`super::read`] makes the same mesh of it, bit by bit. Nodes and elements
+/// have their numbers plus 1 as tags; elements of the same groups are one part of the geometry.
+///
+/// # Errors
+/// A file that cannot be made or is there already, names of groups that the format cannot hold.
+pub fn write<const D: usize, const N: usize>(
+    path: &Path,
+    overwrite: Overwrite,
+    mesh: &Mesh<D, N>,
+    format: Format,
+) -> Result<(), GmshError> {
+    let failed = |cause| GmshError { path: path.to_path_buf(), place: None, cause };
+    let groups = mesh.facet_groups().keys().chain(mesh.element_groups().keys());
+    for name in groups {
+        if name.contains('"') || name.chars().any(char::is_control) {
+            return Err(failed(GmshCause::Name { name: name.clone() }));
+        }
+    }
+    whole(path, overwrite, &bytes(mesh, format)).map_err(|cause| failed(cause.into()))
+}
+
+/// The bytes of the file.
+fn bytes<const D: usize, const N: usize>(mesh: &Mesh<D, N>, format: Format) -> Vec<u8> {
+    let (mut out, parts) = (Sink::new(format.binary), Parts::of(mesh));
+    let version = if format.version == Version::V22 { "2.2" } else { "4.1" };
+    out.line("$MeshFormat");
+    out.line(&format!("{version} {} 8", u8::from(format.binary)));
+    if format.binary {
+        out.int(1);
+        out.line("");
+    }
+    out.line("$EndMeshFormat");
+    if !parts.names.is_empty() {
+        out.line("$PhysicalNames");
+        out.line(&parts.names.len().to_string());
+        parts.names.iter().for_each(|(dimension, tag, name)| out.line(&format!("{dimension} {tag} \"{name}\"")));
+        out.line("$EndPhysicalNames");
+    }
+    match format.version {
+        Version::V22 => v2::write(&mut out, mesh, &parts),
+        Version::V41 => v4::write(&mut out, mesh, &parts),
+    }
+    out.bytes()
+}
+
+/// A point in space.
+fn in_space<const D: usize>(point: &[f64; D]) -> [f64; 3] {
+    std::array::from_fn(|c| point.get(c).copied().unwrap_or(0.0))
+}

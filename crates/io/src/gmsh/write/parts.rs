@@ -1,0 +1,53 @@
+//! A mesh as parts of a geometry: elements that are in the same groups.
+
+use percute_core::mesh::Mesh;
+use std::collections::BTreeMap;
+
+/// Elements or facets that are in the same groups.
+pub(super) struct Part {
+    /// Tags of their physical groups.
+    pub(super) groups: Vec<usize>,
+    /// Their numbers.
+    pub(super) members: Vec<usize>,
+}
+
+/// Parts of both dimensions; the tag of a part is its position plus 1.
+pub(super) struct Parts {
+    /// Dimension, tag and name of the physical groups.
+    pub(super) names: Vec<(usize, usize, String)>,
+    /// Parts of the boundary, of facets that are in a group.
+    pub(super) facets: Vec<Part>,
+    /// Parts of the body.
+    pub(super) cells: Vec<Part>,
+}
+
+impl Parts {
+    pub(super) fn of<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Self {
+        let mut names = Vec::new();
+        let mut facets = BTreeMap::<usize, Vec<usize>>::new();
+        for (name, members) in mesh.facet_groups() {
+            names.push((D - 1, names.len() + 1, name.clone()));
+            members.iter().for_each(|facet| facets.entry(facet.index()).or_default().push(names.len()));
+        }
+        let mut cells = vec![Vec::new(); mesh.element_count()];
+        for (name, members) in mesh.element_groups() {
+            names.push((D, names.len() + 1, name.clone()));
+            members.iter().for_each(|cell| cells[cell.index()].push(names.len()));
+        }
+        let mut facets = parts(facets.into_iter());
+        if D == 1 {
+            // A point of the geometry is one point.
+            let alone = |part: Part| {
+                part.members.into_iter().map(move |facet| Part { groups: part.groups.clone(), members: vec![facet] })
+            };
+            facets = facets.into_iter().flat_map(alone).collect();
+        }
+        Self { names, facets, cells: parts(cells.into_iter().enumerate()) }
+    }
+}
+
+fn parts(entries: impl Iterator<Item = (usize, Vec<usize>)>) -> Vec<Part> {
+    let mut parts = BTreeMap::<Vec<usize>, Vec<usize>>::new();
+    entries.for_each(|(member, groups)| parts.entry(groups).or_default().push(member));
+    parts.into_iter().map(|(groups, members)| Part { groups, members }).collect()
+}

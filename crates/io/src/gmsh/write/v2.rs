@@ -1,0 +1,79 @@
+//! Nodes and elements of version 2.2.
+
+use super::in_space;
+use super::parts::{Part, Parts};
+use super::sink::Sink;
+use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
+use percute_core::mesh::Mesh;
+
+/// An element as one of its groups has it.
+struct Entry {
+    tag: usize,
+    group: usize,
+    part: usize,
+    nodes: Vec<usize>,
+}
+
+pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+    out.line("$Nodes");
+    out.line(&mesh.node_count().to_string());
+    for (node, point) in mesh.points().iter().enumerate() {
+        out.int(node + 1);
+        in_space(point).into_iter().for_each(|x| out.real(x));
+        out.row();
+    }
+    end(out, "$EndNodes");
+    let mut next = mesh.element_count() + 1;
+    let cell = |cell: usize| mesh.cells()[cell].iter().map(|node| node.index() + 1).collect();
+    let cells = entries(&parts.cells, &mut next, |cell| Some(cell + 1), cell);
+    let facet = |facet: usize| mesh.facets()[facet].nodes.iter().map(|node| node.index() + 1).collect();
+    let facets = entries(&parts.facets, &mut next, |_| None, facet);
+    out.line("$Elements");
+    out.line(&(cells.len() + facets.len()).to_string());
+    let [of_facets, of_cells] = if D == 1 { [POINT, LINE] } else { [LINE, TRIANGLE] };
+    for (kind, entries) in [(of_facets, facets), (of_cells, cells)] {
+        if out.is_binary() && !entries.is_empty() {
+            [kind as usize, entries.len(), 2].into_iter().for_each(|number| out.int(number));
+        }
+        for Entry { tag, group, part, nodes } in entries {
+            out.int(tag);
+            if !out.is_binary() {
+                [kind as usize, 2].into_iter().for_each(|number| out.int(number));
+            }
+            [group, part].into_iter().chain(nodes).for_each(|number| out.int(number));
+            out.row();
+        }
+    }
+    end(out, "$EndElements");
+}
+
+fn end(out: &mut Sink, name: &str) {
+    if out.is_binary() {
+        out.line("");
+    }
+    out.line(name);
+}
+
+/// Elements, once for each of their groups: the first under its own tag, if it has one, the others under new ones.
+fn entries(
+    parts: &[Part],
+    next: &mut usize,
+    own: impl Fn(usize) -> Option<usize>,
+    nodes: impl Fn(usize) -> Vec<usize>,
+) -> Vec<Entry> {
+    let mut new = || {
+        *next += 1;
+        *next - 1
+    };
+    let mut entries = Vec::new();
+    for (part, Part { groups, members }) in parts.iter().enumerate() {
+        let groups = if groups.is_empty() { &[0][..] } else { groups };
+        for &member in members {
+            for (i, &group) in groups.iter().enumerate() {
+                let tag = own(member).filter(|_| i == 0).unwrap_or_else(&mut new);
+                entries.push(Entry { tag, group, part: part + 1, nodes: nodes(member) });
+            }
+        }
+    }
+    entries
+}

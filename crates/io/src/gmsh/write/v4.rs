@@ -1,0 +1,97 @@
+//! Geometry, nodes and elements of version 4.1.
+
+use super::in_space;
+use super::parts::{Part, Parts};
+use super::sink::Sink;
+use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
+use percute_core::mesh::Mesh;
+
+pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+    out.line("$Entities");
+    entities(out, mesh, parts);
+    end(out, "$EndEntities");
+    out.line("$Nodes");
+    let nodes = mesh.node_count();
+    row(out, &[1, nodes, 1, nodes]);
+    // All nodes are said to be inside the first part of the body: their true place does not matter.
+    head(out, [D, 1, 0], nodes);
+    (1..=nodes).for_each(|tag| row(out, &[tag]));
+    for point in mesh.points() {
+        in_space(point).into_iter().for_each(|x| out.real(x));
+        out.row();
+    }
+    end(out, "$EndNodes");
+    out.line("$Elements");
+    elements(out, mesh, parts);
+    end(out, "$EndElements");
+}
+
+fn row(out: &mut Sink, sizes: &[usize]) {
+    sizes.iter().for_each(|&size| out.size(size));
+    out.row();
+}
+
+fn head(out: &mut Sink, ints: [usize; 3], count: usize) {
+    ints.into_iter().for_each(|number| out.int(number));
+    row(out, &[count]);
+}
+
+fn end(out: &mut Sink, name: &str) {
+    if out.is_binary() {
+        out.line("");
+    }
+    out.line(name);
+}
+
+fn entities<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+    let mut counts = [0; 4];
+    counts[D - 1] = parts.facets.len();
+    counts[D] = parts.cells.len();
+    row(out, &counts);
+    let extreme = |pick: fn(f64, f64) -> f64| {
+        mesh.points().iter().map(in_space).reduce(|a, b| std::array::from_fn(|c| pick(a[c], b[c]))).unwrap_or([0.0; 3])
+    };
+    let around = [extreme(f64::min), extreme(f64::max)];
+    let point = |part: &Part| mesh.facets()[part.members[0]].nodes[0].index();
+    for (dimension, all) in [(D - 1, &parts.facets), (D, &parts.cells)] {
+        for (at, part) in all.iter().enumerate() {
+            out.int(at + 1);
+            if dimension == 0 {
+                in_space(&mesh.points()[point(part)]).into_iter().for_each(|x| out.real(x));
+            } else {
+                around.as_flattened().iter().for_each(|&x| out.real(x));
+            }
+            out.size(part.groups.len());
+            part.groups.iter().for_each(|&group| out.int(group));
+            if dimension > 0 {
+                out.size(0);
+            }
+            out.row();
+        }
+    }
+}
+
+fn elements<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+    let facets: usize = parts.facets.iter().map(|part| part.members.len()).sum();
+    let total = mesh.element_count() + facets;
+    row(out, &[parts.facets.len() + parts.cells.len(), total, 1, total]);
+    let [of_facets, of_cells] = if D == 1 { [POINT, LINE] } else { [LINE, TRIANGLE] };
+    let mut tag = mesh.element_count();
+    for (at, part) in parts.facets.iter().enumerate() {
+        head(out, [D - 1, at + 1, of_facets as usize], part.members.len());
+        for &facet in &part.members {
+            tag += 1;
+            out.size(tag);
+            mesh.facets()[facet].nodes.iter().for_each(|node| out.size(node.index() + 1));
+            out.row();
+        }
+    }
+    for (at, part) in parts.cells.iter().enumerate() {
+        head(out, [D, at + 1, of_cells as usize], part.members.len());
+        for &cell in &part.members {
+            out.size(cell + 1);
+            mesh.cells()[cell].iter().for_each(|node| out.size(node.index() + 1));
+            out.row();
+        }
+    }
+}

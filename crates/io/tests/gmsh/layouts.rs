@@ -1,0 +1,155 @@
+//! What a file may look like: the same mesh whatever its order, its bytes and what else it holds.
+
+use crate::common::*;
+use percute_io::gmsh::Place;
+
+/// Numbers in either order of bytes, with tags of 4 or 8 bytes.
+struct Binary {
+    bytes: Vec<u8>,
+    big: bool,
+    size: usize,
+}
+
+impl Binary {
+    fn put(&mut self, little: &[u8]) {
+        let mut field = little.to_vec();
+        if self.big {
+            field.reverse();
+        }
+        self.bytes.extend(field);
+    }
+
+    fn ints(&mut self, numbers: &[i32]) {
+        numbers.iter().for_each(|n| self.put(&n.to_le_bytes()));
+    }
+
+    fn sizes(&mut self, numbers: &[u64]) {
+        numbers.iter().for_each(|n| self.put(&n.to_le_bytes()[..self.size]));
+    }
+
+    fn reals(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|n| self.put(&n.to_le_bytes()));
+    }
+
+    fn line(&mut self, text: &str) {
+        self.bytes.extend(text.as_bytes());
+        self.bytes.push(b'\n');
+    }
+}
+
+/// `SQUARE` as a binary file of version 4.1.
+fn binary_square(big: bool, size: usize) -> Vec<u8> {
+    let mut out = Binary { bytes: Vec::new(), big, size };
+    out.line(&format!("$MeshFormat\n4.1 1 {size}"));
+    out.ints(&[1]);
+    out.line(
+        "\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"foot\"\n2 5 \"lower\"\n2 6 \"upper\"\n$EndPhysicalNames\n$Entities",
+    );
+    out.sizes(&[0, 1, 2, 0]);
+    for (tag, group) in [(1, 1), (1, 5), (2, 6)] {
+        out.ints(&[tag]);
+        out.reals(&[0.0, 0.0, 0.0, 1.0, 1.0, 0.0]);
+        out.sizes(&[1]);
+        out.ints(&[group]);
+        out.sizes(&[0]);
+    }
+    out.line("\n$EndEntities\n$Nodes");
+    out.sizes(&[1, 5, 2, 30]);
+    out.ints(&[2, 1, 0]);
+    out.sizes(&[5, 2, 30, 4, 9, 6]);
+    out.reals(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 7.0, 7.0, 7.0]);
+    out.line("\n$EndNodes\n$Elements");
+    out.sizes(&[3, 3, 10, 90]);
+    for (head, element) in [([1, 1, 1], &[10, 30, 2][..]), ([2, 1, 2], &[90, 2, 30, 4]), ([2, 2, 2], &[50, 2, 9, 4])] {
+        out.ints(&head);
+        out.sizes(&[1]);
+        out.sizes(element);
+    }
+    out.line("\n$EndElements");
+    out.bytes
+}
+
+#[test]
+fn nodes_and_elements_come_in_the_order_of_their_tags() {
+    let read = plane(of_bytes(SQUARE.as_bytes()).unwrap());
+    assert_eq!(read.node_tags, [2, 4, 9, 30]);
+    assert_eq!(read.element_tags, [50, 90]);
+    assert_eq!(read.mesh.points(), [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
+    let cells: Vec<_> = read.mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
+    // 50 is (2, 9, 4) in the file, clockwise.
+    assert_eq!(cells, [[0, 1, 2], [0, 3, 1]]);
+    assert_eq!(read.mesh.element_groups()["upper"][0].index(), 0);
+    let foot = read.mesh.facet_groups()["foot"][0];
+    assert_eq!(read.mesh.facets()[foot.index()].nodes.map(|node| node.index()), [0, 3]);
+}
+
+#[test]
+fn all_orders_and_sizes_of_bytes_are_read() {
+    let text = plane(of_bytes(SQUARE.as_bytes()).unwrap()).mesh;
+    for (big, size) in [(false, 8), (false, 4), (true, 8), (true, 4)] {
+        assert_same(&plane(of_bytes(&binary_square(big, size)).unwrap()).mesh, &text);
+    }
+}
+
+#[test]
+fn sections_come_in_any_order_with_others_between_them() {
+    let text = plane(of_bytes(SQUARE.as_bytes()).unwrap()).mesh;
+    let mut parts: Vec<String> = Vec::new();
+    for line in SQUARE.lines() {
+        if line.starts_with('$') && !line.starts_with("$End") {
+            parts.push(String::new());
+        }
+        *parts.last_mut().unwrap() += &format!("{line}\r\n");
+    }
+    parts[1..].reverse();
+    parts.insert(0, "$Comments\nnot a $Nodes section\n$EndComments\n".to_string());
+    parts.insert(3, "$NodeData\n1\n\"T\"\n1\n0.0\n3\n0\n1\n1\n2 5.0\n$EndNodeData\n\n".to_string());
+    let shuffled = parts.concat();
+    assert!(shuffled.find("$Elements") < shuffled.find("$Entities"));
+    assert_same(&plane(of_bytes(shuffled.as_bytes()).unwrap()).mesh, &text);
+    let with_mark = format!("\u{feff}{SQUARE}");
+    assert_same(&plane(of_bytes(with_mark.as_bytes()).unwrap()).mesh, &text);
+}
+
+#[test]
+fn parametric_nodes_are_read() {
+    let text = plane(of_bytes(SQUARE.as_bytes()).unwrap()).mesh;
+    let with =
+        SQUARE.replace("2 1 0 5", "2 1 1 5").replace("1 1 0\n0 1 0\n7 7 7", "1 1 0 0.1 0.2\n0 1 0 5 5\n7 7 7 nan 0");
+    let with = with.replace("\n0 0 0\n1 0 0\n", "\n0 0 0 0 0\n1 0 0 0.5 -1\n");
+    assert_same(&plane(of_bytes(with.as_bytes()).unwrap()).mesh, &text);
+    let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n3 0 1 0 2 4 0.5 0.5\n\
+               $EndParametricNodes\n$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
+    assert_eq!(plane(of_bytes(old.as_bytes()).unwrap()).mesh.points(), [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+}
+
+/// Version 2.2 has an element once for each of its groups; twice in one group it is there twice.
+#[test]
+fn doubled_elements_of_version_2_are_one() {
+    let file = |second: &str| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n2\n\
+             1 2 2 7 1 1 2 3\n2 2 {second}\n$EndElements\n"
+        )
+    };
+    let read = plane(of_bytes(file("2 8 1 3 2 1").as_bytes()).unwrap());
+    assert_eq!((read.mesh.element_count(), read.element_tags), (1, vec![1]));
+    assert_eq!(read.mesh.element_groups().keys().collect::<Vec<_>>(), ["7", "8"]);
+    for second in ["2 7 1 1 2 3", "2 8 2 1 2 3"] {
+        let error = of_bytes(file(second).as_bytes()).unwrap_err();
+        assert!(error.to_string().contains("elements 1 and 2 lie on the same side"), "{error}");
+        assert_eq!(error.place, Some(Place::Line(13)));
+    }
+}
+
+#[test]
+fn groups_of_one_name_are_one_and_those_without_have_their_number() {
+    let named = SQUARE.replace("2 6 \"upper\"", "2 6 \"lower\"");
+    let mesh = plane(of_bytes(named.as_bytes()).unwrap()).mesh;
+    assert_eq!(mesh.element_groups().keys().collect::<Vec<_>>(), ["lower"]);
+    assert_eq!(mesh.element_groups()["lower"].len(), 2);
+    let nameless = SQUARE.replace("3\n1 1 \"foot\"\n2 5 \"lower\"", "1");
+    let mesh = plane(of_bytes(nameless.as_bytes()).unwrap()).mesh;
+    assert_eq!(mesh.element_groups().keys().collect::<Vec<_>>(), ["5", "upper"]);
+    assert_eq!(mesh.facet_groups().keys().collect::<Vec<_>>(), ["1"]);
+}

@@ -1,0 +1,227 @@
+"""Meshes in files of other programs, through meshlane, which is imported only when it is needed."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percute.checks import encodable
+from percute.errors import (
+    ExistingFileError,
+    FileFormatError,
+    InputError,
+    MeshWarning,
+    MissingFileError,
+    PercuteError,
+    StorageError,
+)
+
+if TYPE_CHECKING:
+    from percute.mesh import Mesh
+
+__all__ = ["is_gmsh", "read_foreign", "tell_of_mesh", "write_foreign"]
+
+_Integers = NDArray[np.int64]
+
+KINDS = {"vertex": 0, "line": 1, "triangle": 2}
+"""Kinds of cells that percute knows, with their dimensions."""
+
+REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:tag")
+"""Whole numbers of cells that name groups, as formats without names have them."""
+
+
+def is_gmsh(file: str) -> bool:
+    """Tell whether a file is percute's own business."""
+    return file.lower().endswith(".msh")
+
+
+def tell_of_mesh(messages: Iterable[str]) -> None:
+    """Warn whoever called the caller of what was noticed when a mesh was read."""
+    for message in messages:
+        warnings.warn(message, MeshWarning, stacklevel=3)
+
+
+def _meshlane(file: str) -> Any:
+    try:
+        import meshlane
+    except ImportError as error:
+        raise InputError(
+            f"`path`: {encodable(file)!r} is no .msh file; other formats need meshlane: pip install 'percute[mesh]' ({error})"
+        ) from None
+    return meshlane
+
+
+def read_foreign(kind: type[Mesh], file: str, scale: float) -> Mesh:
+    """Read a mesh by meshlane."""
+    if not (np.isfinite(scale) and scale > 0):
+        raise InputError(f"`scale` is {scale}; it must be a positive finite number: metres per unit of length in the file")
+    name, meshlane = encodable(file), _meshlane(file)
+    if not os.path.isfile(file):
+        raise MissingFileError(f"{name}: there is no such file")
+    found = _quietly(lambda: meshlane.read(file), FileFormatError, f"cannot read {name}")
+    try:
+        points, cells, groups, elements = _Reader(name, found).arrays(scale)
+        mesh = kind(points, cells, groups, elements)
+    except InputError as error:
+        raise FileFormatError(f"{name}: {error}") from None
+    return mesh
+
+
+def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str) -> Any:
+    """Let meshlane work, which prints what is wrong and may end the process."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return work()
+    except (SystemExit, Exception) as error:
+        told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
+        raise kind(f"meshlane {what}: {told or type(error).__name__}") from error
+
+
+class _Reader:
+    """Takes from a mesh of meshlane what percute knows."""
+
+    def __init__(self, name: str, found: Any) -> None:
+        self.name = name
+        self.points = np.asarray(found.points, dtype=np.float64)
+        self.blocks = [(block.type, np.asarray(block.data)) for block in found.cells]
+        for kind, data in self.blocks:
+            if kind not in KINDS:
+                raise FileFormatError(
+                    f"{name}: {len(data)} elements are of the kind {kind!r}; percute takes 3-node triangles (a bar: 2-node lines): "
+                    "mesh again with these"
+                )
+        self.dimension = max((KINDS[kind] for kind, data in self.blocks if len(data)), default=0)
+        if self.dimension == 0:
+            raise FileFormatError(f"{name}: the file has neither triangles nor lines; it must have the mesh of a body")
+        self.sets = _sets(found)
+
+    def _of(self, dimension: int) -> tuple[_Integers, dict[str, _Integers]]:
+        """Give all cells of a dimension, and which of them are in each set."""
+        at = [i for i, (kind, _) in enumerate(self.blocks) if KINDS[kind] == dimension]
+        cells = [self.blocks[i][1].reshape(-1, dimension + 1).astype(np.int64) for i in at]
+        starts = np.cumsum([0, *map(len, cells)])
+        sets = {}
+        for name, parts in self.sets.items():
+            members = [start + parts[i] for start, i in zip(starts, at, strict=False) if len(parts[i])]
+            if members:
+                sets[name] = np.concatenate(members)
+        return (np.concatenate(cells) if cells else np.empty((0, dimension + 1), np.int64)), sets
+
+    def arrays(self, scale: float) -> tuple[NDArray[np.float64], _Integers, dict[str, _Integers], dict[str, _Integers]]:
+        """Give points, cells, groups and elements as `Mesh` takes them."""
+        cells, elements = self._of(self.dimension)
+        facets, members = self._of(self.dimension - 1)
+        points = self.points.reshape(len(self.points), -1) * scale
+        if cells.min() < 0 or cells.max() >= len(points):
+            raise FileFormatError(f"{self.name}: an element names a node that is not there")
+        used = np.unique(cells)
+        numbers = np.full(len(points), -1)
+        numbers[used] = np.arange(len(used))
+        if len(used) < len(points):
+            _tell(f"{len(points) - len(used)} nodes of the mesh file were left out: no element uses them")
+        return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
+
+    def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Leave out the coordinates in which the points do not differ."""
+        # The distance below which two nodes are one.
+        tolerance = 1e-10 * float(np.linalg.norm(np.ptp(points, axis=0)))
+        if points.shape[1] < self.dimension or np.any(np.ptp(points[:, self.dimension :], axis=0) > tolerance):
+            where = "in a plane z = const" if self.dimension == 2 else "along x, nor are there triangles"
+            raise FileFormatError(f"{self.name}: the mesh does not lie {where}")
+        return points[:, : self.dimension]
+
+    def _boundary(
+        self, cells: _Integers, facets: _Integers, members: dict[str, _Integers], numbers: _Integers
+    ) -> dict[str, _Integers]:
+        """Give the members of each group that lie on the boundary."""
+        corners = cells.shape[1]
+        sides = np.concatenate([np.delete(cells, opposite, axis=1) for opposite in range(corners)])
+        keys, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+        owners = {tuple(key): count for key, count in zip(keys.tolist(), counts.tolist(), strict=True)}
+        of = np.array([owners.get(tuple(sorted(facet)), 0) for facet in facets.tolist()], dtype=int)
+        groups = {}
+        for name, chosen in members.items():
+            if np.any(of[chosen] == 0):
+                first = facets[chosen][of[chosen] == 0][0].tolist()
+                raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is no edge of an element")
+            inner = int(np.count_nonzero(of[chosen] > 1))
+            if inner:
+                _tell(f"{inner} edges of the group {name!r} lie inside the body and were left out: groups name parts of its boundary")
+            groups[name] = numbers[facets[chosen][of[chosen] == 1]]
+        return groups
+
+
+def _tell(message: str) -> None:
+    # Through arrays, read_foreign and Mesh.read.
+    warnings.warn(message, MeshWarning, stacklevel=5)
+
+
+def _sets(found: Any) -> dict[str, list[_Integers]]:
+    """Give the members of each group, block by block: of its sets, or else of the numbers that its cells have."""
+    empty = np.empty(0, np.int64)
+    sets = {
+        str(name): [empty if part is None else np.asarray(part, np.int64) for part in parts]
+        for name, parts in found.cell_sets.items()
+        if not str(name).startswith("gmsh:")
+    }
+    if sets:
+        return sets
+    names = {int(value[0]): str(name) for name, value in found.field_data.items() if np.size(value) >= 1 and np.ndim(value) == 1}
+    for key in REFERENCES:
+        if key in found.cell_data:
+            blocks = [np.asarray(part) for part in found.cell_data[key]]
+            for reference in sorted({int(each) for block in blocks for each in np.unique(block)} - {0}):
+                sets[names.get(reference, str(reference))] = [np.flatnonzero(block == reference) for block in blocks]
+            break
+    return sets
+
+
+def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
+    """Write a mesh by meshlane, whole or not at all."""
+    name, meshlane, target = encodable(file), _meshlane(file), Path(file)
+    if os.path.lexists(file) and not overwrite:
+        raise ExistingFileError(f"{name}: the file exists already; give another name, or overwrite=True")
+    dimension = mesh.dimension
+    kinds = [kind for kind, of in KINDS.items() if of <= dimension]
+    space = np.zeros((len(mesh.points), 3))
+    space[:, :dimension] = mesh.points
+    cells: list[tuple[str, NDArray[Any]]] = [(kinds[dimension], np.asarray(mesh.cells, np.int64))]
+    cells += [(kinds[dimension - 1], edges) for edges in mesh.groups.values() if len(edges)]
+    empty = np.empty(0, np.int64)
+    sets = {group: [members] + [empty] * (len(cells) - 1) for group, members in mesh.elements.items()}
+    for at, (group, edges) in enumerate(((g, e) for g, e in mesh.groups.items() if len(e)), start=1):
+        parts = sets.setdefault(group, [empty] * len(cells))
+        parts[at] = np.arange(len(edges))
+    with tempfile.TemporaryDirectory(prefix=".percute-", dir=_folder(target, name)) as folder:
+        draft = Path(folder) / target.name
+        _quietly(lambda: meshlane.write(draft, meshlane.Mesh(space, cells, cell_sets=sets)), InputError, f"cannot write {name}")
+        lost = set(sets) - set(_sets(_quietly(lambda: meshlane.read(draft), InputError, f"cannot read what it wrote to {name}")))
+        # Some formats take several files.
+        drafts = sorted(Path(folder).iterdir())
+        for other in drafts:
+            if other != draft and os.path.lexists(target.parent / other.name) and not overwrite:
+                beside = encodable(os.fspath(target.parent / other.name))
+                raise ExistingFileError(f"{beside}: the file exists already; give another name, or overwrite=True")
+        for each in drafts:
+            os.replace(each, target.parent / each.name)
+    if lost:
+        message = f"{name}: this format does not keep the groups {', '.join(sorted(map(repr, lost)))}; .msh files do"
+        warnings.warn(message, MeshWarning, stacklevel=3)
+
+
+def _folder(target: Path, name: str) -> Path:
+    folder = target.parent
+    if not folder.is_dir():
+        raise StorageError(f"{name}: the file cannot be created: there is no folder {os.fspath(folder)!r}")
+    return folder
