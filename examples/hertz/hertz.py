@@ -39,8 +39,8 @@ class Study:
     """Of the main run, by the reading of the contact force."""
 
 
-def study() -> Study:
-    """Run everything."""
+def study(every: int = 1) -> Study:
+    """Run everything; the error is sampled at every k-th step."""
     mesh = pc.Mesh.read(HERE / "disc.msh")
     main, history = simulate(DISC, mesh, SPEED, end=15e-6)
     # Slower impacts last a little longer.
@@ -54,7 +54,7 @@ def study() -> Study:
         "cut in four, half the speed": simulate(DISC, fine, SPEED / 2, end)[0],
         "cut in four, twice the speed": simulate(DISC, fine, SPEED * 2, end)[0],
     }
-    estimates = {name: pc.estimate(history, contact_force=name) for name in ("paper", "sharp")}
+    estimates = {name: pc.estimate(history, contact_force=name, every=every) for name in ("paper", "sharp")}
     return Study(main, history, speeds, variants, estimates)
 
 

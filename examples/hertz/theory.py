@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -36,7 +37,7 @@ class Cylinder:
     young: float
     poisson: float
     density: float
-    plane: str = "strain"
+    plane: Literal["strain", "stress"] = "strain"
     degree: int = field(default=16, repr=False)
     """Degree of the polynomials of which the modes of vibration are made."""
 
@@ -76,7 +77,7 @@ class Cylinder:
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
         """Frequencies (c/R) of the free disc's symmetric modes of mass 1, and their displacement at the point of contact."""
-        frequencies, modes, trace = _modes(self.degree, self.lateral, np.zeros(1))
+        frequencies, modes, trace = ritz_modes(self.degree, self.lateral, np.zeros(1))
         return frequencies, trace[0] @ modes
 
     def impact(self, speed: float, cut: float = 0.0, step: float = 2e-3) -> Impact:
@@ -119,7 +120,7 @@ class Cylinder:
         return force
 
 
-def _modes(degree: int, lateral: float, x: Floats) -> tuple[Floats, Floats, Floats]:
+def ritz_modes(degree: int, lateral: float, x: Floats) -> tuple[Floats, Floats, Floats]:
     """Modes of the free unit disc with E* = ρ = 1 that are symmetric in x, by the method of Ritz with polynomials of a degree.
 
     Returns frequencies, modes (functions, modes), and the vertical displacement (places, functions) on the lower edge at the given x.
