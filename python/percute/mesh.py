@@ -147,10 +147,12 @@ class Mesh:
             Another format without meshlane, or a scale that is none.
         """
         file, factor = file_name("path", path), number("scale", scale)
-        if not is_gmsh(file):
-            return read_foreign(cls, file, factor)
-        mesh = cls._of(_percute.MeshData.read(file, factor))
-        tell_of_mesh(mesh._data.notices())
+        if is_gmsh(file):
+            mesh = cls._of(_percute.MeshData.read(file, factor))
+            notices = mesh._data.notices()
+        else:
+            mesh, notices = read_foreign(cls, file, factor)
+        tell_of_mesh(notices)
         return mesh
 
     def write(

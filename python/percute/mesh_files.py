@@ -35,6 +35,9 @@ _Integers = NDArray[np.int64]
 KINDS = {"vertex": 0, "line": 1, "triangle": 2}
 """Kinds of cells that percute knows, with their dimensions."""
 
+LARGE = 10.0
+"""Size (m) above which a mesh is more likely in millimetres, as for files of Gmsh."""
+
 REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:tag")
 """Whole numbers of cells that name groups, as formats without names have them."""
 
@@ -60,24 +63,27 @@ def _meshlane(file: str) -> Any:
     return meshlane
 
 
-def read_foreign(kind: type[Mesh], file: str, scale: float) -> Mesh:
-    """Read a mesh by meshlane."""
+def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[str]]:
+    """Read a mesh by meshlane; give it with what was left out."""
     if not (np.isfinite(scale) and scale > 0):
         raise InputError(f"`scale` is {scale}; it must be a positive finite number: metres per unit of length in the file")
     name, meshlane = encodable(file), _meshlane(file)
     if not os.path.isfile(file):
         raise MissingFileError(f"{name}: there is no such file")
     found = _quietly(lambda: meshlane.read(file), FileFormatError, f"cannot read {name}")
+    reader = _Reader(name, found)
+    points, cells, groups, elements = reader.arrays(scale)
     try:
-        points, cells, groups, elements = _Reader(name, found).arrays(scale)
         mesh = kind(points, cells, groups, elements)
     except InputError as error:
         raise FileFormatError(f"{name}: {error}") from None
-    return mesh
+    if scale == 1 and mesh.size > LARGE:
+        reader.notices.append(f"the mesh is {mesh.size:.3f} m large, corner to corner: if in millimetres, give `scale` = 1e-3")
+    return mesh, reader.notices
 
 
-def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str) -> Any:
-    """Let meshlane work, which prints what is wrong and may end the process."""
+def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "") -> Any:
+    """Let meshlane work, which prints what is wrong and may end the process; the folder ``draft`` is not for its messages."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
@@ -85,6 +91,7 @@ def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str) -> An
             return work()
     except (SystemExit, Exception) as error:
         told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
+        told = told.replace(f"{os.path.basename(draft)}{os.sep}", "") if draft else told
         raise kind(f"meshlane {what}: {told or type(error).__name__}") from error
 
 
@@ -93,6 +100,7 @@ class _Reader:
 
     def __init__(self, name: str, found: Any) -> None:
         self.name = name
+        self.notices: list[str] = []
         self.points = np.asarray(found.points, dtype=np.float64)
         self.blocks = [(block.type, np.asarray(block.data)) for block in found.cells]
         for kind, data in self.blocks:
@@ -129,7 +137,9 @@ class _Reader:
         numbers = np.full(len(points), -1)
         numbers[used] = np.arange(len(used))
         if len(used) < len(points):
-            _tell(f"{len(points) - len(used)} nodes of the mesh file were left out: no element uses them")
+            count = len(points) - len(used)
+            nodes = "1 node" if count == 1 else f"{count} nodes"
+            self.notices.append(f"{nodes} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
         return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
 
     def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -157,14 +167,10 @@ class _Reader:
                 raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is no edge of an element")
             inner = int(np.count_nonzero(of[chosen] > 1))
             if inner:
-                _tell(f"{inner} edges of the group {name!r} lie inside the body and were left out: groups name parts of its boundary")
+                edges = "1 edge lies" if inner == 1 else f"{inner} edges lie"
+                self.notices.append(f"group {name!r}: {edges} inside the body, left out: groups name parts of its boundary")
             groups[name] = numbers[facets[chosen][of[chosen] == 1]]
         return groups
-
-
-def _tell(message: str) -> None:
-    # Through arrays, read_foreign and Mesh.read.
-    warnings.warn(message, MeshWarning, stacklevel=5)
 
 
 def _sets(found: Any) -> dict[str, list[_Integers]]:
@@ -205,8 +211,10 @@ def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
         parts[at] = np.arange(len(edges))
     with tempfile.TemporaryDirectory(prefix=".percute-", dir=_folder(target, name)) as folder:
         draft = Path(folder) / target.name
-        _quietly(lambda: meshlane.write(draft, meshlane.Mesh(space, cells, cell_sets=sets)), InputError, f"cannot write {name}")
-        lost = set(sets) - set(_sets(_quietly(lambda: meshlane.read(draft), InputError, f"cannot read what it wrote to {name}")))
+        made = meshlane.Mesh(space, cells, cell_sets=sets)
+        _quietly(lambda: meshlane.write(draft, made), InputError, f"cannot write {name}", folder)
+        written = _quietly(lambda: meshlane.read(draft), InputError, f"cannot read what it wrote to {name}", folder) if sets else made
+        lost = set(sets) - set(_sets(written))
         # Some formats take several files.
         drafts = sorted(Path(folder).iterdir())
         for other in drafts:

@@ -23,13 +23,13 @@ pub fn chosen<'a>(
     given.map(|file| Output { what: flag, file }).or(stated)
 }
 
-/// Makes sure that all files can be made, that no two of them are one, and that none is the input, if that is
-/// a file; `input` says what that is. Only a picture may replace a file unless `force` says so.
+/// Makes sure that all files can be made, that no two of them are one, and that none is an input; `inputs` say what
+/// they are. Only a picture may replace a file unless `force` says so.
 ///
 /// # Errors
 /// [`Failure::Argument`] for two names of one file, [`Failure::Exists`] and [`Failure::Unwritable`].
 pub fn check(
-    input: Option<(&str, &Path)>,
+    inputs: &[(&str, &Path)],
     outputs: &[Option<Output<'_>>],
     picture: Option<&Path>,
     force: bool,
@@ -38,7 +38,7 @@ pub fn check(
     let all: Vec<Output<'_>> = outputs.iter().copied().chain([drawn]).flatten().collect();
     for (i, Output { what, file }) in all.iter().enumerate() {
         let shown = file.display();
-        if let Some((name, _)) = input.filter(|(_, input)| writable::same(file, input)) {
+        if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {
             return Err(Failure::Argument(format!("{what} {shown} is the {name} itself")));
         }
         if let Some(other) = all[..i].iter().find(|other| writable::same(file, other.file)) {

@@ -47,7 +47,8 @@ impl CaseData {
             outputs::chosen(["`store`", "[output] history"], store.as_deref(), output.history.as_deref()),
             outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
         ];
-        let checked = outputs::check(case.as_deref().map(|file| ("case file", file)), &chosen, None, overwrite);
+        let inputs = each!(&self.case, read => read.inputs(case.as_deref()));
+        let checked = outputs::check(&inputs, &chosen, None, overwrite);
         checked.map_err(|error| errors::output(py, &error))?;
         let asked = PyDict::new(py);
         for (name, file) in ["history", "estimate"].into_iter().zip(chosen) {

@@ -7,6 +7,9 @@ use percute_core::material::{Elastic, MaterialError};
 const BAR_KEYS: [&str; 4] = ["young", "density", "section", "group"];
 const PLANE_KEYS: [&str; 6] = ["young", "poisson", "density", "plane", "thickness", "group"];
 
+/// What is said of properties that a bar does not have.
+pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
+
 /// Reads all materials, each with its group of elements.
 pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
     let tables = root.tables("material")?;
@@ -23,7 +26,8 @@ pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<Strin
 
 fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {
     for key in ["poisson", "plane", "thickness"] {
-        table.refuse(key, "does not apply to a bar, which has a `section` (m²) and stretches along its axis only")?;
+        let why = format!("{NOT_FOR_BARS}, which has a `section` (m²) and stretches along its axis only");
+        table.refuse(key, &why)?;
     }
     table.only(&BAR_KEYS)?;
     let young = number(table, "young", "Pa")?;

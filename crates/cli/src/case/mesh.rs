@@ -1,11 +1,13 @@
 //! `[mesh]`: a generator, a file of Gmsh, or points, cells and groups.
 
+use super::material::NOT_FOR_BARS;
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause, MeshFile};
+use std::path::PathBuf;
 
 const KEYS: [&str; 9] = ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "groups", "elements"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
@@ -49,6 +51,21 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
         table.refuse("scale", "goes with `file`; all other lengths are in metres")?;
     }
     reader(table, value)
+}
+
+/// An error of a case whose mesh was read as a bar: perhaps a plane body was meant, and its triangles were not saved.
+pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseError {
+    if table.get("file").is_some() && error.message.contains(NOT_FOR_BARS) {
+        error.message += "; the mesh file has lines only: if a plane body was meant, name it in Gmsh by \
+                          `Physical Surface(\"body\") = {…};`, for once there are physical groups, only what belongs to one is saved";
+    }
+    error
+}
+
+/// The file that the mesh is in, if it is in one.
+pub(super) fn file(table: &Table<'_>) -> Option<PathBuf> {
+    let value = table.get("file")?;
+    Some(value.source.beside(value.text("").ok()?.as_ref()))
 }
 
 /// A mesh in a file of Gmsh, relative to the folder of the case.

@@ -51,6 +51,7 @@ use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
+use std::path::{Path, PathBuf};
 use table::Table;
 use toml::de::DeTable;
 
@@ -76,6 +77,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub options: Options,
     /// The files that a run makes.
     pub output: Output,
+    /// The file that its mesh was read from.
+    pub mesh_file: Option<PathBuf>,
 }
 
 /// A case ready to run.
@@ -97,9 +100,13 @@ impl Case {
         let root = Table::root(&source, document.get_ref());
         root.only(&TABLES)?;
         let mesh = root.single("mesh")?.ok_or_else(|| root.error("the table [mesh] is missing"))?;
+        let file = mesh::file(&mesh);
         match mesh::read(&mesh)? {
-            mesh::AnyMesh::Bar(bar) => Ok(Self::Bar(Box::new(read(&source, &root, bar)?))),
-            mesh::AnyMesh::Plane(triangles) => Ok(Self::Plane(Box::new(read(&source, &root, triangles)?))),
+            mesh::AnyMesh::Bar(bar) => {
+                let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
+                Ok(Self::Bar(Box::new(case)))
+            }
+            mesh::AnyMesh::Plane(triangles) => Ok(Self::Plane(Box::new(read(&source, &root, triangles, file)?))),
         }
     }
 }
@@ -108,6 +115,7 @@ fn read<const D: usize, const N: usize>(
     source: &Source,
     root: &Table<'_>,
     mesh: percute_core::mesh::Mesh<D, N>,
+    mesh_file: Option<PathBuf>,
 ) -> Result<CaseOf<D, N>, CaseError> {
     // Cheap tables first: a slip in the last line should not wait for the critical step.
     let options = estimate::read(root)?;
@@ -116,13 +124,17 @@ fn read<const D: usize, const N: usize>(
     let problem = problem::read(root, mesh)?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
     let times = wanted.grid(critical_step)?;
-    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output })
+    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output, mesh_file })
 }
 
 /// The document in a text.
 fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     DeTable::parse(source.text()).map_err(|error| {
         let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+        if source.text().starts_with("$MeshFormat") {
+            let message = "this is a mesh of Gmsh and no case; a case names it: [mesh], and `file = \"block.msh\"` in the next line";
+            return source.error(&at, message);
+        }
         source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
     })
 }
@@ -133,6 +145,13 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     pub fn subject(&self) -> Subject<'_, D, N> {
         let Self { source, problem, times, critical_step, .. } = self;
         Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None }
+    }
+
+    /// The files that a run reads and must not replace, each with what it is; `case` is its own.
+    #[must_use]
+    pub fn inputs<'a>(&'a self, case: Option<&'a Path>) -> Vec<(&'static str, &'a Path)> {
+        let case = case.map(|file| ("case file", file));
+        case.into_iter().chain(self.mesh_file.as_deref().map(|file| ("mesh file", file))).collect()
     }
 
     /// The place in the file of a start that the simulation refuses; `None` for other failures,

@@ -18,7 +18,7 @@ use std::time::Instant;
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     let output = arguments.output.as_deref().map(|file| Output { what: "--output", file });
     let picture = arguments.print.picture.as_deref();
-    check(Some(("history", &arguments.history)), &[output], picture, arguments.work.force)?;
+    check(&[("history", &arguments.history)], &[output], picture, arguments.work.force)?;
     match open(&arguments.history)? {
         AnyStored::Bar(stored) => estimate(&stored, output, arguments, console),
         AnyStored::Plane(stored) => estimate(&stored, output, arguments, console),

@@ -33,7 +33,7 @@ where
 {
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
-    check(Some(("case file", &arguments.case)), &[history, stored], print.picture.as_deref(), work.force)?;
+    check(&case.inputs(Some(&arguments.case)), &[history, stored], print.picture.as_deref(), work.force)?;
     let options = with_work(case.options, work.threads, work.window);
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;

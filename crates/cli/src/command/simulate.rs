@@ -33,7 +33,7 @@ fn simulate<const D: usize, const N: usize>(
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(Output { what: "history", file: &named });
-    check(Some(("case file", &arguments.case)), &[Some(history)], None, force)?;
+    check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
     if !quiet {
         console.warn(&many_steps(case.times.step_count()));
         console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());

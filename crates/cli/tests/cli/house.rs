@@ -44,6 +44,7 @@ fn documents_name_what_exists() {
         "CONVENTIONS.md",
         "CHANGELOG.md",
         "docs/json.md",
+        "docs/mesh.md",
         "docs/history.md",
         "docs/estimate.md",
     ];

@@ -9,6 +9,7 @@ mod history;
 mod house;
 #[cfg(target_os = "linux")]
 mod interrupt;
+mod mesh_file;
 mod mistakes;
 mod picture;
 mod run;

@@ -50,7 +50,8 @@ fn assemble<const D: usize, const N: usize>(
     ];
     let mesh = Mesh::new(places, &cells, &groups, &parts).map_err(|error| refused(error, &kept, &elements))?;
     let element_tags = elements.iter().map(|element| element.tag).collect();
-    let mesh = mesh.with_notices(noticed.into_iter().flatten().collect());
+    let large = notices::large(mesh.size(), scale);
+    let mesh = mesh.with_notices(noticed.into_iter().chain([large]).flatten().collect());
     Ok(MeshOf { mesh, node_tags: kept.tags, element_tags })
 }
 

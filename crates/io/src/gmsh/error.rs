@@ -176,25 +176,16 @@ pub enum GmshCause {
         values: [f64; 2],
     },
     /// A line that bounds no triangle, or a point that bounds no line.
-    #[error(
-        "the {what} {element} of nodes {nodes:?}{} is no {part} of any {of}: {advice}",
-        in_groups(.groups)
-    )]
+    #[error("{}: {}", lone(*.dimension, *.element, .nodes, .groups), lone_advice(*.dimension, .groups))]
     Lone {
-        /// Line or point.
-        what: &'static str,
-        /// Edge or end.
-        part: &'static str,
-        /// Triangle or line.
-        of: &'static str,
+        /// Dimension of the mesh: 2 for a line, 1 for a point.
+        dimension: usize,
         /// Its tag.
         element: u64,
         /// Tags of its nodes.
         nodes: Vec<u64>,
         /// Names of its physical groups.
         groups: Vec<String>,
-        /// What to do.
-        advice: &'static str,
     },
     /// A mesh that cannot be used, in the tags of the file.
     #[error("{error} (numbers are the tags in Gmsh){advice}")]
@@ -212,8 +203,23 @@ pub enum GmshCause {
     },
 }
 
-fn in_groups(groups: &[String]) -> String {
-    if groups.is_empty() { String::new() } else { format!(", in {},", super::groups::quoted(groups)) }
+fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {
+    let groups = if groups.is_empty() { String::new() } else { format!(", in {},", super::groups::quoted(groups)) };
+    let [what, part, of] = if dimension == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
+    format!("the {what} {element} of nodes {nodes:?}{groups} is no {part} of any {of}")
+}
+
+fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {
+    match (groups.is_empty(), dimension) {
+        (true, _) => {
+            "a mesh cannot have triangles and bars; in Gmsh, delete the curve, or save without it by `Mesh.SaveAll = 0`"
+        }
+        (false, 2) => {
+            "percute takes no bars beside triangles; in Gmsh, take the curve out of its group, or, where it should bound a \
+             surface, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
+        }
+        (false, _) => "in Gmsh, take the point out of its group",
+    }
 }
 
 /// A cause with the byte where it was met.

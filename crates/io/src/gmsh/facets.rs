@@ -77,17 +77,6 @@ fn lone<const D: usize>(raw: &Raw, facets: &Sorted<D>, at: usize) -> Fault {
     let element = &facets.elements[at];
     let with = facets.members.iter().filter(|(_, members)| members.contains(&at));
     let groups: Vec<_> = with.map(|(&tag, _)| raw.name(D - 1, tag)).collect();
-    let [what, part, of] = if D == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
-    let advice = match (groups.is_empty(), D) {
-        (true, _) => {
-            "a mesh cannot have triangles and bars; in Gmsh, delete the curve, or save without it by `Mesh.SaveAll = 0`"
-        }
-        (false, 2) => {
-            "percute takes no bars beside triangles; in Gmsh, take the curve out of its group, or, where it should bound a \
-             surface, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
-        }
-        (false, _) => "in Gmsh, take the point out of its group",
-    };
-    let (element_tag, nodes) = (element.tag, element.nodes.to_vec());
-    GmshCause::Lone { what, part, of, element: element_tag, nodes, groups, advice }.at(element.at)
+    let (tag, nodes) = (element.tag, element.nodes.to_vec());
+    GmshCause::Lone { dimension: D, element: tag, nodes, groups }.at(element.at)
 }

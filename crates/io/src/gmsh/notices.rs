@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 /// Tags that a message names.
 const SHOWN: usize = 5;
+/// Larger bodies (m) hardly strike planes at speeds of interest; models in millimetres are mostly larger than this.
+const LARGE: f64 = 10.0;
 
 /// Nodes that no element uses.
 pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
@@ -76,6 +78,22 @@ pub(super) fn empty<T, U>(
     };
     let message = format!("{} {} no elements in the mesh file: {reason}", quoted(&groups), has(&groups));
     notice("empty_groups", "groups without elements", message, groups)
+}
+
+/// A body so large that its unit of length is more likely the millimetre; no `scale` was given.
+pub(super) fn large(size: f64, scale: f64) -> Option<Notice> {
+    if scale != 1.0 || size <= LARGE {
+        return None;
+    }
+    let message = format!(
+        "the mesh in the file is {size:.3} m large, corner to corner: if its lengths are in millimetres, give `scale` = 1e-3"
+    );
+    Some(Notice {
+        name: "large_mesh",
+        brief: "large mesh: are its lengths in metres?".to_string(),
+        message,
+        groups: vec![],
+    })
 }
 
 fn notice(name: &'static str, brief: &str, message: String, groups: Vec<String>) -> Option<Notice> {

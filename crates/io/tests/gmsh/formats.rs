@@ -31,10 +31,11 @@ fn a_block_of_two_materials_is_read_from_every_format() {
 #[test]
 fn groups_of_curves_are_where_the_script_puts_them() {
     for format in FORMATS {
-        let mesh = plane(read(&file(&format!("block-{format}.msh")), 1.0).unwrap()).mesh;
+        // A power of two leaves all digits as they are.
+        let mesh = plane(read(&file(&format!("block-{format}.msh")), 0.5).unwrap()).mesh;
         // Lengths (mm), and the constant coordinate of each group with its value.
         for (group, length, axis, value) in
-            [("bottom", 50.0, 1, 0.0), ("right side", 40.0, 0, 50.0), ("Dach, außen", 50.0, 1, 40.0)]
+            [("bottom", 25.0, 1, 0.0), ("right side", 20.0, 0, 25.0), ("Dach, außen", 25.0, 1, 20.0)]
         {
             let members = &mesh.facet_groups()[group];
             let total: f64 = members.iter().map(|&facet| mesh.facet_normal(facet).1).sum();
@@ -49,6 +50,17 @@ fn groups_of_curves_are_where_the_script_puts_them() {
         assert_eq!(noticed, expected, "{format}");
         assert!(mesh.facet_groups()["interface"].is_empty());
     }
+}
+
+/// The block is 64 mm from corner to corner: who forgets the scale is asked.
+#[test]
+fn a_mesh_that_may_be_in_millimetres_is_noticed() {
+    let noticed = |scale: f64| {
+        let mesh = plane(read(&file("block-4.1.msh"), scale).unwrap()).mesh;
+        mesh.notices().iter().find(|notice| notice.name == "large_mesh").map(|notice| notice.message.clone())
+    };
+    assert!(noticed(1.0).is_some_and(|message| message.contains("is 64.031 m large") && message.contains("1e-3")));
+    assert_eq!((noticed(1e-3), noticed(0.999)), (None, None));
 }
 
 #[test]
