@@ -17,6 +17,7 @@ d'erreur en relation de comportement pour les problèmes d'impact*.
 
 from percute import exact
 from percute._percute import Progress, __version__
+from percute.contact import Contact, ContactStatus, Resultants
 from percute.errors import (
     EstimateError,
     ExistingFileError,
@@ -39,6 +40,8 @@ from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 __all__ = [
     "Balance",
     "BodyForce",
+    "Contact",
+    "ContactStatus",
     "Elastic",
     "ElementMap",
     "Estimate",
@@ -56,6 +59,7 @@ __all__ = [
     "Plane",
     "Problem",
     "Progress",
+    "Resultants",
     "SimulationError",
     "StorageError",
     "Support",

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.checks import flag, instance, numbers, text, whole, wrong
 from percute.checks import path as file_name
+from percute.contact import Contact
 from percute.errors import InputError
 from percute.history import History
 from percute.mesh import Mesh
@@ -150,6 +151,16 @@ class Estimate:
         kept = [{k: v for k, v in each.items() if k not in ("step", "accumulated")} for each in self._data.maps()]
         return tuple(ElementMap(**arguments) for arguments in kept)
 
+    @cached_property
+    def contact(self) -> Contact | None:
+        """What contact did, from the history or from the file; None if the estimate was unpickled, or the file does not hold it."""
+        if self._history is not None:
+            return self._history.contact
+        if not isinstance(self._data, StoredEstimate):
+            return None
+        found = self._data.contact()
+        return None if found is None else Contact._of(found, self.mesh)
+
     @property
     def given(self) -> Mapping[str, bool]:
         """Whether the history brought its own ``velocity`` and ``acceleration``; else they follow by the scheme."""
@@ -179,6 +190,8 @@ class Estimate:
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an estimate file for ParaView, h5py and `percute.open`, described in ``docs/estimate.md``.
 
+        What contact did is in it, unless the estimate was unpickled without its history.
+
         Parameters
         ----------
         path : str or path
@@ -199,7 +212,8 @@ class Estimate:
         history = self._history.path if self._history is not None else None
         if history is not None and os.path.exists(file) and history.exists() and history.samefile(file):
             raise InputError(f"`path` is {file!r}, the file of the history that was estimated; give another name")
-        self._data.save(os.path.abspath(file), replace, self._name)
+        of = None if self._history is None else self._history._data
+        self._data.save(os.path.abspath(file), replace, self._name, of)
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
         """Draw e_E, what each element contributes (J^½), eq. [20].

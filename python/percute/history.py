@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.checks import encodable, flag, instance, numbers, optional_number
 from percute.checks import path as file_name
+from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
@@ -182,6 +183,11 @@ class History:
     def balance(self) -> Balance:
         """Energies and works over time (J)."""
         return Balance(**self._data.balance())
+
+    @cached_property
+    def contact(self) -> Contact:
+        """What contact did, at each node and in all; computed when first asked for."""
+        return Contact._of(self._data.contact(), self.problem.mesh)
 
     @property
     def complete(self) -> bool:

@@ -26,15 +26,20 @@ FIELD = "viridis"
 SIGNED = "RdBu_r"
 
 
-def _axes(axes: Axes | None) -> Axes:
+def _pyplot() -> Any:
     try:
         import matplotlib.pyplot as plt
-        from matplotlib.axes import Axes as Kind
     except ImportError as error:
         raise PercuteError('pictures need matplotlib: pip install "percute[plot]"') from error
-    if axes is not None and not isinstance(axes, Kind):
+    return plt
+
+
+def _axes(axes: Axes | None) -> Axes:
+    plt = _pyplot()
+    if axes is not None and not isinstance(axes, plt.Axes):
         raise wrong("axes", axes, "axes of matplotlib, such as `plt.subplots()[1]`")
-    return axes if axes is not None else plt.subplots(layout="constrained")[1]
+    made: Axes = axes if axes is not None else plt.subplots(layout="constrained")[1]
+    return made
 
 
 def _prefix(values: Floats) -> tuple[float, str]:

@@ -138,6 +138,10 @@ class StoredEstimate:
             found[FIELDS.get(name, name)] = column
         return [{"time": time, **{name: column[i] for name, column in found.items()}} for i, time in enumerate(times)]
 
+    def contact(self) -> dict[str, Any] | None:
+        """What contact did, if the file holds it."""
+        return self._data.contact()
+
     def to_json(self, name: str) -> str:
         """The document as it is in the file."""
         return self._data.report()

@@ -1,6 +1,7 @@
 //! Why a command failed, and with which exit code.
 
 use crate::case::{CaseError, Unsayable};
+use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
 use percute_estimator::{EstimateError, RunError};
@@ -59,6 +60,9 @@ pub enum Failure {
     /// A problem that cannot be written down.
     #[error(transparent)]
     Unsayable(#[from] Unsayable),
+    /// No room for the contact results.
+    #[error(transparent)]
+    Contact(#[from] ContactMemoryError),
     /// A file that cannot be written.
     #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
     Unwritable {
@@ -87,7 +91,7 @@ impl Failure {
             | Self::Unsayable(_) => BAD_INPUT,
             Self::File(error) if error.cause.is_of_the_system() => FAILED,
             Self::File(_) => BAD_INPUT,
-            Self::Run(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
+            Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
         }
     }
 

@@ -4,6 +4,7 @@ use crate::case::{Source, Unsayable, problem_from, statement};
 use crate::failure::Failure;
 use crate::report::Subject;
 use percute_core::dynamics::{Simulation, critical_time_step};
+use percute_core::history::StepSink;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -84,7 +85,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     }
 
     /// Estimates the error of the steps it holds; with the same options, bit by bit what a run that
-    /// made them would say.
+    /// made them would say. `beside` takes the steps too.
     ///
     /// # Errors
     /// Steps that cannot be read or do not fit the problem, options out of range.
@@ -92,13 +93,16 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         &self,
         options: Options,
         request: &Request,
+        beside: &mut dyn StepSink<D>,
         observer: &mut dyn Observer,
     ) -> Result<(Simulation, Estimate<D>), Failure> {
         let source = self.file.source(&self.problem)?;
-        percute_estimator::estimate(&self.problem, &source, options, request, observer).map_err(|error| match error {
-            RunError::Estimate(cause) => Failure::History { file: self.file.path().to_path_buf(), cause },
-            RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
-            RunError::Simulation(_) => Failure::Run(error),
+        percute_estimator::estimate(&self.problem, &source, options, request, beside, observer).map_err(|error| {
+            match error {
+                RunError::Estimate(cause) => Failure::History { file: self.file.path().to_path_buf(), cause },
+                RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
+                RunError::Simulation(_) => Failure::Run(error),
+            }
         })
     }
 }

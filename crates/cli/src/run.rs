@@ -8,8 +8,8 @@ use percute_core::observer::Observer;
 use percute_estimator::{Estimate, Estimator, Options, Request};
 use percute_io::history::Writer;
 
-/// Simulates a case, stores its history if there is a file for it, and estimates its error. If the
-/// observer breaks, the file holds the steps done and the estimate is theirs.
+/// Simulates a case, stores its history if there is a file for it, and estimates its error. `beside` takes the
+/// steps too. If the observer breaks, the file holds the steps done and the estimate is theirs.
 ///
 /// # Errors
 /// A start that the simulation refuses (the input's fault; its history file is removed), an unstable
@@ -19,11 +19,12 @@ pub fn run<const D: usize, const N: usize>(
     options: Options,
     request: &Request,
     history: Option<Writer<D>>,
+    beside: &mut dyn StepSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), Failure> {
     let estimator = Estimator::new(&case.problem, &case.times, options).and_then(|e| e.keeping(request));
     let mut estimator = estimator.map_err(percute_estimator::RunError::from)?;
-    let simulation = stored(case, history, &mut estimator, observer)?;
+    let simulation = stored(case, history, &mut (&mut estimator, beside), observer)?;
     Ok((simulation, estimator.finish().map_err(percute_estimator::RunError::from)?))
 }
 

@@ -8,6 +8,7 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur
 //! en relation de comportement pour les problèmes d'impact*. All units are SI.
 
+pub mod contact_results;
 pub mod dynamics;
 pub mod history;
 pub mod ids;

@@ -14,7 +14,7 @@ use thiserror::Error;
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the
 /// observer breaks, the steps taken so far are estimated. The simulation is what the steps tell of
-/// it.
+/// it. `beside` takes every step that is estimated too, so that they need not be read again.
 ///
 /// # Errors
 /// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps
@@ -24,11 +24,13 @@ pub fn estimate<const D: usize, const N: usize>(
     source: &dyn StepSource<D>,
     options: Options,
     request: &Request,
+    beside: &mut dyn StepSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
     let mut replay = Replay {
         estimator: Estimator::new(problem, source.times(), options)?.keeping(request)?,
         balancing: Balancing::new(problem, source.times()),
+        beside,
         observer,
         last: source.count().saturating_sub(1),
     };
@@ -48,6 +50,7 @@ pub fn estimate<const D: usize, const N: usize>(
 struct Replay<'a, 'p, const D: usize, const N: usize> {
     estimator: Estimator<'p, D, N>,
     balancing: Balancing<'p, D, N>,
+    beside: &'a mut dyn StepSink<D>,
     observer: &'a mut dyn Observer,
     /// The last step that will come.
     last: usize,
@@ -62,6 +65,7 @@ impl<const D: usize, const N: usize> StepSink<D> for Replay<'_, '_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         self.estimator.push(step)?;
         self.balancing.push(step)?;
+        self.beside.push(step)?;
         let progress = Progress { stage: "estimating", done: step.index, total: self.last };
         if self.observer.observe(progress) == ControlFlow::Break(()) && step.index < self.last {
             return Err(Stopped.into());

@@ -2,6 +2,7 @@
 
 use percute::Failure;
 use percute::case::CaseError;
+use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
 use percute_core::mesh::MeshError;
@@ -120,9 +121,12 @@ pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
 
 /// Steps that could not be handed on or read.
 pub(crate) fn steps(py: Python<'_>, error: &SinkError) -> PyErr {
-    match error.downcast_ref::<FileError>() {
-        Some(error) => file(py, error),
-        None => exception(py, "EstimateError", &error.to_string()),
+    if let Some(error) = error.downcast_ref::<FileError>() {
+        return file(py, error);
+    }
+    match error.is::<ContactMemoryError>() {
+        true => PyMemoryError::new_err(error.to_string()),
+        false => exception(py, "EstimateError", &error.to_string()),
     }
 }
 

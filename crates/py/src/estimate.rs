@@ -5,15 +5,17 @@ use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::restore::restore;
 use crate::run::{Run, Stoppable};
-use crate::{door, errors, view};
+use crate::{contact, door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute::Failure;
 use percute::case::{Instants, statement};
 use percute::report::{Report, Subject};
+use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
+use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -28,15 +30,17 @@ pub(crate) struct Made<const D: usize, const N: usize> {
     pub(crate) times: TimeGrid,
     pub(crate) options: Options,
     pub(crate) estimate: Estimate<D>,
-    pub(crate) report: Told,
+    pub(crate) report: Told<D>,
 }
 
 /// Where the report comes from.
-pub(crate) enum Told {
+pub(crate) enum Told<const D: usize> {
     /// It is made when it is asked for.
     Now {
         /// What the simulation did.
         simulation: Simulation,
+        /// What contact did.
+        contact: Box<ContactResults<D>>,
         /// Number of instants, of a stored history.
         held: Option<usize>,
         /// How long the estimate took (s).
@@ -125,18 +129,20 @@ fn estimate_one<const D: usize, const N: usize>(
         let run = run.clone();
         move |mut watch: door::Watch| {
             let source = Stoppable { source: run.source(), watch: watch.clone() };
-            percute_estimator::estimate(&run.problem, &source, options, &request, &mut watch)
+            let mut contact = ContactRecorder::new(&run.problem, run.times());
+            let done = percute_estimator::estimate(&run.problem, &source, options, &request, &mut contact, &mut watch)?;
+            Ok((done, contact.finish()))
         }
     };
     let outcome = door::through(py, progress, work)?;
-    let (simulation, estimate) = outcome.map_err(|error| errors::estimate(py, &error))?;
+    let ((simulation, estimate), contact) = outcome.map_err(|error| errors::estimate(py, &error))?;
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
     Ok(Arc::new(Made {
         problem: run.problem.clone(),
         times: run.times().clone(),
         options,
         estimate,
-        report: Told::Now { simulation, held, seconds },
+        report: Told::Now { simulation, contact: Box::new(contact), held, seconds },
     }))
 }
 
@@ -146,10 +152,10 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let Self { problem, times, options, estimate, report } = self;
         match report {
             Told::Before(text) => Ok(text.clone()),
-            Told::Now { simulation, held, seconds } => {
+            Told::Now { simulation, contact, held, seconds } => {
                 let critical_step = critical_time_step(problem);
                 let subject = Subject { name, problem, times, critical_step, held: *held };
-                let report = Report::new(&subject, *options, simulation, estimate, *seconds);
+                let report = Report::new(&subject, *options, simulation, estimate, contact, *seconds);
                 report.to_json().map_err(|error| error.to_string())
             }
         }
@@ -157,10 +163,33 @@ impl<const D: usize, const N: usize> Made<D, N> {
 }
 
 impl<const D: usize, const N: usize> Made<D, N> {
-    fn save(&self, path: &Path, overwrite: Overwrite, name: &str) -> Result<(), Failure> {
-        let report = self.report(name).map_err(Failure::Argument)?;
-        let statement = statement(&self.problem, Some(&self.options))?;
-        Ok(estimate_file::write(path, overwrite, &self.problem, &self.estimate, &statement, None, &report)?)
+    fn save(
+        &self,
+        path: &Path,
+        overwrite: Overwrite,
+        name: &str,
+        contact: Option<&ContactResults<D>>,
+    ) -> Result<(), Failure> {
+        let Self { problem, estimate, .. } = self;
+        let report = &self.report(name).map_err(Failure::Argument)?;
+        let statement = &statement(problem, Some(&self.options))?;
+        let contents = EstimateContents { problem, estimate, contact, statement, case: None, report };
+        Ok(estimate_file::write(path, overwrite, &contents)?)
+    }
+
+    /// Writes an estimate file, with the contact results of its history if that is there.
+    fn saved(
+        self: &Arc<Self>,
+        py: Python<'_>,
+        path: PathBuf,
+        overwrite: Overwrite,
+        name: String,
+        history: Option<&Arc<Run<D, N>>>,
+    ) -> PyResult<()> {
+        let contact = history.map(|run| contact::of_run(py, run)).transpose()?;
+        let made = self.clone();
+        let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
+        door::through(py, None, work)?.map_err(|error| errors::failure(py, &error))
     }
 }
 
@@ -251,14 +280,22 @@ impl EstimateData {
         each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
     }
 
-    /// Writes an estimate file.
-    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool, name: String) -> PyResult<()> {
+    /// Writes an estimate file; contact results come from the history.
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        overwrite: bool,
+        name: String,
+        history: Option<&HistoryData>,
+    ) -> PyResult<()> {
         let overwrite = Overwrite::allowed(overwrite);
-        let saved = each!(&self.made, made => {
-            let made = made.clone();
-            door::through(py, None, move |_| made.save(&path, overwrite, &name))?
-        });
-        saved.map_err(|error| errors::failure(py, &error))
+        match (&self.made, history.map(|history| &history.run)) {
+            (Any::Bar(made), Some(Any::Bar(run))) => made.saved(py, path, overwrite, name, Some(run)),
+            (Any::Plane(made), Some(Any::Plane(run))) => made.saved(py, path, overwrite, name, Some(run)),
+            (Any::Bar(made), _) => made.saved(py, path, overwrite, name, None),
+            (Any::Plane(made), _) => made.saved(py, path, overwrite, name, None),
+        }
     }
 
     /// The document of `percute run --json`.

@@ -4,7 +4,7 @@ use crate::any::{AnyProblem, each, map};
 use crate::door::Watch;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
-use crate::{door, errors, estimate, view};
+use crate::{contact, door, errors, estimate, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, Step, StepSink};
@@ -15,6 +15,7 @@ use percute_io::FileError;
 use percute_io::history::HistoryFile;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -138,6 +139,11 @@ impl HistoryData {
         })
     }
 
+    /// What contact did, computed now or before: arrays by name, see `python/percute/contact.py`.
+    fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        each!(&self.run, run => contact::arrays(py, &contact::of_run(py, run)?))
+    }
+
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         each!(&self.run, run => {
@@ -154,18 +160,23 @@ impl HistoryData {
     }
 }
 
-/// Reads a field at all instants of a file, one after the other.
+/// Bytes of a field that are read at once: enough for the disk, and soon done for who presses Ctrl-C.
+const BLOCK: usize = 1 << 25;
+
+/// Reads a field at all instants of a file, a block after the other.
 fn read<const D: usize, const N: usize, T: Send + 'static>(
     py: Python<'_>,
     run: &Arc<Run<D, N>>,
-    field: fn(&HistoryFile<D, N>, usize) -> Result<Vec<T>, FileError>,
+    field: fn(&HistoryFile<D, N>, Range<usize>) -> Result<Vec<T>, FileError>,
 ) -> PyResult<Arc<Vec<T>>> {
     let run = run.clone();
     let work = move |watch: Watch| {
         let mut rows = Vec::new();
-        for n in 0..run.count() {
+        let [count, nodes] = run.shape();
+        let steps = (BLOCK / (nodes * size_of::<T>()).max(1)).max(1);
+        for start in (0..count).step_by(steps) {
             match run.file() {
-                Some(file) if !watch.0.stopped() => rows.extend(field(file, n)?),
+                Some(file) if !watch.0.stopped() => rows.extend(field(file, start..count.min(start + steps))?),
                 _ => break,
             }
         }

@@ -3,6 +3,7 @@
 
 mod any;
 mod case;
+mod contact;
 mod door;
 mod errors;
 mod estimate;

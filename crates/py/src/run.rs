@@ -3,6 +3,7 @@
 use crate::any::Any;
 use crate::door::Watch;
 use percute::history::Stored;
+use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Kinematics};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
 use percute_core::problem::Problem;
@@ -20,6 +21,7 @@ pub(crate) struct Run<const D: usize, const N: usize> {
     /// Options that its estimate takes unless told otherwise.
     pub(crate) options: Options,
     balance: OnceLock<Vec<Balance>>,
+    contact: OnceLock<Arc<ContactResults<D>>>,
 }
 
 /// Where the steps are.
@@ -47,14 +49,15 @@ impl<const D: usize, const N: usize> Run<D, N> {
         balance: Option<Vec<Balance>>,
     ) -> Self {
         let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
-        Self { problem, steps: Steps::Memory(history), options, balance }
+        Self { problem, steps: Steps::Memory(history), options, balance, contact: OnceLock::new() }
     }
 
     /// A history in a file.
     pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
         let source = stored.file.source(&stored.problem)?;
         let steps = Steps::File(stored.file, source);
-        Ok(Self { problem: Arc::new(stored.problem), steps, options: stored.options, balance: OnceLock::new() })
+        let (problem, options) = (Arc::new(stored.problem), stored.options);
+        Ok(Self { problem, steps, options, balance: OnceLock::new(), contact: OnceLock::new() })
     }
 
     /// The steps, one after the other.
@@ -117,6 +120,16 @@ impl<const D: usize, const N: usize> Run<D, N> {
         let mut balancing = Balancing::new(&self.problem, self.times());
         Stoppable { source: self.source(), watch }.replay(&mut balancing)?;
         Ok(self.balance.get_or_init(|| balancing.finish()))
+    }
+
+    /// What contact did, with all nodes at all instants, computed once.
+    pub(crate) fn contact(&self, watch: Watch) -> Result<Arc<ContactResults<D>>, SinkError> {
+        if let Some(contact) = self.contact.get() {
+            return Ok(contact.clone());
+        }
+        let mut recorder = ContactRecorder::new(&self.problem, self.times()).keeping_steps()?;
+        Stoppable { source: self.source(), watch }.replay(&mut recorder)?;
+        Ok(self.contact.get_or_init(|| Arc::new(recorder.finish())).clone())
     }
 
     /// v_n and a_n by the scheme, or as the history brings them.

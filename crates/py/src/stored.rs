@@ -2,10 +2,10 @@
 
 use crate::any::{Any, AnyMesh};
 use crate::mesh::MeshData;
-use crate::{door, errors, estimate, view};
+use crate::{contact, door, errors, estimate, view};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use percute_estimator::Sample;
-use percute_io::estimate_file::{self, Field};
+use percute_io::estimate_file::{self, AnyContact, Field};
 use percute_io::{Kind, kind};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -53,6 +53,17 @@ impl EstimateFileData {
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         view::view(py, &self.by_element, |e| e.as_slice(), &[self.by_element.len()])
+    }
+
+    /// What contact did, read now; none if the file does not hold it.
+    fn contact<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let path = self.path.clone();
+        let found = door::through(py, None, move |_| estimate_file::contact(&path))?;
+        Ok(match found.map_err(|error| errors::file(py, &error))? {
+            None => None,
+            Some(AnyContact::Bar(results)) => Some(contact::arrays(py, &Arc::new(results))?),
+            Some(AnyContact::Plane(results)) => Some(contact::arrays(py, &Arc::new(results))?),
+        })
     }
 
     /// Instants of the maps, and the data sets of their fields with a row for each instant, read now.

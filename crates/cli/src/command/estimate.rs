@@ -1,7 +1,7 @@
 //! `percute estimate`.
 
 use super::Console;
-use super::outputs::with_work;
+use super::outputs::{contact_recorder, with_work};
 use super::result::{Given, give};
 use super::run::request;
 use crate::args::EstimateArguments;
@@ -42,15 +42,18 @@ where
     let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let (simulation, estimate) = stored.estimate(options, &request, watch)?;
+    let mut contact = contact_recorder(&stored.problem, times, output)?;
+    let (simulation, estimate) = stored.estimate(options, &request, &mut contact, watch)?;
     watch.clear();
     let seconds = start.elapsed().as_secs_f64();
-    let report = Report::new(&stored.subject(), options, &simulation, &estimate, seconds);
+    let contact = contact.finish();
+    let report = Report::new(&stored.subject(), options, &simulation, &estimate, &contact, seconds);
     let given = Given {
         problem: &stored.problem,
         options,
         case: stored.file.case().cloned(),
         estimate: &estimate,
+        contact: &contact,
         report: &report,
         told: false,
         interrupted: simulation.interrupted,

@@ -6,6 +6,9 @@ use crate::failure::Failure;
 use crate::history;
 use crate::outputs::Output;
 use crate::report::number::bytes;
+use percute_core::contact_results::ContactRecorder;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
@@ -32,6 +35,16 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }
     Ok(writer)
+}
+
+/// Keeps the contact results: of all nodes at all instants for an estimate file only.
+pub(super) fn contact_recorder<'p, const D: usize, const N: usize>(
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    file: Option<Output<'_>>,
+) -> Result<ContactRecorder<'p, D, N>, Failure> {
+    let recorder = ContactRecorder::new(problem, times);
+    Ok(if file.is_some() { recorder.keeping_steps()? } else { recorder })
 }
 
 /// Options of a case or a history with what the command line says of them.

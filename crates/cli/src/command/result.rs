@@ -8,8 +8,10 @@ use crate::failure::{DONE, Failure, INTERRUPTED};
 use crate::outputs::Output;
 use crate::picture::{self, Drawn};
 use crate::report::{Report, summary};
+use percute_core::contact_results::ContactResults;
 use percute_core::problem::Problem;
 use percute_estimator::{Estimate, Options};
+use percute_io::estimate_file::EstimateContents;
 use percute_io::{Case, Overwrite, estimate_file};
 
 /// What is to be given to the user.
@@ -18,6 +20,7 @@ pub(super) struct Given<'a, const D: usize, const N: usize> {
     pub(super) options: Options,
     pub(super) case: Option<Case>,
     pub(super) estimate: &'a Estimate<D>,
+    pub(super) contact: &'a ContactResults<D>,
     pub(super) report: &'a Report,
     /// Whether the number of steps was warned of before the work.
     pub(super) told: bool,
@@ -57,8 +60,9 @@ fn store<const D: usize, const N: usize>(
     output: Output<'_>,
     force: bool,
 ) -> Result<(), Failure> {
-    let Given { problem, options, case, estimate, .. } = given;
-    let statement = statement(problem, Some(options))?;
-    estimate_file::write(output.file, Overwrite::allowed(force), problem, estimate, &statement, case.as_ref(), json)
-        .map_err(taken)
+    let Given { problem, estimate, contact, .. } = *given;
+    let statement = statement(problem, Some(&given.options))?;
+    let (case, contact) = (given.case.as_ref(), Some(contact));
+    let contents = EstimateContents { problem, estimate, contact, statement: &statement, case, report: json };
+    estimate_file::write(output.file, Overwrite::allowed(force), &contents).map_err(taken)
 }

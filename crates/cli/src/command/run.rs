@@ -1,6 +1,6 @@
 //! `percute run`.
 
-use super::outputs::{begin_history, with_work};
+use super::outputs::{begin_history, contact_recorder, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
@@ -44,7 +44,8 @@ where
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let (simulation, estimate) = match run(case, options, &request, history, watch) {
+    let mut contact = contact_recorder(&case.problem, &case.times, stored)?;
+    let (simulation, estimate) = match run(case, options, &request, history, &mut contact, watch) {
         // Nothing can be estimated from a run stopped at its very start.
         Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
             console.say(&format!("interrupted: {error}"));
@@ -54,12 +55,14 @@ where
     };
     watch.clear();
     let seconds = start.elapsed().as_secs_f64();
-    let report = Report::new(&case.subject(), options, &simulation, &estimate, seconds);
+    let contact = contact.finish();
+    let report = Report::new(&case.subject(), options, &simulation, &estimate, &contact, seconds);
     let given = Given {
         problem: &case.problem,
         options,
         case: Some(stored_case(&case.source)),
         estimate: &estimate,
+        contact: &contact,
         report: &report,
         told: early.is_some(),
         interrupted: simulation.interrupted,

@@ -2,9 +2,10 @@
 
 use super::warnings::{Facts, noticed, warnings};
 use super::{
-    ADMISSIBLE, BalanceOverTime, BalanceSummary, FORMAT, Given, LargestResidual, Measures, ObstacleSummary,
-    OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
+    ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
+    ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
 };
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
@@ -22,6 +23,7 @@ impl Report {
         options: Options,
         simulation: &Simulation,
         estimate: &Estimate<D>,
+        contact: &ContactResults<D>,
         seconds: f64,
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
@@ -57,6 +59,7 @@ impl Report {
             balance: balance_summary(&simulation.balance),
             balance_over_time: balance_over_time(&simulation.balance_over_time, times.instants()),
             kept_impulse,
+            contact: ContactReport::new(contact),
             over_time: over_time(&estimate.over_time),
             by_element: estimate.by_element.clone(),
             seconds,

@@ -2,10 +2,12 @@
 //! in `docs/json.md`.
 
 pub(crate) mod build;
+mod contact;
 pub(crate) mod number;
 pub(crate) mod summary;
 mod warnings;
 
+pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use summary::summary;
 pub use warnings::Warning;
 pub(crate) use warnings::{many_steps, noticed};
@@ -63,6 +65,7 @@ pub struct Report {
     pub balance: BalanceSummary,
     pub balance_over_time: BalanceOverTime,
     pub kept_impulse: Option<f64>,
+    pub contact: Option<ContactReport>,
     pub over_time: OverTime,
     pub by_element: Vec<f64>,
     pub warnings: Vec<Warning>,

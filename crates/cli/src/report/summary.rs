@@ -33,6 +33,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
     lines.push(("impulse", kept_impulse(report)));
+    lines.extend(contact(report).map(|line| ("contact", line)));
     lines.extend(warnings(report));
     lines
 }
@@ -146,6 +147,14 @@ fn kept_impulse(report: &Report) -> String {
         Some(kept) => format!("{} of the contact impulse kept by the admissible force", percent(kept)),
         None => "no contact".to_string(),
     }
+}
+
+/// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said already.
+fn contact(report: &Report) -> Option<String> {
+    let contact = report.contact.as_ref()?;
+    let (first, peak) = (contact.first_touch?, contact.time_of_peak?);
+    let [force, pressure] = [contact.peak_normal_force, contact.peak_pressure].map(|x| short(x, 4));
+    Some(format!("from {} s, peak {force} N at {} s, pressure {pressure} Pa", trimmed(first, 4), trimmed(peak, 4)))
 }
 
 /// One line each if there are two at most; else the first and how many more.

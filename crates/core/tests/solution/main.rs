@@ -6,6 +6,7 @@
 mod balance;
 mod bar_impact;
 mod contact;
+mod contact_results;
 mod critical_step;
 mod free_vibration;
 mod from_rest;

@@ -2,6 +2,7 @@
 
 use crate::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
 use crate::estimating::{estimate, estimate_with_maps, history, reactions};
+use percute_core::history::Discard;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
@@ -52,7 +53,9 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
     // Energies and works that the steps tell are those of the run.
     let none = Request::default();
     let (simulation, _) = run(problem, times, Options::default(), &none, &mut Unobserved).unwrap();
-    let (told, _) = percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Unobserved).unwrap();
+    let (told, _) =
+        percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Discard, &mut Unobserved)
+            .unwrap();
     assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
     for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
         for every in [1, 3] {

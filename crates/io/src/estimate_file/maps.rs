@@ -95,8 +95,12 @@ pub(super) fn fields<'f>(vtk: &Part<'f>, size: Size, instants: usize) -> Result<
 
 /// Whether there are admissible fields.
 pub(super) fn has_admissible(vtk: &Part<'_>) -> Result<bool, FileCause> {
-    let of_cells = vtk.group("CellData")?.optional("admissible_stress")?.is_some();
-    Ok(of_cells || vtk.optional_group("PointData")?.is_some())
+    if vtk.group("CellData")?.optional("admissible_stress")?.is_some() {
+        return Ok(true);
+    }
+    // Contact results are fields of nodes too, and not admissible ones.
+    let Some(points) = vtk.optional_group("PointData")? else { return Ok(false) };
+    Ok(points.names()?.iter().any(|name| name.starts_with("admissible")))
 }
 
 fn found<'f>(part: &Part<'f>, name: &'static str, shape: [usize; 3]) -> Result<Stored<'f>, FileCause> {

@@ -1,9 +1,11 @@
 //! Estimates in files.
 
+mod contact;
 mod maps;
 mod open;
 mod write;
 
+pub use contact::{AnyContact, contact};
 pub use maps::{Field, Maps, maps};
 pub use open::{AnyMesh, EstimateFile, open};
-pub use write::write;
+pub use write::{EstimateContents, write};

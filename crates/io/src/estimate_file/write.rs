@@ -1,5 +1,6 @@
 //! Writes an estimate, whole or not at all.
 
+use super::contact;
 use crate::create::{Overwrite, Unnamed, refused};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -7,6 +8,7 @@ use crate::mesh::{in_space, write_grid, write_groups};
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
+use percute_core::contact_results::{ContactResults, ContactSteps};
 use percute_core::problem::Problem;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
 use std::io;
@@ -16,25 +18,36 @@ use std::path::Path;
 const LIBRARY: u64 = 24_000;
 const PER_GROUP: u64 = 350;
 
-/// Writes an estimate of a problem: its maps as VTKHDF, the errors over time, the residuals, and `report`, the
-/// document that `--json` prints. `statement` is the problem in the language of the case files, `case`
-/// the case file as given.
+/// What an estimate file is to hold.
+#[derive(Clone, Copy, Debug)]
+pub struct EstimateContents<'a, const D: usize, const N: usize> {
+    /// The problem.
+    pub problem: &'a Problem<D, N>,
+    /// Its estimate.
+    pub estimate: &'a Estimate<D>,
+    /// What contact did, with all nodes at all instants; without these it is left out.
+    pub contact: Option<&'a ContactResults<D>>,
+    /// The problem in the language of the case files.
+    pub statement: &'a str,
+    /// The case file as given.
+    pub case: Option<&'a Case>,
+    /// The document that `--json` prints.
+    pub report: &'a str,
+}
+
+/// Writes an estimate of a problem: its maps as VTKHDF, the errors over time, the residuals, the contact results, and the
+/// report.
 ///
 /// # Errors
 /// As for the creation of a history; an estimate of another mesh.
 pub fn write<const D: usize, const N: usize>(
     path: impl AsRef<Path>,
     overwrite: Overwrite,
-    problem: &Problem<D, N>,
-    estimate: &Estimate<D>,
-    statement: &str,
-    case: Option<&Case>,
-    report: &str,
+    contents: &EstimateContents<'_, D, N>,
 ) -> Result<(), FileError> {
     let path = path.as_ref();
-    let work = Work { problem, estimate, statement, case, report };
-    let written = work.check().and_then(|()| {
-        let (unnamed, ()) = Unnamed::new(path, overwrite, work.bytes(), |file, texts| work.fill(file, texts))?;
+    let written = contents.check().and_then(|()| {
+        let (unnamed, ()) = Unnamed::new(path, overwrite, contents.bytes(), |file, texts| contents.fill(file, texts))?;
         let synced = |source: io::Error| FileCause::Create { source };
         unnamed.file().sync_all().map_err(synced)?;
         unnamed.put().map(drop)
@@ -42,27 +55,34 @@ pub fn write<const D: usize, const N: usize>(
     written.map_err(|cause| cause.at(path))
 }
 
-struct Work<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
-    estimate: &'a Estimate<D>,
-    statement: &'a str,
-    case: Option<&'a Case>,
-    report: &'a str,
-}
-
 /// The numbers of one field in a map.
 type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
 /// Name, unit, numbers for each node or element, and how they are taken.
 type Field<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
 
-impl<const D: usize, const N: usize> Work<'_, D, N> {
+impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     fn check(&self) -> Result<(), FileCause> {
         let (given, needed) = (self.problem.mesh().element_count(), self.estimate.by_element.len());
-        if given == needed { Ok(()) } else { Err(FileCause::Problem { what: "elements", given, needed }) }
+        if given != needed {
+            return Err(FileCause::Problem { what: "elements", given, needed });
+        }
+        let Some((contact, _)) = self.contact() else { return Ok(()) };
+        let (given, needed) = (self.problem.surface().nodes().len(), contact.nodes.len());
+        if given != needed {
+            return Err(FileCause::Problem { what: "contact nodes", given, needed });
+        }
+        let (given, needed) = (contact.instants.len(), self.estimate.steps + 1);
+        if given == needed { Ok(()) } else { Err(FileCause::Problem { what: "instants", given, needed }) }
     }
 
     fn has_fields(&self) -> bool {
         !self.estimate.maps.is_empty() && self.estimate.maps.iter().all(|map| map.fields.is_some())
+    }
+
+    /// Contact results, if there is any plane and if they are all there.
+    fn contact(&self) -> Option<(&ContactResults<D>, &ContactSteps<D>)> {
+        let results = self.contact.filter(|results| !results.obstacles.is_empty())?;
+        Some((results, results.steps.as_ref()?))
     }
 
     fn bytes(&self) -> u64 {
@@ -75,7 +95,8 @@ impl<const D: usize, const N: usize> Work<'_, D, N> {
         let facets: usize = mesh.facet_groups().values().map(|members| 8 * D * members.len()).sum();
         let elements: usize = mesh.element_groups().values().map(|members| 8 * members.len()).sum();
         let groups = (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
-        let arrays = grid + facets + elements + texts + 48 * self.estimate.over_time.len();
+        let contact = self.contact().map_or(0, |(results, _)| contact::bytes(results, instants, nodes));
+        let arrays = grid + facets + elements + texts + contact + 48 * self.estimate.over_time.len();
         (instants as u64) * (40 * cells + fields + 136) as u64 + arrays as u64 + LIBRARY + PER_GROUP * groups
     }
 
@@ -89,6 +110,9 @@ impl<const D: usize, const N: usize> Work<'_, D, N> {
         write_groups(&ours, mesh)?;
         self.over_time(&ours)?;
         self.measures(&ours)?;
+        if let Some((results, steps)) = self.contact() {
+            contact::write(&ours, results, steps)?;
+        }
         let residuals = group(&ours, "residuals")?;
         for (name, value) in self.estimate.residuals.entries() {
             numbers(&residuals, name, &[], &[value])?;
@@ -109,8 +133,16 @@ impl<const D: usize, const N: usize> Work<'_, D, N> {
         let mut cell_offsets = vec![("by_element", 0)];
         self.fields(&data, cells, self.cell_fields(), &mut cell_offsets)?;
         let mut point_offsets = Vec::new();
-        if self.has_fields() {
-            self.fields(&group(vtk, "PointData")?, nodes, point_fields(), &mut point_offsets)?;
+        if self.has_fields() || self.contact().is_some() {
+            let data = group(vtk, "PointData")?;
+            if self.has_fields() {
+                self.fields(&data, nodes, point_fields(), &mut point_offsets)?;
+            }
+            if let Some(contact) = self.contact() {
+                let steps: Vec<usize> = maps.iter().map(|map| map.step).collect();
+                let names = contact::write_fields(&data, contact, nodes, &steps)?;
+                point_offsets.extend(names.into_iter().map(|name| (name, nodes)));
+            }
         }
         let instants: Vec<f64> = maps.iter().map(|map| map.time).collect();
         write_steps(vtk, &instants, &point_offsets, &cell_offsets)?;

@@ -10,6 +10,7 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::fs::File;
 use std::io;
+use std::ops::Range;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -182,72 +183,79 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         self.contents.given
     }
 
-    /// u_n at the nodes (m).
+    /// u_n at the nodes (m), node by node and step after step.
     ///
     /// # Errors
-    /// A step that is not in the file, or a file that cannot be read any more.
-    pub fn displacement(&self, n: usize) -> Result<Vec<[f64; D]>, FileError> {
-        Ok(self.nodal("displacement", n)?.unwrap_or_default())
+    /// Steps that are not in the file, or a file that cannot be read any more.
+    pub fn displacement(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
+        Ok(self.nodal("displacement", steps)?.unwrap_or_default())
     }
 
     /// v_n at the nodes (m/s), if the file brings it.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn velocity(&self, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
-        self.nodal("velocity", n)
+    pub fn velocity(&self, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
+        self.nodal("velocity", steps)
     }
 
     /// a_n at the nodes (m/s²), if the file brings it.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn acceleration(&self, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
-        self.nodal("acceleration", n)
+    pub fn acceleration(&self, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
+        self.nodal("acceleration", steps)
     }
 
-    fn nodal(&self, name: &str, n: usize) -> Result<Option<Vec<[f64; D]>>, FileError> {
+    fn nodal(&self, name: &str, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
         let nodes = self.mesh().node_count();
-        self.step(n, |opened| {
+        let rows = nodes * steps.start..nodes * steps.end;
+        self.steps(steps, |opened| {
             let Some(data) = opened.root().group("VTKHDF")?.group("PointData")?.optional(name)? else {
                 return Ok(None);
             };
-            vectors::<D>(&data, data.float_rows(n * nodes..(n + 1) * nodes)?).map(Some)
+            vectors::<D>(&data, data.float_rows(rows)?).map(Some)
         })
     }
 
-    /// R_n (N) on [`HistoryFile::contact_nodes`].
+    /// R_n (N) on [`HistoryFile::contact_nodes`], node by node and step after step.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn reaction(&self, n: usize) -> Result<Vec<[f64; D]>, FileError> {
-        self.contact(n, "reaction", |data| Ok(data.float_rows(n..n + 1)?.as_chunks::<D>().0.to_vec()))
+    pub fn reaction(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
+        self.contact(steps, "reaction", |data, steps| Ok(data.float_rows(steps)?.as_chunks::<D>().0.to_vec()))
     }
 
-    /// Touching status of [`HistoryFile::contact_nodes`] at t_n.
+    /// Touching status of [`HistoryFile::contact_nodes`], node by node and step after step.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn touching(&self, n: usize) -> Result<Vec<bool>, FileError> {
-        self.contact(n, "touching", |data| data.flag_rows(n..n + 1))
+    pub fn touching(&self, steps: Range<usize>) -> Result<Vec<bool>, FileError> {
+        self.contact(steps, "touching", |data, steps| data.flag_rows(steps))
     }
 
     fn contact<T>(
         &self,
-        n: usize,
+        steps: Range<usize>,
         name: &str,
-        read: impl FnOnce(&Data<'_>) -> Result<Vec<T>, FileCause>,
+        read: impl FnOnce(&Data<'_>, Range<usize>) -> Result<Vec<T>, FileCause>,
     ) -> Result<Vec<T>, FileError> {
         if self.contact_nodes().is_empty() {
-            return self.step(n, |_| Ok(Vec::new()));
+            return self.steps(steps, |_| Ok(Vec::new()));
         }
-        self.step(n, |opened| read(&opened.root().group("percute")?.group("contact")?.data(name)?))
+        let rows = steps.clone();
+        self.steps(steps, |opened| read(&opened.root().group("percute")?.group("contact")?.data(name)?, rows))
     }
 
-    fn step<T>(&self, n: usize, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
+    fn steps<T>(
+        &self,
+        steps: Range<usize>,
+        read: impl FnOnce(&Opened) -> Result<T, FileCause>,
+    ) -> Result<T, FileError> {
         self.again(|opened| {
-            if n >= self.count() {
-                let detail = format!("step {n} is not in the file, which holds {} instants", self.count());
+            if steps.start > steps.end || steps.end > self.count() {
+                let step = steps.end.saturating_sub(1);
+                let detail = format!("step {step} is not in the file, which holds {} instants", self.count());
                 return Err(FileCause::Value { name: super::DISPLACEMENT.to_string(), detail });
             }
             read(opened)

@@ -5,7 +5,7 @@ use hdf5::dataset::AllocTime;
 use hdf5::file::LibraryVersion;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, Group, OpenMode};
-use percute_core::history::StepSource;
+use percute_core::history::{Discard, StepSource};
 use percute_core::observer::Unobserved;
 use percute_estimator::{Options, Request, estimate};
 use std::os::unix::fs::FileExt;
@@ -134,7 +134,7 @@ fn any_layout_gives_the_same_bits() {
     let (problem, history) = small(&path);
     let estimated = |path: &Path| {
         let source = plane_file(path).source(&problem).unwrap();
-        estimate(&problem, &source, Options::default(), &Request::default(), &mut Unobserved).unwrap()
+        estimate(&problem, &source, Options::default(), &Request::default(), &mut Discard, &mut Unobserved).unwrap()
     };
     let native = estimated(&path);
     for style in [Style::Old, Style::Chunked, Style::Deflated, Style::Narrow] {

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use percute_core::dynamics::simulate;
+use percute_core::history::Discard;
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
@@ -92,7 +93,8 @@ fn check(runs: std::ops::Range<usize>, when: When) -> (usize, usize) {
         if file.count() > 2 {
             let options = Options { every: 50, ..Options::default() };
             let source = file.source(&problem).unwrap();
-            let (_, estimate) = estimate(&problem, &source, options, &Request::default(), &mut Unobserved).unwrap();
+            let (_, estimate) =
+                estimate(&problem, &source, options, &Request::default(), &mut Discard, &mut Unobserved).unwrap();
             assert_eq!(estimate.steps, file.count() - 1);
         }
         assert_eq!(recover(&path).unwrap().count, file.count());

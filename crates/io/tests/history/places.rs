@@ -202,7 +202,7 @@ fn files_that_go_away() {
     let source = file.source(&problem).unwrap();
     fs::remove_file(&path).unwrap();
     small(&path);
-    assert!(matches!(file.displacement(0).unwrap_err().cause, FileCause::Replaced));
+    assert!(matches!(file.displacement(0..1).unwrap_err().cause, FileCause::Replaced));
     let error = percute_core::history::StepSource::replay(&source, &mut percute_core::history::Discard).unwrap_err();
     assert!(error.to_string().ends_with("the file was replaced since it was opened; open it again"), "{error}");
 }

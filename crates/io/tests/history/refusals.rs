@@ -247,6 +247,6 @@ fn another_problem() {
     small(&path);
     let error = plane_file(&path).source(&block(3, 3)).unwrap_err();
     assert!(matches!(error.cause, FileCause::Problem { given: 16, needed: NODES, .. }), "{error}");
-    let error = plane_file(&path).displacement(13).unwrap_err();
+    let error = plane_file(&path).displacement(13..14).unwrap_err();
     assert!(error.to_string().contains("step 13 is not in the file, which holds 13 instants"), "{error}");
 }

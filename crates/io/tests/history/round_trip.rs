@@ -3,7 +3,7 @@
 use crate::common::*;
 use hdf5::OpenMode;
 use percute_core::dynamics::{Balancing, simulate};
-use percute_core::history::{History, Step, StepSink, StepSource};
+use percute_core::history::{Discard, History, Step, StepSink, StepSource};
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
@@ -111,11 +111,11 @@ proptest! {
         assert_same(&again, &history, count + 1);
         for n in 0..=count {
             let step = history.step(n).unwrap();
-            prop_assert_eq!(bits(&file.displacement(n).unwrap()), bits(step.displacement));
-            prop_assert_eq!(bits(&file.reaction(n).unwrap()), bits(step.reaction));
-            prop_assert_eq!(file.touching(n).unwrap(), step.touching);
-            prop_assert_eq!(file.velocity(n).unwrap().map(|x| bits(&x)), step.velocity.map(bits));
-            prop_assert_eq!(file.acceleration(n).unwrap().map(|x| bits(&x)), step.acceleration.map(bits));
+            prop_assert_eq!(bits(&file.displacement(n..n + 1).unwrap()), bits(step.displacement));
+            prop_assert_eq!(bits(&file.reaction(n..n + 1).unwrap()), bits(step.reaction));
+            prop_assert_eq!(file.touching(n..n + 1).unwrap(), step.touching);
+            prop_assert_eq!(file.velocity(n..n + 1).unwrap().map(|x| bits(&x)), step.velocity.map(bits));
+            prop_assert_eq!(file.acceleration(n..n + 1).unwrap().map(|x| bits(&x)), step.acceleration.map(bits));
         }
     }
 }
@@ -129,7 +129,9 @@ fn estimates_from_the_file_are_those_beside_the_run() {
     let times = steps(&problem, 60);
     let plan = Plan::new(&problem, &times, STATEMENT, None);
     let mut writer = plan.create(&path, Overwrite::Refuse).unwrap();
-    let beside = run_and_estimate(&problem, &times, Options::default(), &Request::default(), &mut Unobserved).unwrap();
+    let beside =
+        run_and_estimate(&problem, &times, Options::default(), &Request::default(), &mut Discard, &mut Unobserved)
+            .unwrap();
     simulate(&problem, &times, &mut writer, &mut Unobserved).unwrap();
     writer.finish().unwrap();
 
@@ -142,7 +144,8 @@ fn estimates_from_the_file_are_those_beside_the_run() {
         .build()
         .unwrap();
     let source = file.source(&again).unwrap();
-    let from_file = estimate(&again, &source, Options::default(), &Request::default(), &mut Unobserved).unwrap();
+    let from_file =
+        estimate(&again, &source, Options::default(), &Request::default(), &mut Discard, &mut Unobserved).unwrap();
     assert!(beside.1.error.sup > 100.0 && beside.1.kept_impulse.is_some(), "nothing happens: {:?}", beside.1.error);
     // Every number is compared with ==, and none is NaN or a zero of another sign.
     assert_eq!(beside, from_file);
@@ -180,7 +183,7 @@ fn without_contact() {
     let history = run(&problem, &steps(&problem, 5));
     write(&path, &problem, &history);
     assert_eq!(replayed(&path, &problem).unwrap(), history);
-    assert!(plane_file(&path).contact_nodes().is_empty() && plane_file(&path).reaction(2).unwrap().is_empty());
+    assert!(plane_file(&path).contact_nodes().is_empty() && plane_file(&path).reaction(2..3).unwrap().is_empty());
 }
 
 /// Arrays that another program may map into memory lie where it is said.

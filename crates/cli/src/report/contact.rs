@@ -1,0 +1,108 @@
+//! What contact did, for the report: resultants at every step, and what each node went through, but not all nodes at
+//! all steps, which may be millions.
+
+use percute_core::contact_results::{ContactResults, NodeSummary, Resultant};
+use serde::Serialize;
+
+/// What contact did.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct ContactReport {
+    pub first_touch: Option<f64>,
+    pub peak_normal_force: f64,
+    pub time_of_peak: Option<f64>,
+    pub peak_pressure: f64,
+    pub node_of_peak_pressure: Option<usize>,
+    pub time: Vec<f64>,
+    pub total: ContactResultants,
+    pub obstacles: Vec<ContactResultants>,
+    pub nodes: ContactNodes,
+}
+
+/// Resultants at every step.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct ContactResultants {
+    pub force: Vec<Vec<f64>>,
+    pub normal_force: Vec<f64>,
+    pub impulse: Vec<Vec<f64>>,
+    pub area: Vec<f64>,
+    pub in_contact: Vec<usize>,
+    pub slipping: Vec<usize>,
+    pub friction_energy: Vec<f64>,
+    pub centre: Vec<Option<Vec<f64>>>,
+}
+
+/// What each contact node went through.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct ContactNodes {
+    pub node: Vec<usize>,
+    pub obstacle: Vec<usize>,
+    pub point: Vec<Vec<f64>>,
+    pub area: Vec<f64>,
+    pub first_touch: Vec<Option<f64>>,
+    pub time_in_contact: Vec<f64>,
+    pub peak_normal_force: Vec<f64>,
+    pub time_of_peak: Vec<Option<f64>>,
+    pub peak_pressure: Vec<f64>,
+    pub impulse: Vec<Vec<f64>>,
+    pub friction_energy: Vec<f64>,
+}
+
+impl ContactReport {
+    /// None without planes.
+    pub(super) fn new<const D: usize>(results: &ContactResults<D>) -> Option<Self> {
+        if results.obstacles.is_empty() {
+            return None;
+        }
+        let (peak, pressed) = (results.peak(), results.most_pressed());
+        Some(Self {
+            first_touch: results.first_touch(),
+            peak_normal_force: peak.map_or(0.0, |n| results.total[n].normal_force),
+            time_of_peak: peak.map(|n| results.instants[n]),
+            peak_pressure: pressed.map_or(0.0, |at| results.summary[at].peak_pressure),
+            node_of_peak_pressure: pressed.map(|at| results.nodes[at].node.index()),
+            time: results.instants.clone(),
+            total: ContactResultants::new(&results.total),
+            obstacles: results.obstacles.iter().map(|over_time| ContactResultants::new(over_time)).collect(),
+            nodes: ContactNodes::new(results),
+        })
+    }
+}
+
+impl ContactResultants {
+    fn new<const D: usize>(over_time: &[Resultant<D>]) -> Self {
+        let column = |of: fn(&Resultant<D>) -> f64| over_time.iter().map(of).collect();
+        Self {
+            force: over_time.iter().map(|r| r.force.to_vec()).collect(),
+            normal_force: column(|r| r.normal_force),
+            impulse: over_time.iter().map(|r| r.impulse.to_vec()).collect(),
+            area: column(|r| r.area),
+            in_contact: over_time.iter().map(|r| r.in_contact).collect(),
+            slipping: over_time.iter().map(|r| r.slipping).collect(),
+            friction_energy: column(|r| r.friction_energy),
+            centre: over_time.iter().map(|r| r.centre.map(|x| x.to_vec())).collect(),
+        }
+    }
+}
+
+impl ContactNodes {
+    fn new<const D: usize>(results: &ContactResults<D>) -> Self {
+        let ContactResults { nodes, summary, .. } = results;
+        let column = |of: fn(&NodeSummary<D>) -> f64| summary.iter().map(of).collect();
+        Self {
+            node: nodes.iter().map(|place| place.node.index()).collect(),
+            obstacle: nodes.iter().map(|place| place.obstacle).collect(),
+            point: nodes.iter().map(|place| place.point.to_vec()).collect(),
+            area: nodes.iter().map(|place| place.area).collect(),
+            first_touch: summary.iter().map(|s| s.first_touch).collect(),
+            time_in_contact: column(|s| s.time_in_contact),
+            peak_normal_force: column(|s| s.peak_normal_force),
+            time_of_peak: summary.iter().map(|s| s.time_of_peak).collect(),
+            peak_pressure: column(|s| s.peak_pressure),
+            impulse: summary.iter().map(|s| s.impulse.to_vec()).collect(),
+            friction_energy: column(|s| s.friction_energy),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Sums over the nodes of one obstacle, or of all.
+
+use super::Status;
+
+/// What the nodes of one obstacle, or of all, do together at t_n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resultant<const D: usize> {
+    /// ΣR_n (N), global axes.
+    pub force: [f64; D],
+    /// Sum of the normal components (N).
+    pub normal_force: f64,
+    /// Impulse given to the body up to t_n (N s): that takes its momentum from v₀ to v_n.
+    pub impulse: [f64; D],
+    /// Area of contact (m²): the shares of the nodes that are not free.
+    pub area: f64,
+    /// How many nodes are not free.
+    pub in_contact: usize,
+    /// How many of these slip.
+    pub slipping: usize,
+    /// Energy dissipated by friction up to t_n (J).
+    pub friction_energy: f64,
+    /// Centre of pressure (m): the mean place of the nodes at t_n, by normal force; none without contact.
+    pub centre: Option<[f64; D]>,
+}
+
+/// One node at t_n.
+pub(super) struct Share<const D: usize> {
+    pub(super) force: [f64; D],
+    pub(super) normal_force: f64,
+    pub(super) area: f64,
+    pub(super) status: Status,
+    pub(super) friction_energy: f64,
+    pub(super) place: [f64; D],
+}
+
+/// Adds shares up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sum<const D: usize> {
+    resultant: Resultant<D>,
+    /// Σ of normal force times place (N m).
+    moment: [f64; D],
+}
+
+impl<const D: usize> Sum<D> {
+    pub(super) fn new() -> Self {
+        let resultant = Resultant {
+            force: [0.0; D],
+            normal_force: 0.0,
+            impulse: [0.0; D],
+            area: 0.0,
+            in_contact: 0,
+            slipping: 0,
+            friction_energy: 0.0,
+            centre: None,
+        };
+        Self { resultant, moment: [0.0; D] }
+    }
+
+    pub(super) fn add(&mut self, share: &Share<D>) {
+        let sum = &mut self.resultant;
+        sum.friction_energy += share.friction_energy;
+        (0..D).for_each(|c| sum.force[c] += share.force[c]);
+        if share.status == Status::Free {
+            return;
+        }
+        sum.normal_force += share.normal_force;
+        sum.area += share.area;
+        sum.in_contact += 1;
+        sum.slipping += usize::from(share.status == Status::Slip);
+        (0..D).for_each(|c| self.moment[c] += share.normal_force * share.place[c]);
+    }
+
+    /// The resultant at t_n; its impulse goes on from that `before`, `step` seconds ago.
+    pub(super) fn finish(self, before: Option<&Resultant<D>>, step: f64) -> Resultant<D> {
+        let mut done = self.resultant;
+        if let Some(before) = before {
+            done.impulse = before.impulse;
+            (0..D).for_each(|c| done.impulse[c] += 0.5 * step * (before.force[c] + done.force[c]));
+        }
+        done.centre = (done.in_contact > 0).then(|| self.moment.map(|m| m / done.normal_force));
+        done
+    }
+}

@@ -1,0 +1,56 @@
+//! What one node went through.
+
+use super::Status;
+
+/// What a node of the contact surface went through up to the last instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeSummary<const D: usize> {
+    /// The first t_n at which it touches (s).
+    pub first_touch: Option<f64>,
+    /// How long it was not free (s).
+    pub time_in_contact: f64,
+    /// Largest normal force (N).
+    pub peak_normal_force: f64,
+    /// When it was largest (s); none without force.
+    pub time_of_peak: Option<f64>,
+    /// Largest pressure (Pa): of the normal component of the density, eq. \[45\].
+    pub peak_pressure: f64,
+    /// Impulse (N s), global axes.
+    pub impulse: [f64; D],
+    /// Energy dissipated by friction (J).
+    pub friction_energy: f64,
+}
+
+impl<const D: usize> NodeSummary<D> {
+    pub(super) fn new() -> Self {
+        Self {
+            first_touch: None,
+            time_in_contact: 0.0,
+            peak_normal_force: 0.0,
+            time_of_peak: None,
+            peak_pressure: 0.0,
+            impulse: [0.0; D],
+            friction_energy: 0.0,
+        }
+    }
+
+    /// Takes in what is so at an instant.
+    pub(super) fn at(&mut self, time: f64, touching: bool, normal_force: f64, area: f64) {
+        if touching && self.first_touch.is_none() {
+            self.first_touch = Some(time);
+        }
+        if normal_force > self.peak_normal_force {
+            self.peak_normal_force = normal_force;
+            self.time_of_peak = Some(time);
+            self.peak_pressure = normal_force / area;
+        }
+    }
+
+    /// Takes in a step of `dt` seconds, given what is so at both its ends: all integrals are trapezoids, as the scheme has
+    /// the impulse.
+    pub(super) fn over(&mut self, dt: f64, forces: [&[f64; D]; 2], status: [Status; 2]) {
+        (0..D).for_each(|c| self.impulse[c] += 0.5 * dt * (forces[0][c] + forces[1][c]));
+        let ends = status.iter().filter(|s| **s != Status::Free).count();
+        self.time_in_contact += 0.5 * dt * ends as f64;
+    }
+}

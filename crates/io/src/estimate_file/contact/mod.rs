@@ -1,0 +1,97 @@
+//! Contact results in an estimate file: all contact nodes at all instants with their resultants, in `percute/contact`, and on
+//! the body for ParaView at the instants of the maps.
+
+mod fields;
+mod read;
+
+pub(super) use fields::write_fields;
+pub use read::{AnyContact, contact};
+
+use crate::error::FileCause;
+use crate::write::{group, numbers, unit};
+use hdf5::Group;
+use percute_core::contact_results::{ContactResults, ContactSteps, Resultant};
+
+/// Bytes that the results take in a file, at `instants` of maps over `nodes` nodes.
+pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {
+    let (rows, steps) = (results.nodes.len(), results.instants.len());
+    let resultants = (1 + results.obstacles.len()) * (steps * (24 * D + 40) + 4_000);
+    let all = rows * steps * ContactSteps::<D>::BYTES;
+    resultants + all + rows * (24 * D + 64) + 8 * steps + instants * (nodes * (3 * 24 + 17) + 48) + 16_000
+}
+
+/// Writes `percute/contact`.
+pub(super) fn write<const D: usize>(
+    ours: &Group,
+    results: &ContactResults<D>,
+    steps: &ContactSteps<D>,
+) -> Result<(), FileCause> {
+    let contact = group(ours, "contact")?;
+    let (nodes, instants) = (results.nodes.len(), results.instants.len());
+    numbers(&contact, "node", &[nodes], &integers(&results.nodes, |p| p.node.index()))?;
+    numbers(&contact, "obstacle", &[nodes], &integers(&results.nodes, |p| p.obstacle))?;
+    let write = |name: &str, of: &str, shape: &[usize], values: &[f64]| -> Result<(), FileCause> {
+        let set = numbers(&contact, name, shape, values)?;
+        if of.is_empty() { Ok(()) } else { unit(&set, of) }
+    };
+    write("point", "m", &[nodes, D], &vectors(&results.nodes, |p| p.point))?;
+    write("normal", "", &[nodes, D], &vectors(&results.nodes, |p| p.normal))?;
+    write("area", "m2", &[nodes], &column(&results.nodes, |p| p.area))?;
+    let summary = &results.summary;
+    write("first_touch", "s", &[nodes], &column(summary, |s| s.first_touch.unwrap_or(f64::NAN)))?;
+    write("time_in_contact", "s", &[nodes], &column(summary, |s| s.time_in_contact))?;
+    write("peak_normal_force", "N", &[nodes], &column(summary, |s| s.peak_normal_force))?;
+    write("time_of_peak", "s", &[nodes], &column(summary, |s| s.time_of_peak.unwrap_or(f64::NAN)))?;
+    write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
+    write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
+    write("time", "s", &[instants], &results.instants)?;
+    write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;
+    write("gap", "m", &[instants, nodes], &steps.gap)?;
+    write("sliding_velocity", "m/s", &[instants, nodes, D], steps.sliding_velocity.as_flattened())?;
+    let status: Vec<u8> = steps.status.iter().map(|s| *s as u8).collect();
+    numbers(&contact, "status", &[instants, nodes], &status)?;
+    write("friction_energy", "J", &[instants, nodes], &steps.friction_energy)?;
+    write_resultants(&group(&contact, "total")?, &results.total)?;
+    let obstacles = group(&contact, "obstacles")?;
+    for (at, over_time) in results.obstacles.iter().enumerate() {
+        write_resultants(&group(&obstacles, &at.to_string())?, over_time)?;
+    }
+    Ok(())
+}
+
+/// Name, unit, and how it is taken from a resultant.
+type Named<const D: usize, T> = (&'static str, &'static str, fn(&Resultant<D>) -> T);
+
+fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>]) -> Result<(), FileCause> {
+    let count = over_time.len();
+    let scalars: [Named<D, f64>; 3] = [
+        ("normal_force", "N", |r| r.normal_force),
+        ("area", "m2", |r| r.area),
+        ("friction_energy", "J", |r| r.friction_energy),
+    ];
+    for (name, of, take) in scalars {
+        unit(&numbers(part, name, &[count], &column(over_time, take))?, of)?;
+    }
+    let fields: [Named<D, [f64; D]>; 3] = [
+        ("force", "N", |r| r.force),
+        ("impulse", "N s", |r| r.impulse),
+        ("centre", "m", |r| r.centre.unwrap_or([f64::NAN; D])),
+    ];
+    for (name, of, take) in fields {
+        unit(&numbers(part, name, &[count, D], &vectors(over_time, take))?, of)?;
+    }
+    numbers(part, "in_contact", &[count], &integers(over_time, |r| r.in_contact))?;
+    numbers(part, "slipping", &[count], &integers(over_time, |r| r.slipping)).map(drop)
+}
+
+fn column<T>(rows: &[T], of: impl Fn(&T) -> f64) -> Vec<f64> {
+    rows.iter().map(of).collect()
+}
+
+fn integers<T>(rows: &[T], of: impl Fn(&T) -> usize) -> Vec<i64> {
+    rows.iter().map(|row| of(row) as i64).collect()
+}
+
+fn vectors<T, const D: usize>(rows: &[T], of: impl Fn(&T) -> [f64; D]) -> Vec<f64> {
+    rows.iter().flat_map(of).collect()
+}

@@ -1,0 +1,162 @@
+//! Contact results read back.
+
+use crate::error::{FileCause, FileError};
+use crate::estimate_file::open::size;
+use crate::kind::Kind;
+use crate::read::{Part, reading};
+use percute_core::contact_results::{ContactResults, ContactSteps, NodeSummary, Place, Resultant, Status};
+use percute_core::ids::NodeId;
+use std::path::Path;
+
+/// Arrays in which NaN stands for none.
+const MAY_BE_NONE: [&str; 3] = ["first_touch", "time_of_peak", "centre"];
+
+/// Contact results of either dimension.
+#[derive(Clone, Debug)]
+pub enum AnyContact {
+    /// Of a bar.
+    Bar(ContactResults<1>),
+    /// Of a plane body.
+    Plane(ContactResults<2>),
+}
+
+/// Reads the contact results; none if the file holds none.
+///
+/// # Errors
+/// As [`open`](super::open).
+pub fn contact(path: impl AsRef<Path>) -> Result<Option<AnyContact>, FileError> {
+    reading(path.as_ref(), |opened| {
+        opened.expect(Kind::Estimate)?;
+        let root = opened.root();
+        let ours = root.group("percute")?;
+        let Some(part) = ours.optional_group("contact")? else { return Ok(None) };
+        let [dimension, nodes, _] = size(&root.group("VTKHDF")?, &ours)?;
+        Ok(Some(match dimension {
+            1 => AnyContact::Bar(Reader { part: &part }.results(nodes)?),
+            _ => AnyContact::Plane(Reader { part: &part }.results(nodes)?),
+        }))
+    })
+}
+
+/// Reads what [`write`] wrote.
+struct Reader<'a, 'f> {
+    part: &'a Part<'f>,
+}
+
+impl Reader<'_, '_> {
+    fn results<const D: usize>(&self, nodes: usize) -> Result<ContactResults<D>, FileCause> {
+        let node = self.part.data("node")?;
+        node.expect_dimensions(1, "(contact nodes)")?;
+        let (count, node) = (node.shape[0], node.indices(nodes, "nodes")?);
+        let time = self.part.data("time")?;
+        time.expect_dimensions(1, "(instants)")?;
+        let instants = time.floats()?;
+        let obstacles = self.part.group("obstacles")?;
+        let mut of_obstacles = Vec::new();
+        while let Some(part) = obstacles.optional_group(&of_obstacles.len().to_string())? {
+            of_obstacles.push(Reader { part: &part }.resultants(instants.len())?);
+        }
+        let steps = self.steps(instants.len(), count)?;
+        Ok(ContactResults {
+            nodes: self.places(&node, of_obstacles.len())?,
+            summary: self.summary(count, &steps)?,
+            total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,
+            obstacles: of_obstacles,
+            steps: Some(steps),
+            instants,
+        })
+    }
+
+    fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<Place<D>>, FileCause> {
+        let obstacle = self.part.data("obstacle")?;
+        obstacle.expect(&[node.len()], "one for each contact node")?;
+        let obstacle = obstacle.indices(obstacles, "obstacles")?;
+        let (point, normal) = (self.vectors("point", &[node.len()])?, self.vectors("normal", &[node.len()])?);
+        let area = self.all("area", &[node.len()])?;
+        let place = |k: usize| Place {
+            node: NodeId::new(node[k]),
+            obstacle: obstacle[k],
+            point: point[k],
+            normal: normal[k],
+            area: area[k],
+        };
+        Ok((0..node.len()).map(place).collect())
+    }
+
+    fn summary<const D: usize>(&self, count: usize, steps: &ContactSteps<D>) -> Result<Vec<NodeSummary<D>>, FileCause> {
+        let column = |name: &str| self.all(name, &[count]);
+        let (first, time, force) = (column("first_touch")?, column("time_in_contact")?, column("peak_normal_force")?);
+        let (peak, pressure, impulse) =
+            (column("time_of_peak")?, column("peak_pressure")?, self.vectors("impulse", &[count])?);
+        let friction = &steps.friction_energy[steps.friction_energy.len().saturating_sub(count)..];
+        let one = |k: usize| NodeSummary {
+            first_touch: (!first[k].is_nan()).then_some(first[k]),
+            time_in_contact: time[k],
+            peak_normal_force: force[k],
+            time_of_peak: (!peak[k].is_nan()).then_some(peak[k]),
+            peak_pressure: pressure[k],
+            impulse: impulse[k],
+            friction_energy: friction.get(k).copied().unwrap_or_default(),
+        };
+        Ok((0..count).map(one).collect())
+    }
+
+    fn steps<const D: usize>(&self, instants: usize, nodes: usize) -> Result<ContactSteps<D>, FileCause> {
+        let shape = [instants, nodes];
+        let data = self.part.data("status")?;
+        data.expect(&shape, "instants, contact nodes")?;
+        let status = data.indices(3, "kinds of contact status")?;
+        let status = status.into_iter().map(|s| [Status::Free, Status::Stick, Status::Slip][s]).collect();
+        Ok(ContactSteps {
+            force: self.vectors("force", &shape)?,
+            gap: self.all("gap", &shape)?,
+            sliding_velocity: self.vectors("sliding_velocity", &shape)?,
+            status,
+            friction_energy: self.all("friction_energy", &shape)?,
+        })
+    }
+
+    fn resultants<const D: usize>(&self, instants: usize) -> Result<Vec<Resultant<D>>, FileCause> {
+        let column = |name: &str| self.all(name, &[instants]);
+        let field = |name: &str| self.vectors::<D>(name, &[instants]);
+        let count = |name: &str| -> Result<Vec<usize>, FileCause> {
+            let data = self.part.data(name)?;
+            data.expect(&[instants], "one for each instant")?;
+            data.indices(usize::MAX, "nodes")
+        };
+        let (normal_force, area, friction_energy) =
+            (column("normal_force")?, column("area")?, column("friction_energy")?);
+        let (force, impulse, centre) = (field("force")?, field("impulse")?, field("centre")?);
+        let (in_contact, slipping) = (count("in_contact")?, count("slipping")?);
+        let one = |n: usize| Resultant {
+            force: force[n],
+            normal_force: normal_force[n],
+            impulse: impulse[n],
+            area: area[n],
+            in_contact: in_contact[n],
+            slipping: slipping[n],
+            friction_energy: friction_energy[n],
+            centre: (!centre[n].iter().any(|x| x.is_nan())).then_some(centre[n]),
+        };
+        Ok((0..instants).map(one).collect())
+    }
+
+    fn vectors<const D: usize>(&self, name: &str, shape: &[usize]) -> Result<Vec<[f64; D]>, FileCause> {
+        Ok(self.all(name, &[shape, &[D]].concat())?.as_chunks::<D>().0.to_vec())
+    }
+
+    /// Numbers, all of them finite but where there may be none.
+    fn all(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, FileCause> {
+        let data = self.part.data(name)?;
+        data.expect(shape, "as the other arrays of the group")?;
+        let values = data.floats()?;
+        let missing = |x: &f64| x.is_nan() && MAY_BE_NONE.contains(&name);
+        match values.iter().position(|x| !x.is_finite() && !missing(x)) {
+            None => Ok(values),
+            Some(at) => {
+                let detail = format!("entry {at} is {}; it must be a finite number", values[at]);
+                Err(FileCause::Value { name: data.name, detail })
+            }
+        }
+    }
+}

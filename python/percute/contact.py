@@ -1,0 +1,161 @@
+"""What contact did: at each node and instant, and in all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percute.mesh import Mesh
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["Contact", "ContactStatus", "Resultants"]
+
+
+class ContactStatus(IntEnum):
+    """What a node of the contact surface does under its reaction R_n, in the half step after t_n."""
+
+    FREE = 0
+    """The plane does not push it: R_n is zero."""
+    STICK = 1
+    """It does not move along the plane: R_n is inside Coulomb's cone."""
+    SLIP = 2
+    """It moves along the plane: R_n is on the cone, eq. [2]. Without friction all contact slips."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Resultants:
+    """What the nodes of one plane, or of all, do together at each instant."""
+
+    force: NDArray[np.float64]
+    """ΣR_n (N), global axes, shape (instants, dimension)."""
+    normal_force: NDArray[np.float64]
+    """Sum of the normal components (N), shape (instants,)."""
+    impulse: NDArray[np.float64]
+    """Impulse given to the body up to t_n (N s), shape (instants, dimension)."""
+    area: NDArray[np.float64]
+    """Area of contact (m²): the shares of the nodes that are not free, shape (instants,)."""
+    in_contact: NDArray[np.int64]
+    """How many nodes are not free, shape (instants,)."""
+    slipping: NDArray[np.int64]
+    """How many of these slip, shape (instants,)."""
+    friction_energy: NDArray[np.float64]
+    """Energy dissipated by friction up to t_n (J), shape (instants,)."""
+    centre: NDArray[np.float64]
+    """Centre of pressure at t_n (m), NaN without contact, shape (instants, dimension)."""
+
+    def __repr__(self) -> str:
+        peak = self.normal_force.max(initial=0.0)
+        return f"<percute.Resultants: {len(self.area)} instants, at most {peak:.4g} N on {self.in_contact.max(initial=0)} nodes>"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Contact:
+    """What contact did, at the nodes of the contact surface and in all.
+
+    Force, density, status and sliding velocity at t_n are those of the reaction R_n and of the half step after t_n, on which it
+    acts: a node is not free at t_n exactly if it touches at t_{n+1}. Gaps and places are those of t_n itself.
+    """
+
+    time: NDArray[np.float64]
+    """Instants t_n (s), shape (instants,)."""
+    nodes: NDArray[np.int64]
+    """Nodes of the contact surface, along the boundary, shape (contact nodes,)."""
+    obstacle: NDArray[np.int64]
+    """Which plane each of them may touch, shape (contact nodes,)."""
+    points: NDArray[np.float64]
+    """Their places in the undeformed mesh (m), shape (contact nodes, dimension)."""
+    normals: NDArray[np.float64]
+    """Outward unit normals of their planes, shape (contact nodes, dimension)."""
+    area: NDArray[np.float64]
+    """Their shares ℓ_k of the candidate edges, with thickness or section (m²), shape (contact nodes,), eq. [45]."""
+    force: NDArray[np.float64]
+    """R_n (N), global axes, shape (instants, contact nodes, dimension)."""
+    gap: NDArray[np.float64]
+    """Gap at t_n (m), shape (instants, contact nodes), eq. [3]."""
+    sliding_velocity: NDArray[np.float64]
+    """Tangential velocity of the half step after t_n (m/s), at the last instant of the one before; 0 where free; global
+    axes, shape (instants, contact nodes, dimension)."""
+    status: NDArray[np.uint8]
+    """`ContactStatus` under R_n, shape (instants, contact nodes)."""
+    friction_energy: NDArray[np.float64]
+    """Energy dissipated by friction up to t_n (J), shape (instants, contact nodes)."""
+    first_touch: NDArray[np.float64]
+    """The first t_n at which each node touches (s), NaN if it never does, shape (contact nodes,)."""
+    time_in_contact: NDArray[np.float64]
+    """How long each node was not free (s), shape (contact nodes,)."""
+    peak_normal_force: NDArray[np.float64]
+    """Largest normal force on each node (N), shape (contact nodes,)."""
+    time_of_peak: NDArray[np.float64]
+    """When that was (s), NaN without force, shape (contact nodes,)."""
+    peak_pressure: NDArray[np.float64]
+    """Largest pressure on each node (Pa), shape (contact nodes,)."""
+    impulse: NDArray[np.float64]
+    """Impulse of each node (N s), shape (contact nodes, dimension)."""
+    resultants: Resultants
+    """Resultants of all planes over time."""
+    obstacles: tuple[Resultants, ...]
+    """Resultants of each plane."""
+    mesh: Mesh = field()
+    """The mesh."""
+
+    @classmethod
+    def _of(cls, arrays: dict[str, Any], mesh: Mesh) -> Contact:
+        resultants = Resultants(**arrays.pop("resultants"))
+        obstacles = tuple(Resultants(**each) for each in arrays.pop("obstacles"))
+        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh)
+
+    @cached_property
+    def density(self) -> NDArray[np.float64]:
+        """R_n/ℓ_k (Pa), global axes, shape (instants, contact nodes, dimension), eq. [45]."""
+        return _read_only(self.force / self.area[:, None])
+
+    @cached_property
+    def normal_force(self) -> NDArray[np.float64]:
+        """Normal component of R_n (N), shape (instants, contact nodes)."""
+        return _read_only(np.einsum("ncd,cd->nc", self.force, self.normals))
+
+    @cached_property
+    def tangential_force(self) -> NDArray[np.float64]:
+        """Tangential part of R_n (N), global axes, shape (instants, contact nodes, dimension)."""
+        return _read_only(self.force - self.normal_force[..., None] * self.normals)
+
+    @cached_property
+    def pressure(self) -> NDArray[np.float64]:
+        """Normal component of the density (Pa), shape (instants, contact nodes)."""
+        return _read_only(self.normal_force / self.area)
+
+    def plot(self, colour: Literal["status", "pressure"] = "status", *, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draw the resultant forces over time, and for each plane the zone of contact over time.
+
+        Parameters
+        ----------
+        colour : {"status", "pressure"}, default: "status"
+            What colours the zone.
+        axes : sequence of matplotlib.axes.Axes, optional
+            Where to draw, one for the forces and one for each plane; new ones by default.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes
+            What was drawn on.
+        """
+        from percute import contact_picture
+
+        return contact_picture.plot_contact(self, colour, axes)
+
+    def __repr__(self) -> str:
+        peak = self.resultants.normal_force.max(initial=0.0)
+        return f"<percute.Contact: {len(self.nodes)} nodes, {len(self.time)} instants, at most {peak:.4g} N>"
+
+
+def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,153 @@
+"""Pictures of contact, with matplotlib (the extra ``plot``)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percute.checks import text, wrong
+from percute.contact import Contact, ContactStatus
+from percute.errors import InputError
+from percute.plotting import FIELD, Floats, _axes, _prefix, _pyplot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["plot_contact"]
+
+COLOURS = {ContactStatus.STICK: "#1f5fa8", ContactStatus.SLIP: "#e8862e"}
+MOST_COLUMNS = 2000
+"""More steps than these are thinned out: no screen shows them."""
+
+
+def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None) -> list[Axes]:
+    """Draw the resultant forces over time, and the zone of contact of each plane over time."""
+    known = ("status", "pressure")
+    if text("colour", colour) not in known:
+        raise InputError(f"`colour` is {colour!r}; it must be one of {', '.join(known)}")
+    if not contact.obstacles or len(contact.time) < 2:
+        what = "the problem has no planes" if not contact.obstacles else "the history has one instant only"
+        raise InputError(f"there is nothing to draw: {what}")
+    panels = _panels(axes, 1 + len(contact.obstacles))
+    _draw_forces(panels[0], contact)
+    for plane, panel in enumerate(panels[1:]):
+        _draw_zone(panel, contact, plane, colour)
+    return panels
+
+
+def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
+    """Give so many axes, by default one below the other with a common time."""
+    if axes is None:
+        size = (6.8, 2.6 + 2.6 * (count - 1))
+        return list(_pyplot().subplots(count, sharex=True, layout="constrained", figsize=size)[1])
+    given = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
+    if len(given) != count:
+        raise wrong("axes", axes, f"{count} axes of matplotlib: one for the forces and one for each plane")
+    return [_axes(each) for each in given]
+
+
+def _draw_forces(axes: Axes, contact: Contact) -> None:
+    """Draw normal and tangential resultants of each plane."""
+    seconds, second = _prefix(contact.time)
+    factor, prefix = _prefix(contact.resultants.normal_force)
+    several = len(contact.obstacles) > 1
+    for plane, resultants in enumerate(contact.obstacles):
+        of, line = (f", plane {plane}" if several else ""), ("-", "--", ":")[min(plane, 2)]
+        axes.plot(contact.time / seconds, resultants.normal_force / factor, line, color="black", label=f"normal{of}")
+        if contact.mesh.dimension == 2:
+            along, name = _along(contact, plane)
+            force = resultants.force @ along / factor
+            axes.plot(contact.time / seconds, force, line, color="tab:red", label=f"tangential ({name}){of}")
+    axes.set_ylabel(f"force of contact ({prefix}N)")
+    if not axes.get_shared_x_axes().get_siblings(axes)[1:]:
+        axes.set_xlabel(f"t ({second}s)")
+    axes.margins(x=0.0)
+    axes.grid(alpha=0.3)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
+
+
+def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
+    """Give the unit vector along a plane, towards where its larger component grows, and its name."""
+    x, y = contact.normals[contact.obstacle == plane][0]
+    along = np.array([y, -x])
+    along *= np.sign(along[np.argmax(np.abs(along))])
+    names = {(1.0, 0.0): "x", (0.0, 1.0): "y"}
+    return along, names.get((abs(along[0]), abs(along[1])), "along the plane")
+
+
+def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
+    """Draw which nodes of a plane are in contact when: what belongs to t_n fills the step after it."""
+    seconds, second = _prefix(contact.time)
+    rows = np.flatnonzero(contact.obstacle == plane)
+    thin = -(-(len(contact.time) - 1) // MOST_COLUMNS)
+    steps = np.arange(0, len(contact.time) - 1, thin)
+    time = np.append(contact.time[steps], contact.time[-1]) / seconds
+    status = contact.status[np.ix_(steps, rows)]
+    values = np.asarray(status, dtype=np.float64) if colour == "status" else contact.pressure[np.ix_(steps, rows)]
+    factor, prefix = (1.0, "") if colour == "status" else _prefix(values)
+    shown = np.ma.masked_where(status == ContactStatus.FREE, values / factor)
+    style = _style(colour, float(shown.max()) if shown.count() else 1.0)
+    drawn: Any = None
+    for piece, edges in _cells(axes, contact, plane, rows, contact.status[:-1, rows].any(axis=0)):
+        drawn = axes.pcolormesh(time, edges, shown[:, piece].T, rasterized=True, **style)
+    axes.set_xlabel(f"t ({second}s)")
+    axes.set_xlim(time[0], time[-1])
+    if len(contact.obstacles) > 1:
+        axes.set_title(f"plane {plane}", fontsize="medium")
+    if colour == "pressure":
+        axes.figure.colorbar(drawn, cax=axes.inset_axes((1.02, 0.0, 0.03, 1.0)), label=f"pressure ({prefix}Pa)")
+        return
+    patch = _pyplot().matplotlib.patches.Patch
+    handles = [patch(color=shade, label=name.name.lower()) for name, shade in COLOURS.items() if (status == name).any()]
+    if handles:
+        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
+
+
+def _style(colour: str, most: float) -> dict[str, Any]:
+    """Give colours and their range."""
+    if colour == "pressure":
+        return {"cmap": FIELD, "vmin": 0.0, "vmax": most}
+    colours = _pyplot().matplotlib.colors.ListedColormap([COLOURS[ContactStatus.STICK], COLOURS[ContactStatus.SLIP]])
+    return {"cmap": colours, "vmin": int(ContactStatus.STICK), "vmax": int(ContactStatus.SLIP)}
+
+
+def _cells(
+    axes: Axes, contact: Contact, plane: int, rows: NDArray[np.intp], touched: NDArray[np.bool_]
+) -> list[tuple[slice, Floats]]:
+    """Give the pieces of the contact surface with the borders of its nodes' shares, and look at what was touched."""
+    if contact.mesh.dimension == 1:
+        axes.set_yticks(np.arange(len(rows)), [f"node {node}" for node in contact.nodes[rows]])
+        return [(slice(None), np.arange(len(rows) + 1) - 0.5)]
+    along, name = _along(contact, plane)
+    places = contact.points[rows] @ along
+    factor, prefix = _prefix(places)
+    axes.set_ylabel(f"{name} ({prefix}m)")
+    pieces, seen = [], []
+    for piece in _pieces(contact, rows):
+        at = places[piece] / factor
+        edges = np.concatenate([at[:1], (at[1:] + at[:-1]) / 2, at[-1:]])
+        pieces.append((piece, edges))
+        here = touched[piece]
+        seen += [edges[:-1][here], edges[1:][here]]
+    wanted = np.concatenate(seen) if touched.any() else places / factor
+    low, high = float(wanted.min()), float(wanted.max())
+    axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
+    return pieces
+
+
+def _pieces(contact: Contact, rows: NDArray[np.intp]) -> list[slice]:
+    """Give the runs of nodes that follow each other along the boundary."""
+    cells = contact.mesh.cells
+    nodes = contact.nodes[rows]
+    beside = {tuple(sorted(pair)) for cell in cells[np.isin(cells, nodes).sum(axis=1) > 1] for pair in _pairs(cell)}
+    joined = [(min(a, b), max(a, b)) in beside for a, b in zip(nodes[:-1].tolist(), nodes[1:].tolist(), strict=True)]
+    cuts = [0, *(k + 1 for k, together in enumerate(joined) if not together), len(rows)]
+    return [slice(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+
+
+def _pairs(cell: NDArray[np.uint32]) -> list[tuple[int, int]]:
+    a, b, c = (int(node) for node in cell)
+    return [(a, b), (b, c), (a, c)]
