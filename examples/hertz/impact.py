@@ -22,25 +22,26 @@ class Run:
     disc: Cylinder
     speed: float
     triangles: int
-    time: Floats
-    """s, from the instant at which the undeformed disc is at the plane."""
-    forces: Floats
-    """Normal reactions (steps, contact nodes) in N."""
-    touching: Floats
-    """1 where a node touches, else 0."""
-    place: Floats
-    """x of the contact nodes (m), in the undeformed state as in Hertz's theory."""
-    lengths: Floats
-    """Half the length of the edges that meet at each contact node (m)."""
+    contact: pc.Contact
     mass: float
     """Of the triangles (kg)."""
     rebound: float
     """Velocity of the centre of mass in the last step, over that at the start."""
 
-    @cached_property
+    @property
+    def time(self) -> Floats:
+        """From the instant at which the undeformed disc is at the plane (s)."""
+        return self.contact.time - FLIGHT
+
+    @property
     def force(self) -> Floats:
         """Resultant (N) over time."""
-        return self.forces.sum(axis=1)
+        return self.contact.resultants.normal_force
+
+    @property
+    def place(self) -> Floats:
+        """x of the contact nodes (m), in the undeformed state as in Hertz's theory."""
+        return self.contact.points[:, 0]
 
     @cached_property
     def hertz_half_width(self) -> Floats:
@@ -52,32 +53,28 @@ class Run:
         """p₀ (Pa) of the force of each instant."""
         return self.disc.peak_pressure(self.force)
 
-    @cached_property
-    def pressure(self) -> Floats:
-        """Densities R/ℓ of the reactions [45] (steps, contact nodes) in Pa."""
-        return self.forces / self.lengths
-
-    @cached_property
+    @property
     def pressure_in_the_middle(self) -> Floats:
-        """Density at the node that touches first (Pa)."""
-        return self.pressure[:, np.argmin(np.abs(self.place))]
+        """Density R/ℓ [45] at the node that touches first (Pa)."""
+        return self.contact.pressure[:, np.argmin(np.abs(self.place))]
 
-    @cached_property
+    @property
     def touching_half_width(self) -> Floats:
         """Half the length on which nodes touch (m)."""
-        return self.touching @ self.lengths / 2.0
+        return self.contact.resultants.area / 2.0
 
     @cached_property
     def half_width(self) -> Floats:
         """Twice the standard deviation of the pressure's place (m): b, if the pressure is an ellipse."""
         force = np.where(self.force > 0.0, self.force, np.inf)
-        centre = self.forces @ self.place / force
-        return 2.0 * np.sqrt(np.sum(self.forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
+        forces = self.contact.normal_force
+        centre = forces @ self.place / force
+        return 2.0 * np.sqrt(np.sum(forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
 
     @property
     def edge(self) -> float:
         """Length of the edges where contact begins (m)."""
-        return float(np.median(self.lengths[np.abs(self.place) < 0.1 * self.disc.radius]))
+        return float(np.median(self.contact.area[np.abs(self.place) < 0.1 * self.disc.radius]))
 
     @property
     def peak(self) -> int:
@@ -93,8 +90,7 @@ class Run:
     @property
     def impulse(self) -> float:
         """Impulse of the contact force over the momentum at the start."""
-        trapezoids = np.diff(self.time) * (self.force[1:] + self.force[:-1]) / 2.0
-        return float(trapezoids.sum() / (self.mass * self.speed))
+        return float(self.contact.resultants.impulse[-1, 1] / (self.mass * self.speed))
 
 
 def simulate(disc: Cylinder, mesh: pc.Mesh, speed: float, end: float, courant: float = 0.9) -> tuple[Run, pc.History]:
@@ -103,18 +99,12 @@ def simulate(disc: Cylinder, mesh: pc.Mesh, speed: float, end: float, courant: f
     plane = pc.Plane(point=(0.0, -disc.radius - FLIGHT * speed), normal=(0.0, 1.0), group="lower")
     problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(0.0, -speed))
     history = pc.simulate(problem, end=end + FLIGHT, courant=courant)
-    edges, nodes = np.asarray(mesh.groups["lower"]), history.contact_nodes
-    halves = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1) / 2.0
     last = (history.displacement[-1] - history.displacement[-2]) / (history.time[-1] - history.time[-2])
     run = Run(
         disc=disc,
         speed=speed,
         triangles=len(mesh.cells),
-        time=history.time - FLIGHT,
-        forces=np.array(history.reaction[:, :, 1]),
-        touching=np.array(history.touching, dtype=float),
-        place=mesh.points[nodes, 0],
-        lengths=np.bincount(edges.ravel(), np.repeat(halves, 2), len(mesh.points))[nodes],
+        contact=history.contact,
         mass=float(np.sum(problem.mass)),
         rebound=float(problem.mass @ last[:, 1] / np.sum(problem.mass) / speed),
     )
@@ -178,7 +168,7 @@ def profile(run: Run) -> tuple[Floats, Floats, Floats]:
     order = np.argsort(run.place)
     place = run.place[order] / run.hertz_half_width[run.peak]
     ellipse = np.sqrt(np.maximum(0.0, 1.0 - place**2))
-    return place, run.pressure[run.peak][order] / run.hertz_pressure[run.peak], ellipse
+    return place, run.contact.pressure[run.peak][order] / run.hertz_pressure[run.peak], ellipse
 
 
 def rms(values: Floats) -> float:
