@@ -72,7 +72,8 @@ class Run:
         """Twice the standard deviation of the pressure's place (m): b, if the pressure is an ellipse."""
         force = np.where(self.force > 0.0, self.force, np.inf)
         centre = self.forces @ self.place / force
-        return 2.0 * np.sqrt(np.sum(self.forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
+        width: Floats = 2.0 * np.sqrt(np.sum(self.forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
+        return width
 
     @property
     def edge(self) -> float:
