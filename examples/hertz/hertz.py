@@ -158,12 +158,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="A disc falls on a rigid plane: percute against Hertz.")
     parser.add_argument("--figures", type=Path, metavar="FOLDER", help="draw the figures of docs/hertz.md into this folder")
     folder = parser.parse_args().figures
+    # What would be in the way of the figures shows before the work.
+    if folder is not None:
+        if not folder.is_dir():
+            parser.error(f"--figures {folder}: there is no such folder")
+        import figures
     done = study()
     for line in report(done):
         print(line)
     if folder is not None:
-        import figures
-
         figures.draw(done, folder)
 
 

@@ -69,7 +69,8 @@ class Run:
         force = np.where(self.force > 0.0, self.force, np.inf)
         forces = self.contact.normal_force
         centre = forces @ self.place / force
-        return 2.0 * np.sqrt(np.sum(forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
+        width: Floats = 2.0 * np.sqrt(np.sum(forces * (self.place - centre[:, None]) ** 2, axis=1) / force)
+        return width
 
     @property
     def edge(self) -> float:

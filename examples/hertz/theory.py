@@ -102,7 +102,7 @@ class Cylinder:
             force = self._force(-float(shapes @ place), force, moved)
             forces.append(force)
         time = step * np.arange(len(forces)) * self.radius / self.wave_speed
-        return Impact(time, np.array(forces) * self.modulus * self.radius, -float(velocity[0] / start))
+        return Impact(time, np.array(forces, dtype=np.float64) * self.modulus * self.radius, -float(velocity[0] / start))
 
     def _force(self, approach: float, force: float, moved: float) -> float:
         """F (E* R) whose Hertz approach, less the flexibility of what moves by itself, is the given one (R), by Newton's method."""
