@@ -187,7 +187,7 @@ def bad_truss() -> None:
         (bad_order, "Mesh.ElementOrder = 1"),
         (bad_solid, "gmsh -2"),
         (bad_shell, "not in a plane z = const"),
-        (bad_partition, "UnpartitionMesh"),
+        (bad_partition, "Mesh > Unpartition"),
         (bad_groups, "Physical Surface"),
         (bad_joint, "BooleanFragments"),
         (bad_truss, "no edge of any triangle"),
@@ -225,3 +225,26 @@ def test_a_curve_inside_the_body_is_left_out(model: None, tmp_path: Path) -> Non
     with pytest.warns(pc.MeshWarning, match='"joint" lie inside the body'):
         mesh = pc.Mesh.read(save(tmp_path / "a.msh", "4.1", 0), scale=1e-3)
     assert len(mesh.groups["joint"]) == 0
+
+
+@pytest.mark.parametrize(("version", "binary"), FORMATS)
+def test_parameters_periods_and_data_do_no_harm(model: None, tmp_path: Path, version: str, binary: int) -> None:
+    gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+    # Another body, apart from the first.
+    gmsh.model.occ.addDisk(3, 0, 0, 0.5, 0.5)
+    gmsh.model.occ.synchronize()
+    gmsh.model.mesh.setPeriodic(1, [2], [4], [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+    gmsh.model.mesh.generate(2)
+    tags, _, _ = gmsh.model.mesh.getNodes()
+    plain = pc.Mesh.read(save(tmp_path / "a.msh", version, binary))
+    gmsh.option.setNumber("Mesh.SaveParametric", 1)
+    parametric = pc.Mesh.read(save(tmp_path / "b.msh", version, binary))
+    gmsh.option.setNumber("Mesh.SaveParametric", 0)
+    view = gmsh.view.add("T")
+    gmsh.view.addModelData(view, 0, gmsh.model.getCurrent(), "NodeData", tags, [[float(tag)] for tag in tags])
+    gmsh.option.setNumber("PostProcessing.SaveMesh", 1)
+    gmsh.view.write(view, str(tmp_path / "c.msh"))
+    for mesh in (parametric, pc.Mesh.read(tmp_path / "c.msh")):
+        assert len(tags) == len(plain.points) == len(mesh.points)
+        assert mesh.points.tobytes() == plain.points.tobytes()
+        assert np.array_equal(mesh.cells, plain.cells)

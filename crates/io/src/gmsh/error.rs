@@ -101,7 +101,9 @@ pub enum GmshCause {
         section: &'static str,
     },
     /// A partitioned mesh.
-    #[error("the mesh is partitioned; in Gmsh, `UnpartitionMesh;` (Mesh > Unpartition) or do not partition it")]
+    #[error(
+        "the mesh is partitioned; in Gmsh, choose Mesh > Unpartition (in Python `gmsh.model.mesh.unpartition()`) and save again"
+    )]
     Partitioned,
     /// Elements that percute does not know.
     #[error("element {element} is {kind}; percute takes 3-node triangles (a bar: 2-node lines): {}", kind.advice())]

@@ -36,7 +36,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("10 30 2", "10 30 9", &["the line 10 of nodes [30, 9]", "\"foot\"", "Coherence"], "10 30"),
         ("10 30 2", "10 30 6", &["the line 10 of nodes [30, 6]", "no edge of any triangle"], "10 30"),
         ("1 1 1 1\n10 30 2", "1 9 1 1\n10 30 9", &["the line 10", "delete the curve", "Mesh.SaveAll = 0"], "10 30"),
-        ("$Entities", "$PartitionedEntities", &["the mesh is partitioned", "UnpartitionMesh"], "0 1 2 0"),
+        ("$Entities", "$PartitionedEntities", &["the mesh is partitioned", "Mesh > Unpartition"], "0 1 2 0"),
         ("1 5 2 30", "1 6 2 30", &["`6` stands where the number of nodes", "another number"], "7 7 7"),
         ("2 1 0 5\n", "2 1 0 5000000000\n", &["the number of nodes of a block is 5000000000"], "2 1 0 5000000000"),
         ("3 3 10 90", "3 18446744073709551615 10 90", &["the number of elements is 18446744073709551615"], "3 1844"),
