@@ -1,6 +1,8 @@
 """The Python of the README and of the package runs as it stands."""
 
 import re
+import subprocess
+import sys
 import textwrap
 from pathlib import Path
 
@@ -19,6 +21,19 @@ def test_the_examples_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
     for example in examples:
         exec(example, names)
     assert isinstance(names["estimate"], pc.Estimate) and names["estimate"].relative_sup < 0.1
+
+
+def test_the_readme_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+    """The Python of the first example, and the summary of the first command but for the time that it took."""
+    text = (ROOT / "README.md").read_text()
+    example, printed = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", text, re.DOTALL)[0]
+    exec(example, {})
+    assert capsys.readouterr().out == printed
+    done = subprocess.run(
+        [sys.executable, "-m", "percute", "run", "examples/block.toml"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    shown = textwrap.dedent("".join(re.findall(r"(?m)^    case .*\n(?:    .*\n)*", text)))
+    assert shown.splitlines()[1:] == done.stdout.splitlines()[1:]
 
 
 def test_the_example_of_the_package_runs() -> None:

@@ -12,7 +12,7 @@ space, time, lumped mass and contact together: a measure, not a strict bound.
 /// The summary of a run.
 #[must_use]
 pub fn summary(report: &Report) -> String {
-    layout(&lines(report)) + MEANING
+    layout(&lines(report)) + MEANING + &layout(&[("result", result(report))])
 }
 
 /// Names and values in two columns.
@@ -97,12 +97,19 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
     let share = |part: f64| if total > 0.0 { percent(part / total) } else { "0 %".to_string() };
     let shares = [("kinetic", parts.kinetic), ("elastic", parts.elastic), ("contact", parts.contact)];
     let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
-    let sup = measure("sup", e.sup, e.relative_sup, e.reference_sup);
     vec![
-        ("error", format!("{sup}, at t = {} s", trimmed(report.time_of_sup, 5))),
+        ("error", measure("sup", e.sup, e.relative_sup, e.reference_sup)),
         ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
         ("", format!("at the sup: {shares}")),
     ]
+}
+
+/// The error in one line, the last one, for `tail -n 1`.
+fn result(report: &Report) -> String {
+    let e = &report.error;
+    let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
+    let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);
+    format!("sup {at_most} ({sup} J^½ at {time} s), mean {mean}")
 }
 
 fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
@@ -111,7 +118,8 @@ fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
         let value = format!("element {:<8} {:>10} J^½  at ({centroid}) m", worst.element, short(worst.error, 4));
         (if i == 0 { "worst" } else { "" }, value)
     };
-    report.worst_elements.iter().enumerate().map(line).collect()
+    // The document and the picture have more.
+    report.worst_elements.iter().take(3).enumerate().map(line).collect()
 }
 
 fn balance(report: &Report) -> Vec<(&'static str, String)> {

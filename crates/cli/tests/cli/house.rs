@@ -35,33 +35,51 @@ fn dependencies_never_point_back() {
     }
 }
 
-/// Every path that the documents name is there.
+/// The pages of the project: those at its root, in `docs` and beside the examples.
+fn pages() -> Vec<PathBuf> {
+    let of = |folder: &str| std::fs::read_dir(root().join(folder)).unwrap().map(|f| f.unwrap().path());
+    let pages = ["", "docs", "examples"].into_iter().flat_map(of);
+    let kinds = ["md", "cff", "toml"];
+    pages.filter(|p| p.extension().is_some_and(|e| kinds.iter().any(|kind| e == *kind))).collect()
+}
+
+/// Every path that the documents name, in quotes or as a link, is there.
 #[test]
 fn documents_name_what_exists() {
-    let pages = [
-        "README.md",
-        "ARCHITECTURE.md",
-        "CONVENTIONS.md",
-        "CHANGELOG.md",
-        "docs/json.md",
-        "docs/mesh.md",
-        "docs/history.md",
-        "docs/estimate.md",
-    ];
-    for page in pages {
-        let text = read(page);
+    let starts = ["crates/", "python/", "examples/", "docs/", "tests/", ".ci/", ".cargo/", "tools/"];
+    let mut seen = BTreeMap::new();
+    for page in pages() {
+        let (name, text) = (page.file_name().unwrap().to_str().unwrap().to_string(), read(&page));
         let quoted = text.split('`').skip(1).step_by(2);
         let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-        let mut seen = 0;
-        for path in quoted.chain(linked) {
-            let starts = ["crates/", "python/", "examples/", "docs/", ".ci/", ".cargo/", "tools/"];
-            let is_page = path.ends_with(".md") && !path.contains(' ');
-            if is_page || (starts.iter().any(|s| path.starts_with(s)) && !path.contains(' ')) {
-                seen += 1;
-                let beside = root().join(page).with_file_name(path);
-                assert!(root().join(path).exists() || beside.exists(), "{page} names {path}");
-            }
+        let linked = linked.filter(|link| !link.contains("://") && !link.starts_with('#'));
+        let named = quoted.filter(|path| {
+            let page = [".md", ".cff", ".svg"].iter().any(|end| path.ends_with(end));
+            !path.contains(char::is_whitespace) && (page || starts.iter().any(|start| path.starts_with(start)))
+        });
+        for path in named.chain(linked) {
+            let path = path.split('#').next().unwrap_or(path);
+            let beside = page.with_file_name(path);
+            // Names of files that users make stand without a folder.
+            assert!(root().join(path).exists() || beside.exists() || !path.contains(['/', '.']), "{name} names {path}");
+            *seen.entry(name.clone()).or_insert(0) += 1;
         }
-        assert!(seen > 0 || !page.starts_with(['R', 'A']), "{page} names no path at all: is this test awake?");
     }
+    for page in ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"] {
+        assert!(seen.get(page).is_some_and(|&count| count > 5), "{page} names hardly a path: is this test awake?");
+    }
+}
+
+/// Licences and the page on how to cite are there, and say what the manifests say.
+#[test]
+fn licences_and_citation_agree_with_the_manifests() {
+    let manifest: toml::Table = read("Cargo.toml").parse().unwrap();
+    let package = manifest["workspace"]["package"].as_table().unwrap();
+    let (licence, version) = (package["license"].as_str().unwrap(), package["version"].as_str().unwrap());
+    let citation = read("CITATION.cff");
+    assert!(
+        citation.contains(&format!("version: {version}\n")) && citation.contains(&format!("license: \"{licence}\"\n"))
+    );
+    assert!(read("pyproject.toml").contains(&format!("license = \"{licence}\"")));
+    assert!(read("LICENSE-MIT").starts_with("MIT License") && read("LICENSE-APACHE").contains("Apache License"));
 }
