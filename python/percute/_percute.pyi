@@ -20,6 +20,7 @@ __all__ = [
     "Progress",
     "__version__",
     "command",
+    "doubts",
     "estimate",
     "is_estimate",
     "open_history",
@@ -190,6 +191,7 @@ class EstimateFileData:
 @final
 class CaseData:
     def __new__(cls, name: str, text: str, folder: str | PathLike[str]) -> CaseData: ...
+    def doubts(self, in_memory: bool) -> list[str]: ...
     def notices(self) -> list[str]: ...
     def outputs(
         self, case: str | PathLike[str] | None, store: str | PathLike[str] | None, overwrite: bool
@@ -213,6 +215,11 @@ class BarImpactData:
     def error(self, history: HistoryData) -> tuple[float, float, dict[str, _Floats]]: ...
 
 def command(arguments: Sequence[str]) -> int: ...
+def doubts(
+    problem: ProblemData,
+    times: tuple[float | None, float | None, float | None, Sequence[float] | None],
+    in_memory: bool,
+) -> list[str]: ...
 def simulate(
     problem: ProblemData,
     times: tuple[float | None, float | None, float | None, Sequence[float] | None],

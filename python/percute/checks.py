@@ -5,13 +5,14 @@ from __future__ import annotations
 import operator
 import os
 import reprlib
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.errors import InputError
+from percute.errors import InputError, InputWarning
 
 __all__ = [
     "encodable",
@@ -25,6 +26,7 @@ __all__ = [
     "path",
     "table",
     "text",
+    "warn",
     "whole",
     "wrong",
 ]
@@ -33,6 +35,9 @@ T = TypeVar("T")
 
 LARGEST = 2**63 - 1
 """The largest whole number that the work takes."""
+
+MADE_BY = {"History": "percute.simulate, percute.run or percute.open", "Estimate": "percute.estimate, percute.run or percute.open"}
+"""What makes the objects that are not made by their class."""
 
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = _short.maxlong = 80
@@ -51,10 +56,17 @@ def wrong(name: str, value: object, allowed: str) -> InputError:
     return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
 
 
+def warn(doubts: Iterable[str]) -> None:
+    """Warn of what is doubtful at the line that called the function which calls this one."""
+    for doubt in doubts:
+        warnings.warn(doubt, InputWarning, stacklevel=3)
+
+
 def instance(name: str, value: object, kind: type[T]) -> T:
     """Give an object of a class."""
     if not isinstance(value, kind):
-        raise wrong(name, value, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
+        given = f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}"
+        raise wrong(name, value, f"{given}, made by {MADE_BY.get(kind.__name__, f'percute.{kind.__name__}')}")
     return value
 
 
@@ -96,9 +108,9 @@ def encodable(file: str) -> str:
     return os.fsencode(file).decode(errors="replace")
 
 
-def number(name: str, value: object, *, finite: bool = False) -> float:
+def number(name: str, value: object, *, finite: bool = False, unit: str = "") -> float:
     """Give a number; whether one that is not finite makes sense is for the work to say, unless it must be ``finite``."""
-    allowed = "a finite number" if finite else "a number"
+    allowed = ("a finite number" if finite else "a number") + (f" in {unit}" if unit else "")
     try:
         array = np.asarray(value)
         # Texts and truth values could be converted, but are hardly meant to be numbers.
@@ -130,16 +142,29 @@ def whole(name: str, value: object, *, least: int = 1, most: int = LARGEST) -> i
 
 def _array(value: object) -> NDArray[Any]:
     try:
-        return np.asarray(value)
-    except (TypeError, ValueError, OverflowError):
+        # Among numbers a truth value would become 0 or 1, but is hardly meant to be one.
+        return np.asarray(None if isinstance(value, list | tuple) and _has_truth(value) else value)
+    except (TypeError, ValueError, OverflowError, RecursionError):
         return np.asarray(None)
+
+
+def _no_truth(value: object) -> str:
+    return ", not True or False" if isinstance(value, list | tuple) and _has_truth(value) else ""
+
+
+def _has_truth(rows: list[Any] | tuple[Any, ...]) -> bool:
+    """Tell whether a truth value is in a list, or in a list in it."""
+    kinds = set(map(type, rows))
+    if not kinds.isdisjoint((bool, np.bool_)):
+        return True
+    return not kinds.isdisjoint((list, tuple)) and any(isinstance(row, list | tuple) and _has_truth(row) for row in rows)
 
 
 def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
     """Give an array of numbers of at most so many dimensions."""
     array = _array(value)
     if array.dtype.kind not in "fiu":
-        raise wrong(name, value, "numbers in rows of equal length")
+        raise wrong(name, value, f"numbers in rows of equal length{_no_truth(value)}")
     if array.ndim > most:
         raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
     if finite and not np.all(np.isfinite(array)):
@@ -154,7 +179,8 @@ def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):
         kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" else _told(value)
-        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0")
+        whole = "; whole numbers stored as fractions become so with astype(int)" if array.dtype.kind == "f" else ""
+        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0{whole}{_no_truth(value)}")
     if columns == 1 and array.ndim == 1:
         array = array[:, None]
     shape = (-1,) if columns is None else (-1, columns)

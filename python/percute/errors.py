@@ -9,6 +9,7 @@ __all__ = [
     "ExistingFileError",
     "FileFormatError",
     "InputError",
+    "InputWarning",
     "MeshWarning",
     "MissingFileError",
     "PercuteError",
@@ -23,6 +24,10 @@ class PercuteError(Exception):
 
 class InputError(PercuteError, ValueError):
     """An argument, a case file or a problem is wrong; nothing was computed."""
+
+
+class InputWarning(UserWarning):
+    """What was given is possible, but more likely a slip: units that look mixed, a body that never touches."""
 
 
 class MissingFileError(PercuteError, FileNotFoundError):

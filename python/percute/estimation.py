@@ -355,7 +355,7 @@ def estimate(
         stated[2] if every is None else whole("every", every),
     )
     work = pace(threads, window)
-    wanted = _wanted(instants)
+    wanted = _wanted(instants, history)
     if flag("fields", fields) and wanted is None:
         raise InputError("`fields` needs `instants`: say at how many instants, or near which (s), they are kept")
     with shown(progress) as tell:
@@ -371,8 +371,8 @@ def pace(threads: int | None, window: int | None) -> tuple[int | None, int | Non
     )
 
 
-def _wanted(instants: int | ArrayLike | None) -> int | list[float] | None:
-    """Tell how many instants, or which (s)."""
+def _wanted(instants: int | ArrayLike | None, history: History) -> int | list[float] | None:
+    """Tell how many instants, or which (s); none may come after the end, but for the digits that a printed one lacks."""
     if instants is None:
         return None
     if isinstance(instants, int | np.integer):
@@ -380,4 +380,7 @@ def _wanted(instants: int | ArrayLike | None) -> int | list[float] | None:
     times = np.atleast_1d(numbers("instants", instants, most=1))
     if len(times) == 0 or not np.all(np.isfinite(times) & (times >= 0)):
         raise wrong("instants", instants, "a number of instants, or at least one time (s), finite and not negative")
+    end = float(history._data.times[-1])
+    if np.max(times) > end * (1 + 1e-3):
+        raise InputError(f"`instants` holds {np.max(times):g} s, but the run ends at {end:g} s; give instants before that, in seconds")
     return cast("list[float]", times.tolist())

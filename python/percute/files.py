@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 from pathlib import Path
 
 from percute import _percute
-from percute.checks import encodable, flag, text, wrong
+from percute.checks import encodable, flag, text, warn, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimation import Estimate, estimate, pace
@@ -76,6 +77,11 @@ def run(
     Estimate
         With the simulation as its ``history``. An estimate file that the case names in ``[output]`` is written too.
 
+    Warns
+    -----
+    InputWarning
+        As for `simulate`, with the line.
+
     Raises
     ------
     InputError
@@ -95,6 +101,7 @@ def run(
         asked = read.outputs(source, told, replace)
         # The working directory may change in a callback.
         file, report = absolute(asked["history"]), absolute(asked["estimate"])
+        warn(read.doubts(file is None))
         # Maps are what an estimate file is for; nobody else asked for them.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         history = History._of(_percute.simulate_case(read, file, replace, tell), name=name)
@@ -118,8 +125,23 @@ def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     try:
         return encodable(os.fspath(path)), path.read_text(encoding="utf-8"), os.fspath(path)
     except FileNotFoundError:
-        raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}") from None
+        raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}{_similar(path)}") from None
+    except IsADirectoryError:
+        raise StorageError(f"`case`: {os.fspath(path)!r} is a folder; name a case file in it") from None
     except UnicodeDecodeError:
+        if path.read_bytes()[:4] == b"\x89HDF":
+            raise InputError(
+                f"`case`: {os.fspath(path)!r} is an HDF5 file and no case; a history is for percute.open and percute.estimate"
+            ) from None
         raise InputError(f"`case`: {os.fspath(path)!r} is no UTF-8 text") from None
     except OSError as error:
         raise StorageError(f"`case`: cannot read {os.fspath(path)!r}: {error.strerror}") from error
+
+
+def _similar(path: Path) -> str:
+    """Ask for the file in the same folder that was likely meant."""
+    try:
+        names = difflib.get_close_matches(path.name, os.listdir(path.parent), 1)
+    except OSError:
+        names = []
+    return f"; did you mean {names[0]!r}?" if names else ""

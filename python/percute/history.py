@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import encodable, flag, instance, numbers, optional_number
+from percute.checks import encodable, flag, instance, numbers, optional_number, warn
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
@@ -295,6 +295,12 @@ def simulate(
     -------
     History
 
+    Warns
+    -----
+    InputWarning
+        What was given is possible, but more likely a slip: units that look mixed, a body that never touches, a run that
+        needs more memory than there is.
+
     Raises
     ------
     InputError
@@ -311,6 +317,7 @@ def simulate(
     times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
     file = None if store is None else file_name("store", store)
     replace = flag("overwrite", overwrite)
+    warn(_percute.doubts(problem._data, times, file is None))
     with shown(progress) as tell, history_of_the_exception(problem):
         data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))

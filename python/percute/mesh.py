@@ -56,7 +56,7 @@ class Mesh:
         places = numbers("points", points, most=2)
         places = places[:, None] if places.ndim == 1 else places
         if places.ndim != 2 or places.shape[1] not in (1, 2):
-            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2)")
+            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2); leave out z")
         dimension = places.shape[1]
         facets = {} if groups is None else table("groups", groups, "edges")
         parts = {} if elements is None else table("elements", elements, "elements")

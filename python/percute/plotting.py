@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import number, text, whole, wrong
+from percute.checks import LARGEST, number, text, whole, wrong
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
@@ -165,7 +165,9 @@ def _field(history: History, quantity: str, step: int) -> tuple[Floats, str, str
 
 def plot_field(history: History, quantity: str, step: int, scale: float, axes: Axes | None) -> Axes:
     """Draw a field of a history on the deformed body."""
-    step, scale = whole("step", step, least=-len(history), most=len(history) - 1), number("scale", scale, finite=True)
+    if not -len(history) <= whole("step", step, least=-LARGEST) < len(history):
+        raise wrong("step", step, f"from {-len(history)} to {len(history) - 1}: the history holds {len(history)} instants")
+    scale = number("scale", scale, finite=True)
     values, name, unit, colours = _field(history, text("quantity", quantity), step)
     axes = _axes(axes)
     mesh = history.problem.mesh

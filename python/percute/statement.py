@@ -68,11 +68,10 @@ class Elastic:
     section: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("young", "density", "thickness"):
-            object.__setattr__(self, name, number(name, getattr(self, name)))
-        for name in ("poisson", "section"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, number(name, getattr(self, name)))
+        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²"}
+        for name, unit in units.items():
+            if getattr(self, name) is not None or name in ("young", "density", "thickness"):
+                object.__setattr__(self, name, number(name, getattr(self, name), unit=unit))
         if self.plane is not None and text("plane", self.plane) not in ("stress", "strain"):
             raise wrong("plane", self.plane, "'stress' or 'strain'")
 

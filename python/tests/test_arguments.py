@@ -66,7 +66,7 @@ class Calls:
 
     def simulate(self, **wrong: Any) -> object:
         """With a file, which must not be there in the end."""
-        right: dict[str, Any] = {"problem": bar(4), "end": 1e-6, "courant": 0.9, "store": self.folder / "history.vtkhdf"}
+        right: dict[str, Any] = {"problem": bar(4), "end": 1e-6, "courant": 0.1, "store": self.folder / "history.vtkhdf"}
         return pc.simulate(**(right | wrong))
 
     def simulate_step(self, **wrong: Any) -> object:

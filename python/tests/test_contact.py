@@ -144,7 +144,7 @@ def test_another_order_of_rows_and_chunks_change_nothing(block_history: pc.Histo
 
 def test_without_planes_there_is_nothing() -> None:
     problem = pc.Problem(pc.Mesh.rectangle(0.05, 0.04, nx=2, ny=2), material=block().material, initial_velocity=(1, 0))
-    history = pc.simulate(problem, end=2e-6, courant=0.9)
+    history = pc.simulate(problem, end=2e-5, courant=0.9)
     contact = history.contact
     assert contact.force.shape == (len(history), 0, 2) and contact.obstacles == ()
     assert not contact.resultants.force.any() and repr(contact) == f"<percute.Contact: 0 nodes, {len(history)} instants, at most 0 N>"

@@ -1,9 +1,10 @@
 //! The arguments of the command.
 
-use crate::case::Instants;
+use crate::case::{Instants, hint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use percute_estimator::{Acceleration, ContactForce, MOST_THREADS};
+use percute_estimator::{Acceleration, ContactForce, MOST_THREADS, UnknownName};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the steps done is still printed).";
 
@@ -98,10 +99,10 @@ pub struct EstimateArguments {
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// How contact reactions are read: sharp or paper [default: as stored in the history]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = choice::<ContactForce>)]
     pub contact_force: Option<ContactForce>,
     /// Choice of the admissible acceleration: closest, rigid or weak [default: as stored in the history]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>)]
     pub acceleration: Option<Acceleration>,
     /// Sample the error at every k-th step [default: as stored in the history]
     #[arg(long, value_name = "K", value_parser = steps)]
@@ -172,6 +173,11 @@ pub struct WorkArguments {
     /// No progress and no warnings on standard error; warnings stay in summary and JSON
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// A name that the estimator knows.
+fn choice<T: FromStr<Err = UnknownName>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|error: UnknownName| format!("{error}{}", hint(text, error.known.iter().copied())))
 }
 
 fn threads(text: &str) -> Result<usize, String> {

@@ -39,7 +39,7 @@ pub fn check(
     for (i, Output { what, file }) in all.iter().enumerate() {
         let shown = file.display();
         if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {
-            return Err(Failure::Argument(format!("{what} {shown} is the {name} itself")));
+            return Err(Failure::Argument(format!("{what} {shown} is the {name} itself; give another name")));
         }
         if let Some(other) = all[..i].iter().find(|other| writable::same(file, other.file)) {
             return Err(Failure::Argument(format!(

@@ -5,6 +5,8 @@ use crate::failure::Failure;
 use percute_core::dynamics::{Simulation, SimulationError, simulate};
 use percute_core::history::StepSink;
 use percute_core::observer::Observer;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Estimator, Options, Request};
 use percute_io::history::Writer;
 
@@ -47,31 +49,39 @@ fn stored<const D: usize, const N: usize>(
     sink: &mut dyn StepSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
-    // The file first: a step that cannot be estimated is still worth having.
-    let mut sinks = (history, sink);
-    let simulation = simulate(&case.problem, &case.times, &mut sinks, observer);
-    let (history, _) = sinks;
-    match simulation {
-        Ok(simulation) => {
-            history.map_or(Ok(()), Writer::finish)?;
-            Ok(simulation)
-        }
-        Err(error) => Err(refused(case, history, error)),
-    }
+    simulate_into(&case.problem, &case.times, history, sink, observer)
+        .map_err(|error| case.refused_start(&error).map_or_else(|| error.into(), Failure::from))
 }
 
-/// A start that is refused leaves no file behind.
-fn refused<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
+/// Simulates a problem, and hands every step to the file of its history, if there is one, and then to `sink`. A run that
+/// was stopped is finished like one that came to its end; a start that is refused leaves no file behind; after any other
+/// error the file is left as it is.
+///
+/// # Errors
+/// As [`simulate`]; what is wrong with the file comes as [`SimulationError::Sink`].
+pub fn simulate_into<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
     history: Option<Writer<D>>,
-    error: SimulationError,
-) -> Failure {
-    let Some(mistake) = case.refused_start(&error) else { return error.into() };
-    if let Some(history) = history {
-        let file = history.path().to_path_buf();
-        drop(history);
-        // What cannot be removed does no harm: it says itself how few steps it holds.
-        let _ = std::fs::remove_file(file);
+    sink: &mut dyn StepSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, SimulationError> {
+    // The file first: a step that cannot be estimated is still worth having.
+    let mut sinks = (history, sink);
+    let simulation = simulate(problem, times, &mut sinks, observer);
+    match (simulation, sinks.0) {
+        (Ok(simulation), Some(history)) => {
+            let steps = simulation.steps;
+            history.finish().map_err(|cause| SimulationError::Sink { step: steps, cause: cause.into() })?;
+            Ok(simulation)
+        }
+        (Err(error @ SimulationError::StartsTooNear { .. }), Some(history)) => {
+            let file = history.path().to_path_buf();
+            drop(history);
+            // What cannot be removed does no harm: it says itself how few steps it holds.
+            let _ = std::fs::remove_file(file);
+            Err(error)
+        }
+        (simulation, _) => simulation,
     }
-    mistake.into()
 }

@@ -22,10 +22,12 @@ pub enum TableError {
         time: f64,
     },
     /// NaN or infinity.
-    #[error("entry {index} of the table is not finite")]
+    #[error("entry {index} of the table holds the number {value}; all numbers must be finite")]
     NotFinite {
         /// Position in the table.
         index: usize,
+        /// The number: an instant (s), or part of a value.
+        value: f64,
     },
 }
 
@@ -46,8 +48,8 @@ impl<const C: usize> Table<C> {
             return Err(TableError::Lengths { times: time.len(), values: value.len() });
         }
         for (index, (t, v)) in time.iter().zip(&value).enumerate() {
-            if !t.is_finite() || v.iter().any(|x| !x.is_finite()) {
-                return Err(TableError::NotFinite { index });
+            if let Some(&value) = v.iter().chain([t]).find(|x| !x.is_finite()) {
+                return Err(TableError::NotFinite { index, value });
             }
             if index > 0 && *t <= time[index - 1] {
                 return Err(TableError::Order { index, time: *t });

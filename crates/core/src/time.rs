@@ -64,7 +64,9 @@ pub enum TimeError {
         time: f64,
     },
     /// More steps than any run can have.
-    #[error("an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps; at most 1e8 are possible")]
+    #[error(
+        "an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps, but at most 1e8 are possible; are both in seconds?"
+    )]
     TooMany {
         /// End of the run (s).
         end: f64,

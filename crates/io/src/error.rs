@@ -76,10 +76,10 @@ pub enum FileCause {
     #[error("the file was replaced since it was opened; open it again")]
     Replaced,
     /// No HDF5 file.
-    #[error("this is no HDF5 file, and so neither a history nor an estimate")]
+    #[error("this is no HDF5 file, and so neither a history nor an estimate; a case is to be run first")]
     NotHdf5,
     /// HDF5 cannot make sense of it.
-    #[error("the file is truncated or damaged: {detail}")]
+    #[error("the file is truncated or damaged: {detail}; copy it again, or make it anew")]
     Damaged {
         /// What the library says.
         detail: String,

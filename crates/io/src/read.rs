@@ -94,6 +94,9 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
         return Err(FileCause::NotAFile);
     }
     let held = Held::shared(File::open(path).map_err(refused)?)?;
+    if found.len() == 0 {
+        return Err(FileCause::Damaged { detail: "it is empty".to_string() });
+    }
     if begins_as_hdf5(held.file()).map_err(refused)? { Ok((held, found.len())) } else { Err(FileCause::NotHdf5) }
 }
 
@@ -142,6 +145,10 @@ impl<'f> Part<'f> {
     pub(crate) fn optional(&self, name: &str) -> Result<Option<Data<'f>>, FileCause> {
         if !self.group.link_exists(name) {
             return Ok(None);
+        }
+        if self.group.group(name).is_ok() {
+            let given = "a group".to_string();
+            return Err(FileCause::Type { name: self.path(name), given, needed: "a data set" });
         }
         let set = self.group.dataset(name).map_err(damaged)?;
         Data::new(set, self.path(name), self.file_bytes, self.file).map(Some)

@@ -28,6 +28,11 @@ impl CaseData {
         })
     }
 
+    /// What is doubtful about it; with `in_memory`, its history is kept in memory.
+    fn doubts(&self, in_memory: bool) -> Vec<String> {
+        each!(&self.case, case => case.doubts(in_memory)).into_iter().map(|doubt| doubt.message).collect()
+    }
+
     /// What was noticed when its mesh was read.
     fn notices(&self) -> Vec<String> {
         each!(&self.case, case => case.problem.mesh().notices().iter().map(|notice| notice.message.clone()).collect())

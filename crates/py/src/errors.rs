@@ -1,12 +1,12 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
 use percute::Failure;
-use percute::case::CaseError;
+use percute::case::{CaseError, hint};
 use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
 use percute_core::mesh::MeshError;
-use percute_core::problem::{Cause, InputError};
+use percute_core::problem::{Cause, HeldBy, InputError, Place};
 use percute_core::time::TimeError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
@@ -47,11 +47,16 @@ pub(crate) fn time(py: Python<'_>, error: &TimeError) -> PyErr {
 
 /// A problem that was refused, with the argument's name; `groups` are the keys of `material`.
 pub(crate) fn problem(py: Python<'_>, error: &InputError, groups: &[Option<String>]) -> PyErr {
-    let place = error.place;
+    input(py, &format!("`{}`: {}", argument(error.place, groups), cause(&error.cause)))
+}
+
+/// The argument of `Problem` and `simulate` at a place.
+pub(crate) fn argument(place: Place, groups: &[Option<String>]) -> String {
     let index = place.index.unwrap_or(0);
     let (list, key) = match (place.table, place.key) {
         ("initial", "velocity") => ("initial_velocity".to_string(), ""),
         ("initial", _) => ("initial_displacement".to_string(), ""),
+        ("time", key) => (key.to_string(), ""),
         ("material", key) => match groups.get(index) {
             // The group is the key of the dictionary.
             Some(Some(group)) => (format!("material[{group:?}]"), if key == "group" { "" } else { key }),
@@ -68,8 +73,7 @@ pub(crate) fn problem(py: Python<'_>, error: &InputError, groups: &[Option<Strin
             (place.index.map_or_else(|| list.to_string(), |i| format!("{list}[{i}]")), key)
         }
     };
-    let name = if key.is_empty() { list } else { format!("{list}.{key}") };
-    input(py, &format!("`{name}`: {}", cause(&error.cause)))
+    if key.is_empty() { list } else { format!("{list}.{key}") }
 }
 
 /// Causes that count from 1 or speak of a case file, in the words of Python.
@@ -80,9 +84,18 @@ fn cause(cause: &Cause) -> String {
             first - 1
         ),
         Cause::ConflictingSupports { node, component, first } => format!(
-            "component {component} of node {node} is already prescribed by supports[{}] with another motion",
+            "component {component} of node {node} is already prescribed by supports[{}] with another motion; make the two \
+             agree, or take the node out of one of the groups",
             first - 1
         ),
+        Cause::NotFree { by, .. } | Cause::AllHeld { by, .. } => {
+            let list = match by {
+                HeldBy::Support(index) => format!("held by supports[{index}]"),
+                HeldBy::Traction(index) => format!("loaded by tractions[{index}]"),
+            };
+            cause.to_string().replace(&by.to_string(), &list)
+        }
+        Cause::UnknownGroup { name, known, .. } => cause.to_string() + &hint(name, known.iter().map(String::as_str)),
         Cause::TwoMaterials { element, .. } => {
             format!("element {element} already has a material; the groups of materials must not overlap")
         }

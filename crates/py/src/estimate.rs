@@ -8,13 +8,13 @@ use crate::run::{Run, Stoppable};
 use crate::{contact, door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute::Failure;
-use percute::case::{Instants, statement};
+use percute::case::{Instants, hint, statement};
 use percute::report::{Report, Subject};
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample};
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample, UnknownName};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use pyo3::prelude::*;
@@ -106,7 +106,10 @@ pub(crate) fn estimate(
 
 /// Options of an estimate by their names.
 pub(crate) fn options(py: Python<'_>, contact_force: &str, acceleration: &str, every: usize) -> PyResult<Options> {
-    let unknown = |name: &str, error| errors::input(py, &format!("`{name}`: {error}"));
+    let unknown = |name: &str, error: UnknownName| {
+        let hint = hint(&error.given, error.known.iter().copied());
+        errors::input(py, &format!("`{name}`: {error}{hint}"))
+    };
     let contact_force = contact_force.parse().map_err(|error| unknown("contact_force", error))?;
     let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
     Ok(Options { contact_force, acceleration, every, ..Options::default() })

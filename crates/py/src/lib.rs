@@ -40,7 +40,7 @@ mod _percute {
     #[pymodule_export]
     use super::problem::ProblemData;
     #[pymodule_export]
-    use super::simulate::{open_history, simulate, simulate_case};
+    use super::simulate::{doubts, open_history, simulate, simulate_case};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
 

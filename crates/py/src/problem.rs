@@ -224,7 +224,10 @@ fn field<const D: usize>(py: Python<'_>, name: &str, given: &Field<'_>) -> PyRes
     let Some(array) = given else { return Ok(Initial::Uniform([0.0; D])) };
     let columns = array.as_array().ncols();
     if columns != D {
-        let message = format!("`{name}`: a vector has {columns} numbers; this mesh needs {D} (m or m/s)");
+        let needed = if D == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
+        let message = format!(
+            "`{name}` has {columns} numbers in a row; it must have {needed}: one row for all nodes, or one for each"
+        );
         return Err(errors::input(py, &message));
     }
     let rows = array.as_slice()?.as_chunks::<D>().0;

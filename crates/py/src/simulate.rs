@@ -8,9 +8,12 @@ use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{door, errors, time};
 use percute::Failure;
-use percute::case::{Source, Unsayable};
+use percute::case::{CaseError, Source, Unsayable};
 use percute::history::{AnyStored, plan};
+use percute::info::memory;
+use percute::run::simulate_into;
 use percute_core::dynamics::SimulationError;
+use percute_core::history::Discard;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
@@ -20,6 +23,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use thiserror::Error;
+
+/// What is done with a start that is refused, and with a run.
+type Kind<'a, const D: usize, const N: usize> = (Refused<'a>, fn(Arc<Run<D, N>>) -> AnyRun);
 
 /// How the instants are stated: end, courant, step, steps.
 type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
@@ -38,8 +44,8 @@ pub(crate) fn simulate(
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
     match &problem.problem {
-        Any::Bar(problem) => one(py, problem, &times, Options::default(), store, progress, Any::Bar),
-        Any::Plane(problem) => one(py, problem, &times, Options::default(), store, progress, Any::Plane),
+        Any::Bar(problem) => one(py, problem, &times, Options::default(), store, progress, (&|_| None, Any::Bar)),
+        Any::Plane(problem) => one(py, problem, &times, Options::default(), store, progress, (&|_| None, Any::Plane)),
     }
 }
 
@@ -55,9 +61,31 @@ pub(crate) fn simulate_case(
     let (source, options) = each!(&case.case, case => (case.source.clone(), case.options));
     let store = store.map(|path| Store::new(path, overwrite, options, Some(source)));
     match &case.case {
-        Any::Bar(case) => one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, Any::Bar),
-        Any::Plane(case) => one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, Any::Plane),
+        Any::Bar(case) => {
+            let kind: Kind<'_, 1, 2> = (&|error| case.refused_start(error), Any::Bar);
+            one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
+        }
+        Any::Plane(case) => {
+            let kind: Kind<'_, 2, 3> = (&|error| case.refused_start(error), Any::Plane);
+            one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
+        }
     }
+}
+
+/// What is doubtful about a run; with `in_memory`, its history is kept in memory.
+#[pyfunction]
+pub(crate) fn doubts(py: Python<'_>, problem: &ProblemData, times: Times, in_memory: bool) -> PyResult<Vec<String>> {
+    let (end, courant, step, steps) = times;
+    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let (doubts, needed, groups) = each!(&problem.problem, problem => {
+        let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
+        let groups: Vec<_> = problem.statement().materials.iter().map(|(group, _)| group.clone()).collect();
+        (percute_core::problem::doubts(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups)
+    });
+    let told =
+        doubts.into_iter().map(|doubt| format!("`{}`: {}", errors::argument(doubt.place, &groups), doubt.message));
+    let scarce = memory::scarce(needed, memory::available(), in_memory).map(|message| format!("`mesh`: {message}"));
+    Ok(told.chain(scarce).collect())
 }
 
 /// Opens the history in a file.
@@ -104,13 +132,20 @@ enum StoreError {
 }
 
 impl StoreError {
-    fn raised(&self, py: Python<'_>) -> PyErr {
+    fn raised(&self, py: Python<'_>, case: Refused<'_>) -> PyErr {
         match self {
             Self::Unsayable(error) => errors::input(py, &error.to_string()),
             Self::File(error) => errors::file(py, error),
-            Self::Simulation(error) => errors::simulation(py, error),
+            Self::Simulation(error) => raised(py, error, case),
         }
     }
+}
+
+/// The place in a case of a start that was refused.
+type Refused<'a> = &'a dyn Fn(&SimulationError) -> Option<CaseError>;
+
+fn raised(py: Python<'_>, error: &SimulationError, case: Refused<'_>) -> PyErr {
+    case(error).map_or_else(|| errors::simulation(py, error), |mistake| errors::case(py, &mistake))
 }
 
 fn one<const D: usize, const N: usize>(
@@ -120,15 +155,15 @@ fn one<const D: usize, const N: usize>(
     options: Options,
     store: Option<Store>,
     progress: Option<&Bound<'_, PyAny>>,
-    either: fn(Arc<Run<D, N>>) -> AnyRun,
+    kind: Kind<'_, D, N>,
 ) -> PyResult<HistoryData> {
-    let Some(store) = store else { return into_memory(py, problem, times, options, progress, either) };
+    let Some(store) = store else { return into_memory(py, problem, times, options, progress, kind) };
     let work = {
         let (problem, times, store) = (problem.clone(), times.clone(), store.clone());
         move |watch| into_file(&problem, &times, &store, watch)
     };
     let outcome = door::through(py, progress, work);
-    match outcome.and_then(|done| done.map_err(|error| error.raised(py))) {
+    match outcome.and_then(|done| done.map_err(|error| error.raised(py, kind.0))) {
         Ok(()) => open_history(py, store.path),
         // To open it takes time that whoever pressed Ctrl-C does not have.
         Err(error) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
@@ -136,7 +171,6 @@ fn one<const D: usize, const N: usize>(
     }
 }
 
-/// A run that was stopped is finished like one that came to its end; after an error the file is left as it is.
 fn into_file<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
@@ -145,10 +179,13 @@ fn into_file<const D: usize, const N: usize>(
 ) -> Result<(), StoreError> {
     let overwrite = Overwrite::allowed(store.overwrite);
     let plan = plan(problem, times, &store.options, store.case.as_ref())?;
-    let mut writer = plan.create(&store.path, overwrite)?;
+    let writer = plan.create(&store.path, overwrite)?;
     store.ours.store(true, Relaxed);
-    percute_core::dynamics::simulate(problem, times, &mut writer, &mut watch)?;
-    Ok(writer.finish()?)
+    let done = simulate_into(problem, times, Some(writer), &mut Discard, &mut watch);
+    if matches!(done, Err(SimulationError::StartsTooNear { .. })) {
+        store.ours.store(false, Relaxed);
+    }
+    Ok(done.map(|_| ())?)
 }
 
 fn into_memory<const D: usize, const N: usize>(
@@ -157,7 +194,7 @@ fn into_memory<const D: usize, const N: usize>(
     times: &TimeGrid,
     options: Options,
     progress: Option<&Bound<'_, PyAny>>,
-    either: fn(Arc<Run<D, N>>) -> AnyRun,
+    (case, either): Kind<'_, D, N>,
 ) -> PyResult<HistoryData> {
     let growing = Growing::new(times);
     let work = {
@@ -170,7 +207,7 @@ fn into_memory<const D: usize, const N: usize>(
         let run = Run::new(problem.clone(), history, options, balance);
         HistoryData { run: either(Arc::new(run)) }
     };
-    match outcome.and_then(|done| done.map_err(|error| errors::simulation(py, &error))) {
+    match outcome.and_then(|done| done.map_err(|error| raised(py, &error, case))) {
         Ok(simulation) => kept
             .map(|history| data(history, Some(simulation.balance_over_time)))
             .ok_or_else(|| errors::percute_error(py, "internal error: a simulation without steps")),

@@ -65,7 +65,11 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
         Some(other) => {
             Err(wrong(py, &format!("{name}.plane"), format!("is {other:?}; it must be \"stress\" or \"strain\"")))
         }
-        None => Err(wrong(py, &format!("{name}.plane"), "is missing; give \"stress\" or \"strain\"")),
+        None => Err(wrong(
+            py,
+            &format!("{name}.plane"),
+            "is missing; give \"stress\" (a thin plate) or \"strain\" (a long body)",
+        )),
     }
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn grid(
     let grid = made.map_err(|error| errors::time(py, &error))?;
     match end {
         Some(end) if !grid.ends_at(end) => Err(refused(format!(
-            "`end` is {end} s, but `steps` add up to {} s; leave `end` out or make the two agree",
+            "`end` is {end:?} s, but `steps` add up to {:?} s; leave `end` out or make the two agree",
             grid.end()
         ))),
         _ => Ok(grid),
@@ -59,7 +59,8 @@ fn below(py: Python<'_>, name: &str, step: f64, critical: f64) -> PyResult<()> {
         return Ok(());
     }
     let message = format!(
-        "`{name}` is {step} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
+        "`{name}` is {step:?} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable: \
+         give less, or courant=0.9"
     );
     Err(errors::input(py, &message))
 }

@@ -4,6 +4,7 @@ use super::source::CaseError;
 use super::table::Table as Keys;
 use percute_core::load::{BodyForce, Profile, Table, TableError, Traction};
 
+const IN_TIME: &str = "; for values in time give `time` too, the instant (s) of each";
 const PROFILE: &str = "{ value = 1.0, gradient = [10.0, 0.0] }";
 
 /// Reads all tractions.
@@ -39,7 +40,10 @@ pub(super) fn body_forces<const D: usize>(root: &Keys<'_>) -> Result<Vec<BodyFor
 pub(super) fn table_in_time<const C: usize>(table: &Keys<'_>, unit: &str) -> Result<Table<C>, CaseError> {
     let value = table.require("value", &format!("a value in {unit}, or one for each `time`"))?;
     let Some(time) = table.get("time") else {
-        return Ok(Table::constant(value.vector(unit)?));
+        let constant = value.vector(unit);
+        return constant
+            .map(Table::constant)
+            .map_err(|error| if value.is_list() { value.error(error.message + IN_TIME) } else { error });
     };
     Table::new(time.numbers("s")?, value.vectors(unit)?).map_err(|error| match error {
         TableError::Lengths { .. } | TableError::NotFinite { .. } => value.error(error.to_string()),

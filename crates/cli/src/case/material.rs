@@ -14,7 +14,9 @@ pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
 pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
     let tables = root.tables("material")?;
     if tables.is_empty() {
-        return Err(root.error("the table [material] is missing"));
+        return Err(root.error(
+            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), and `poisson` and `plane` (a bar: `section` in m²)",
+        ));
     }
     let one = |table: &Table<'_>| {
         let law = if D == 1 { bar(table)? } else { plane(table)? };
@@ -42,7 +44,7 @@ fn plane(table: &Table<'_>) -> Result<Elastic, CaseError> {
     let young = number(table, "young", "Pa")?;
     let poisson = number(table, "poisson", "")?;
     let density = number(table, "density", "kg/m³")?;
-    let plane = table.require("plane", "\"stress\" or \"strain\"")?;
+    let plane = table.require("plane", "\"stress\" (a thin plate) or \"strain\" (a long body)")?;
     // Energies are then those of a slice of unit thickness, as in the paper.
     let thickness = table.get("thickness").map_or(Ok(1.0), |value| value.number("m"))?;
     let law = match plane.text("\"stress\" or \"strain\"")? {

@@ -39,7 +39,8 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     let ways: Vec<_> = WAYS.iter().filter_map(|(key, reader)| Some((table.get(key)?, reader))).collect();
     let [(value, reader)] = ways.as_slice() else {
         let message = "needs exactly one of `rectangle`, `disc`, `bar`, `file` and `points` (the last with `cells`)";
-        return Err(ways.get(1).map_or_else(|| table.error(message), |(second, _)| second.error(message)));
+        let surplus = |(second, _): &(Value<'_>, _)| second.error(format!("is one too many: [mesh] {message}"));
+        return Err(ways.get(1).map_or_else(|| table.error(message), surplus));
     };
     if table.get("points").is_none() {
         for key in ["cells", "groups", "elements"] {

@@ -24,6 +24,7 @@
 //! The reader walks the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
+mod doubts;
 mod estimate;
 mod load;
 mod material;
@@ -36,6 +37,7 @@ mod source;
 mod spelling;
 mod statement;
 mod support;
+mod syntax;
 mod table;
 mod text;
 mod time;
@@ -44,6 +46,7 @@ mod value;
 pub use output::{Instants, Output};
 pub(crate) use source::At;
 pub use source::{CaseError, Source};
+pub use spelling::hint;
 pub use statement::{Unsayable, problem_from, statement};
 
 use crate::report::Subject;
@@ -58,6 +61,9 @@ use toml::de::DeTable;
 /// The tables of a case file.
 const TABLES: [&str; 10] =
     ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
+
+const NO_MESH: &str = "the table [mesh] is missing: say what is simulated, as in rectangle = { width = 0.05, height = 0.04, nx = 20, \
+                       ny = 16 }; `percute new block` prints a whole case to start from";
 
 /// Names of the components.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -99,7 +105,7 @@ impl Case {
         let document = parsed(&source)?;
         let root = Table::root(&source, document.get_ref());
         root.only(&TABLES)?;
-        let mesh = root.single("mesh")?.ok_or_else(|| root.error("the table [mesh] is missing"))?;
+        let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
         let file = mesh::file(&mesh);
         match mesh::read(&mesh)? {
             mesh::AnyMesh::Bar(bar) => {
@@ -124,6 +130,7 @@ fn read<const D: usize, const N: usize>(
     let problem = problem::read(root, mesh)?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
     let times = wanted.grid(critical_step)?;
+    output::check(root, &output, times.end())?;
     Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output, mesh_file })
 }
 
@@ -135,7 +142,13 @@ fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
             let message = "this is a mesh of Gmsh and no case; a case names it: [mesh], and `file = \"block.msh\"` in the next line";
             return source.error(&at, message);
         }
-        source.error(&at, format!("this is no valid TOML: {}", error.message().trim().replace('\n', ", ")))
+        let mut wrong = source.error(&at, "");
+        let told = error.message().trim().replace('\n', ", ");
+        wrong.message = match syntax::advice(&wrong.excerpt, &told) {
+            Some(advice) => format!("this is no valid TOML: {advice} ({told})"),
+            None => format!("this is no valid TOML: {told}"),
+        };
+        wrong
     })
 }
 

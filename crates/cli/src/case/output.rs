@@ -2,6 +2,7 @@
 
 use super::source::CaseError;
 use super::table::Table;
+use crate::report::number::trimmed;
 use percute_core::time::TimeGrid;
 use percute_estimator::Request;
 use std::path::PathBuf;
@@ -53,6 +54,14 @@ impl Instants {
         steps.dedup();
         steps
     }
+
+    /// What is wrong with the first instant that comes after the end of a run (s).
+    #[must_use]
+    pub fn after(&self, end: f64) -> Option<String> {
+        let Self::Times(times) = self else { return None };
+        let time = times.iter().find(|&&time| late(time, end))?;
+        Some(format!("is {time} s, but the run ends at {} s; give instants before that, in seconds", trimmed(end, 5)))
+    }
 }
 
 /// The sampled step nearest to an instant, the earlier of two.
@@ -92,6 +101,21 @@ pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
         output.fields = value.flag()?;
     }
     Ok(output)
+}
+
+/// Refuses instants after the end of the run: they are more likely in other units.
+pub(super) fn check(root: &Table<'_>, output: &Output, end: f64) -> Result<(), CaseError> {
+    let (Instants::Times(times), Some(table)) = (&output.instants, root.single("output")?) else { return Ok(()) };
+    let (Some(at), Some(value)) = (times.iter().position(|&t| late(t, end)), table.get("instants")) else {
+        return Ok(());
+    };
+    let entry = value.list("")?.swap_remove(at);
+    Err(entry.error(output.instants.after(end).unwrap_or_default()))
+}
+
+/// Whether an instant comes after the end (s), beyond the digits that a printed end lacks.
+fn late(time: f64, end: f64) -> bool {
+    time > end * (1.0 + 1e-3)
 }
 
 #[cfg(test)]

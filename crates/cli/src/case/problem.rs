@@ -73,10 +73,10 @@ fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, Ca
 /// An error of the core, at its place in the file.
 fn located(root: &Table<'_>, error: &InputError, notices: &[Notice]) -> CaseError {
     let mut message = error.cause.to_string();
-    if let Cause::UnknownGroup { name, known } = &error.cause {
+    if let Cause::UnknownGroup { name, known, .. } = &error.cause {
         message += &hint(name, known.iter().map(String::as_str));
     }
-    if let Cause::UnknownGroup { name, .. } | Cause::EmptyGroup { name } = &error.cause {
+    if let Cause::UnknownGroup { name, .. } | Cause::EmptyGroup { name, .. } = &error.cause {
         let of_group = notices.iter().filter(|notice| notice.groups.contains(name));
         of_group.for_each(|notice| message += &format!("; {}", notice.message));
     }

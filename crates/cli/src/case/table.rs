@@ -36,7 +36,7 @@ impl<'a> Table<'a> {
         let at = At { path: self.path_of(name), span: key.span() };
         let what = if self.joint.is_empty() { "table" } else { "key" };
         let hint = hint(name, known.iter().copied());
-        let message = format!("there is no {what} `{name}` here{hint}; allowed are {}", list(known.iter().copied()));
+        let message = format!("there is no {what} `{name}` here; allowed are {}{hint}", list(known.iter().copied()));
         Err(self.source.error(&at, message))
     }
 
@@ -91,7 +91,7 @@ impl<'a> Table<'a> {
         let mut tables = self.tables(name)?;
         match tables.get(1) {
             None => Ok(tables.pop()),
-            Some(second) => Err(second.error(format!("there can be one [{name}] only"))),
+            Some(second) => Err(second.error(format!("there can be one [{name}] only; leave one out"))),
         }
     }
 

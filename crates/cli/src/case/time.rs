@@ -21,12 +21,15 @@ pub(super) struct Wanted<'a> {
 
 /// Reads the table.
 pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
-    let table = root.single("time")?.ok_or_else(|| root.error("the table [time] is missing"))?;
+    let table = root
+        .single("time")?
+        .ok_or_else(|| root.error("the table [time] is missing: give `end` in s and, say, courant = 0.9"))?;
     table.only(&["end", "courant", "step", "steps"])?;
     let ways: Vec<Value<'_>> = ["courant", "step", "steps"].iter().filter_map(|key| table.get(key)).collect();
     if ways.len() != 1 {
         let message = "needs exactly one of `courant` (0 to 1), `step` (s) and `steps` (a list in s)";
-        return Err(ways.get(1).map_or_else(|| table.error(message), |second| second.error(message)));
+        let surplus = |second: &Value<'_>| second.error(format!("is one too many: [time] {message}"));
+        return Err(ways.get(1).map_or_else(|| table.error(message), surplus));
     }
     let steps = if let Some(value) = table.get("courant") {
         let courant = value.number("")?;
@@ -93,7 +96,8 @@ fn below(step: f64, critical: f64, at: &Value<'_>) -> Result<(), CaseError> {
     }
     let given = at.shown();
     Err(at.error(format!(
-        "is {given} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable"
+        "is {given} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable: \
+         give less, or courant = 0.9"
     )))
 }
 

@@ -68,7 +68,8 @@ impl<'a> Value<'a> {
 
     /// A text.
     pub(crate) fn text(&self, what: &str) -> Result<&'a str, CaseError> {
-        self.value.as_str().ok_or_else(|| self.must_be(format!("{what}, in quotes")))
+        let several = if self.is_list() { "; for several, write a table for each" } else { "" };
+        self.value.as_str().ok_or_else(|| self.must_be(format!("{what}, in quotes{several}")))
     }
 
     /// Yes or no.
@@ -150,5 +151,5 @@ fn number_of(unit: &str) -> String {
 
 fn vector_of<const D: usize>(unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
-    format!("{D} finite numbers{unit}, such as [1.0, 0.0]")
+    format!("{D} finite numbers{unit}, for x and y, such as [1.0, 0.0]")
 }

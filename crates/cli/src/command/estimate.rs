@@ -3,7 +3,7 @@
 use super::Console;
 use super::outputs::{contact_recorder, with_work};
 use super::result::{Given, give};
-use super::run::request;
+use super::run::{request, within};
 use crate::args::EstimateArguments;
 use crate::failure::Failure;
 use crate::history::{AnyStored, Stored, open};
@@ -38,6 +38,7 @@ where
     let options = with_work(options(stored.options, arguments), work.threads, work.window);
     let instants = maps.instants.clone().unwrap_or_default();
     let times = stored.file.times();
+    within("--instants", &instants, times.end())?;
     let wanted = || Request { steps: instants.steps(times, options.every), fields: maps.fields };
     let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
@@ -55,7 +56,7 @@ where
         estimate: &estimate,
         contact: &contact,
         report: &report,
-        told: false,
+        told: Vec::new(),
         interrupted: simulation.interrupted,
     };
     give(&given, print, output, work, console)

@@ -2,7 +2,7 @@
 
 use super::{Console, case};
 use crate::args::InfoArguments;
-use crate::case::Case;
+use crate::case::{Case, CaseOf};
 use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
 use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
@@ -10,16 +10,16 @@ use percute_io::{Kind, estimate_file, gmsh, kind};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    let info = read(&arguments.file)?;
+    let info = read(&arguments.file, console)?;
     console.print(&if arguments.json { info.to_json()? } else { info.summary() })?;
     Ok(DONE)
 }
 
-fn read(file: &Path) -> Result<Info, Failure> {
+fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let found = kind(file)?;
     match found {
         Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => return of_gmsh(file),
-        Kind::Other => return of_text(file),
+        Kind::Other => return of_text(file, console),
         Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
         // The reader of histories says what a stranger holds instead.
         Kind::History | Kind::OtherHdf5 => {}
@@ -37,14 +37,20 @@ fn of_gmsh(file: &Path) -> Result<Info, Failure> {
 }
 
 /// A case, unless it is no text at all.
-fn of_text(file: &Path) -> Result<Info, Failure> {
+fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let text = std::fs::read(file).is_ok_and(|bytes| std::str::from_utf8(&bytes).is_ok());
     if !text {
         let file = file.display();
         return Err(Failure::Argument(format!("{file}: this is neither a case file nor a history or estimate file")));
     }
     Ok(match case(file)? {
-        Case::Bar(case) => of_case(&case)?,
-        Case::Plane(case) => of_case(&case)?,
+        Case::Bar(case) => doubted(&case, console)?,
+        Case::Plane(case) => doubted(&case, console)?,
     })
+}
+
+/// A case, of which is told what is doubtful.
+fn doubted<const D: usize, const N: usize>(case: &CaseOf<D, N>, console: &mut Console<'_>) -> Result<Info, Failure> {
+    console.doubt(case, false);
+    Ok(of_case(case)?)
 }

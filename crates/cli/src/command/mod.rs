@@ -10,7 +10,7 @@ mod run;
 mod simulate;
 
 use crate::args::{Arguments, Command};
-use crate::case::{Case, Source};
+use crate::case::{Case, CaseOf, Source, hint};
 use crate::failure::{BAD_INPUT, DONE, FAILED, Failure};
 use crate::report::Warning;
 use clap::Parser;
@@ -79,6 +79,13 @@ impl Console<'_> {
         let _ = writeln!(self.err, "{text}");
     }
 
+    /// Says what is doubtful about a case, and gives the names of it.
+    fn doubt<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
+        let doubts = if quiet { Vec::new() } else { case.doubts(false) };
+        self.warn(&doubts);
+        doubts.iter().map(|doubt| doubt.name).collect()
+    }
+
     /// Says warnings.
     fn warn<'w>(&mut self, warnings: impl IntoIterator<Item = &'w Warning>) {
         warnings.into_iter().for_each(|warning| self.say(&format!("warning: {}", warning.message)));
@@ -90,10 +97,25 @@ fn case(file: &Path) -> Result<Case, Failure> {
     Ok(Case::parse(read(file)?)?)
 }
 
+/// The file in the same folder that was likely meant.
+fn similar(file: &Path) -> String {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let found = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names: Vec<String> = found.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let given = file.file_name().unwrap_or_default().to_string_lossy();
+    hint(&given, names.iter().map(String::as_str))
+}
+
 /// Reads a text; one that is no UTF-8 is refused with the line where it stops being so.
 fn read(file: &Path) -> Result<Source, Failure> {
     let unreadable = |cause| Failure::Unreadable { file: file.to_path_buf(), cause };
     let name = file.display().to_string();
+    if file.is_dir() {
+        return Err(Failure::Argument(format!("{name}: this is a folder; name a case file in it")));
+    }
+    if !file.exists() {
+        return Err(Failure::Argument(format!("{name}: there is no file of this name{}", similar(file))));
+    }
     // Asked first: a history may be larger than memory.
     if is_hdf5(file).map_err(unreadable)? {
         let message = "this is an HDF5 file and no case; a history is for `percute estimate`, any for `percute info`";

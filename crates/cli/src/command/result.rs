@@ -22,8 +22,8 @@ pub(super) struct Given<'a, const D: usize, const N: usize> {
     pub(super) estimate: &'a Estimate<D>,
     pub(super) contact: &'a ContactResults<D>,
     pub(super) report: &'a Report,
-    /// Whether the number of steps was warned of before the work.
-    pub(super) told: bool,
+    /// Names of the warnings that were told before the work.
+    pub(super) told: Vec<&'static str>,
     pub(super) interrupted: bool,
 }
 
@@ -40,7 +40,7 @@ where
 {
     let report = given.report;
     if !work.quiet {
-        console.warn(report.warnings.iter().filter(|warning| !(given.told && warning.name == "many_steps")));
+        console.warn(report.warnings.iter().filter(|warning| !given.told.contains(&warning.name)));
     }
     let json = report.to_json()?;
     // The result first: a file that cannot be written must not cost it.

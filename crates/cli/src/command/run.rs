@@ -4,13 +4,13 @@ use super::outputs::{begin_history, contact_recorder, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
-use crate::case::{Case, CaseOf};
+use crate::case::{Case, CaseOf, Instants};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::history::stored_case;
 use crate::outputs::{Output, check, chosen};
 use crate::picture::Drawn;
 use crate::progress::Watch;
-use crate::report::{Report, many_steps};
+use crate::report::Report;
 use crate::run::run;
 use percute_core::problem::Problem;
 use percute_estimator::{EstimateError, Request, RunError};
@@ -37,10 +37,10 @@ where
     let options = with_work(case.options, work.threads, work.window);
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
+    within("--instants", instants, case.times.end())?;
     let wanted = || Request { steps: instants.steps(&case.times, options.every), fields };
     let request = request(stored, "--estimate", maps, wanted)?;
-    let early = many_steps(case.times.step_count()).filter(|_| !work.quiet);
-    console.warn(&early);
+    let told = console.doubt(case, work.quiet);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
@@ -64,7 +64,7 @@ where
         estimate: &estimate,
         contact: &contact,
         report: &report,
-        told: early.is_some(),
+        told,
         interrupted: simulation.interrupted,
     };
     give(&given, print, stored, work, console)
@@ -81,6 +81,11 @@ fn files<'a, const D: usize, const N: usize>(
         chosen(["--history", "[output] history"], history.as_deref(), stated.history.as_deref()),
         chosen(["--estimate", "[output] estimate"], estimate.as_deref(), stated.estimate.as_deref()),
     ]
+}
+
+/// Refuses instants after the end of the run.
+pub(super) fn within(flag: &str, instants: &Instants, end: f64) -> Result<(), Failure> {
+    instants.after(end).map_or(Ok(()), |wrong| Err(Failure::Argument(format!("{flag} {wrong}"))))
 }
 
 /// Maps are kept for a file only, which `flag` names.

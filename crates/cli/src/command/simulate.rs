@@ -8,9 +8,9 @@ use crate::failure::{DONE, Failure, INTERRUPTED};
 use crate::outputs::{Output, check, chosen};
 use crate::progress::Watch;
 use crate::report::build::{balance_summary, problem_summary};
+use crate::report::noticed;
 use crate::report::number::{bytes, short, trimmed};
 use crate::report::summary::{body, drift, energy, layout, step};
-use crate::report::{many_steps, noticed};
 use crate::run::simulate_only;
 use percute_core::dynamics::Simulation;
 use std::path::{Path, PathBuf};
@@ -34,8 +34,8 @@ fn simulate<const D: usize, const N: usize>(
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(Output { what: "history", file: &named });
     check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
+    console.doubt(case, quiet);
     if !quiet {
-        console.warn(&many_steps(case.times.step_count()));
         console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());
     }
     let writer = begin_history(case, history, force, quiet, console)?;

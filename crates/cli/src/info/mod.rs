@@ -2,7 +2,7 @@
 //! `docs/json.md`.
 
 mod estimate;
-mod memory;
+pub mod memory;
 mod mesh;
 
 pub use estimate::{EstimateInfo, of_estimate};

@@ -9,7 +9,7 @@ use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
+use percute_core::problem::doubts;
 use percute_estimator::{ErrorMeasures, Estimate, Options, Sample};
 
 /// How many elements the report names.
@@ -28,11 +28,10 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let (softest, size) = (softest(subject.problem), subject.problem.mesh().size());
+        let doubts = doubts(subject.problem, times);
         let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
-        let facts =
-            Facts { problem: &problem, softest, size, drift, interrupted, kept_impulse, residual, steps: planned };
+        let facts = Facts { problem: &problem, doubts: &doubts, drift, interrupted, kept_impulse, residual };
         let mut warnings = warnings(&facts);
         warnings.extend(noticed(subject.problem.mesh()));
         Self {
@@ -108,11 +107,6 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
         body_forces: problem.body_loads().len(),
         resampling_error: problem.resampling_error(subject.times.instants()),
     }
-}
-
-/// The smallest Young's modulus of all materials (Pa).
-fn softest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    problem.materials().iter().map(|m| m.young()).fold(f64::INFINITY, f64::min)
 }
 
 fn measures(error: &ErrorMeasures) -> Measures {

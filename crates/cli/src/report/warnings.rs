@@ -1,20 +1,17 @@
 //! What the user should look at before trusting a result.
 
-use super::number::{percent, short};
+use super::number::percent;
 use super::{LargestResidual, ProblemSummary};
 use percute_core::mesh::{Mesh, Notice};
+use percute_core::problem::Doubt;
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
 const DRIFT: f64 = 0.1;
 /// So is a contact impulse of which less than the one or more than the other is kept.
 const KEPT: [f64; 2] = [0.9, 1.1];
-/// More steps than this are more likely a slip in `end` or in a unit.
-const MANY_STEPS: usize = 1_000_000;
 /// Resampling of tables below this is rounding.
 const RESAMPLED: f64 = 1e-12;
-/// Softer than this (Pa) and longer than a metre: more likely megapascals or millimetres.
-const SOFT: f64 = 1e6;
 
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -31,11 +28,9 @@ pub struct Warning {
 /// What the warnings look at.
 pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
-    pub(super) softest: f64,
-    pub(super) size: f64,
+    pub(super) doubts: &'a [Doubt],
     pub(super) drift: f64,
     pub(super) interrupted: bool,
-    pub(super) steps: usize,
     pub(super) kept_impulse: Option<f64>,
     pub(super) residual: &'a LargestResidual,
 }
@@ -47,14 +42,19 @@ pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
         energy_drift(facts),
         kept_impulse(facts),
         no_contact(facts),
-        units(facts),
         resampled(facts),
         mended(facts),
-        many_steps(facts.steps),
     ]
     .into_iter()
     .flatten()
+    .chain(facts.doubts.iter().map(Warning::from))
     .collect()
+}
+
+impl From<&Doubt> for Warning {
+    fn from(doubt: &Doubt) -> Self {
+        Self { name: doubt.name, brief: doubt.brief.clone(), message: doubt.to_string() }
+    }
 }
 
 fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Option<Warning> {
@@ -103,24 +103,13 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
-    if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() {
+    let foreseen = facts.doubts.iter().any(|doubt| doubt.name == "never_touches");
+    if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() || foreseen {
         return None;
     }
     let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
     let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
     warning("no_contact", format!("no contact {when}"), message)
-}
-
-fn units(facts: &Facts<'_>) -> Option<Warning> {
-    if facts.softest >= SOFT || facts.size <= 1.0 {
-        return None;
-    }
-    let message = format!(
-        "a Young's modulus of {} Pa with a body of {} m: did you mix units? percute takes metres, pascals, kilograms and seconds",
-        short(facts.softest, 3),
-        short(facts.size, 3)
-    );
-    warning("units", "soft and large body: did you mix units?", message)
 }
 
 fn resampled(facts: &Facts<'_>) -> Option<Warning> {
@@ -147,24 +136,4 @@ pub(crate) fn noticed<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl
         let (brief, message) = (brief.clone(), message.clone());
         Warning { name, brief, message }
     })
-}
-
-/// Told before a run too: at its end it would be late.
-pub(crate) fn many_steps(steps: usize) -> Option<Warning> {
-    if steps <= MANY_STEPS {
-        return None;
-    }
-    let message = format!("the run has {steps} steps: is `[time] end` as meant, and in seconds?");
-    warning("many_steps", format!("{steps} steps"), message)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn more_than_a_million_steps_are_a_warning() {
-        assert_eq!(many_steps(MANY_STEPS), None);
-        assert!(many_steps(MANY_STEPS + 1).is_some_and(|w| w.message.contains("1000001 steps")));
-    }
 }

@@ -112,10 +112,10 @@ fn mistakes_around_a_file_are_named() {
         ("file = \"meshes/block.msh\"", "file = 3", &["case.toml:2", "the name of a Gmsh file"]),
         ("file = \"meshes/block.msh\"", "file = \"case.toml\"", &["no Gmsh mesh", "save as .msh"]),
         ("\"bottom\"", "\"Bottom\"", &["did you mean `bottom`?"]),
-        ("\"bottom\"", "\"left\"", &["no group \"left\"", "Physical Curve(\"left\")"]),
-        ("\"steel\"", "\"stone\"", &["no group \"stone\"", "Physical Surface(\"stone\")"]),
+        ("\"bottom\"", "\"left\"", &["no group of edges \"left\"", "Physical Curve(\"left\")"]),
+        ("\"steel\"", "\"stone\"", &["no group of elements \"stone\"", "Physical Surface(\"stone\")"]),
         ("\"bottom\"", "\"interface\"", &["\"interface\" is empty", "lie inside the body"]),
-        ("\"bottom\"", "\"probe\"", &["no group \"probe\"", "points cannot"]),
+        ("\"bottom\"", "\"probe\"", &["no group of edges \"probe\"", "points cannot"]),
     ] {
         assert!(CASE.contains(from));
         let said = refused(&CASE.replace(from, to));

@@ -173,7 +173,7 @@ fn wrong_arguments_are_bad_input() {
         (&["run", "case.toml", "--jsno"], "--json"),
         (&["run"], "<CASE>"),
         (&["rum", "case.toml"], "run"),
-        (&["run", "none.toml"], "none.toml: cannot read the case file"),
+        (&["run", "none.toml"], "none.toml: there is no file of this name"),
         (&["run", "case.toml", "--picture", "map.png"], "ends in .svg"),
     ];
     for (arguments, phrase) in wrong {

@@ -245,7 +245,7 @@ fn what_is_beside_a_statement_is_refused_with_its_line() {
         ("[initial]\nvelocity = 1.0\n", 5, "initial: is no part"),
         ("[output]\nhistory = \"a\"\n", 5, "output: is no part"),
         ("[obstacles]\n", 5, "did you mean `obstacle`?"),
-        ("[[support]]\ngroup = \"nowhere\"\ncomponents = [\"x\"]\n", 6, "there is no group \"nowhere\""),
+        ("[[support]]\ngroup = \"nowhere\"\ncomponents = [\"x\"]\n", 6, "there is no group of ends \"nowhere\""),
     ] {
         let mesh = BarMesh::uniform_bar(1.0, 2).unwrap();
         let source = Source::new("a.vtkhdf", format!("{material}{more}"));
@@ -255,5 +255,5 @@ fn what_is_beside_a_statement_is_refused_with_its_line() {
     }
     let mesh = BarMesh::uniform_bar(1.0, 2).unwrap();
     let error = problem_from(&Source::new("a", material), mesh, vec![[0.0]; 3], vec![[0.0]; 2]).unwrap_err();
-    assert!(error.to_string().contains("has 2 values; the mesh has 3 nodes"), "{error}");
+    assert!(error.to_string().contains("has 2 values, but the mesh has 3 nodes"), "{error}");
 }

@@ -3,6 +3,7 @@
 use super::geometry::{diameter, signed_volume};
 use super::{ElementGroups, Facet, FacetGroups};
 use crate::ids::{ElementId, FacetId, NodeId};
+use crate::problem::{facet, short};
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
@@ -53,7 +54,7 @@ pub enum MeshError {
         value: f64,
     },
     /// An element names a node that does not exist.
-    #[error("element {element} names node {node}, but the mesh has nodes 0 to {last}")]
+    #[error("element {element} names node {node}, but the mesh has nodes 0 to {last}, counted from 0")]
     NoSuchNode {
         /// The element.
         element: usize,
@@ -63,7 +64,7 @@ pub enum MeshError {
         last: usize,
     },
     /// Nodes that no element uses.
-    #[error("node {first} belongs to no element ({count} such nodes); remove unused nodes")]
+    #[error("node {first} belongs to no element ({count} in all); remove it from the points, or name it in a cell")]
     UnusedNodes {
         /// The first of them.
         first: usize,
@@ -71,7 +72,7 @@ pub enum MeshError {
         count: usize,
     },
     /// Two nodes at the same place.
-    #[error("nodes {first} and {second} are {distance:.3e} m apart: merge duplicate nodes")]
+    #[error("nodes {first} and {second} lie at one place ({} m apart): merge duplicate nodes into one", short(*.distance))]
     DuplicateNodes {
         /// One node.
         first: usize,
@@ -81,7 +82,10 @@ pub enum MeshError {
         distance: f64,
     },
     /// An element without volume.
-    #[error("element {element} is degenerate: nodes {nodes:?}, volume {volume:.3e} for a diameter of {diameter:.3e} m")]
+    #[error(
+        "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a diameter of {} m); move one of \
+         them, or leave the element out", short(*.volume), short(*.diameter)
+    )]
     Degenerate {
         /// The element.
         element: usize,
@@ -93,7 +97,7 @@ pub enum MeshError {
         diameter: f64,
     },
     /// A facet shared by more than two elements.
-    #[error("the facet of nodes {nodes:?} is shared by elements {elements:?}; at most two may share one")]
+    #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), list(.elements))]
     NonManifoldFacet {
         /// Its nodes.
         nodes: Vec<usize>,
@@ -101,14 +105,14 @@ pub enum MeshError {
         elements: Vec<usize>,
     },
     /// Two elements on the same side of a facet.
-    #[error("elements {} and {} lie on the same side of the facet they share: they overlap", .elements[0], .elements[1])]
+    #[error("elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave one out", .elements[0], .elements[1])]
     Overlap {
         /// The elements.
         elements: [usize; 2],
     },
     /// A node at which parts of the body touch by a point only.
     #[error(
-        "at node {node} the body hangs together by a point only ({reached} of its {elements} elements are joined by facets); \
+        "at node {node} the body hangs together by a point only ({reached} of its {elements} elements are joined by edges); \
          split the node or fill the gap"
     )]
     NonManifoldNode {
@@ -120,7 +124,10 @@ pub enum MeshError {
         reached: usize,
     },
     /// A group names a facet that is not there.
-    #[error("group \"{group}\" names the facet of nodes {nodes:?}, which is not on the boundary of the mesh")]
+    #[error(
+        "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) of the \
+         boundary, nodes are counted from 0", facet(.nodes)
+    )]
     NoSuchFacet {
         /// The group.
         group: String,
@@ -128,7 +135,7 @@ pub enum MeshError {
         nodes: Vec<usize>,
     },
     /// A group names an element that is not there.
-    #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}")]
+    #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}, counted from 0")]
     NoSuchElement {
         /// The group.
         group: String,
@@ -137,6 +144,10 @@ pub enum MeshError {
         /// Largest element number.
         last: usize,
     },
+}
+
+fn list(numbers: &[usize]) -> String {
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 pub(super) fn points<const D: usize>(points: &[[f64; D]]) -> Result<(), MeshError> {

@@ -1,7 +1,7 @@
 //! Supports and loads, from named groups to facets, nodes and elements.
 
 use super::error::axis;
-use super::{BodyLoad, Cause, FacetLoad, InputError, PrescribedComponent, Problem};
+use super::{BodyLoad, Cause, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent, Problem, Statement};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::mesh::Mesh;
@@ -12,7 +12,7 @@ pub(super) fn facet_group<'m, const D: usize, const N: usize>(
     mesh: &'m Mesh<D, N>,
     name: &str,
 ) -> Result<&'m [FacetId], Cause> {
-    group(mesh.facet_groups(), name)
+    group(mesh.facet_groups(), name, GroupOf::facets(D), mesh.element_groups(), GroupOf::Elements)
 }
 
 /// The members of a group of elements.
@@ -20,15 +20,41 @@ pub(super) fn element_group<'m, const D: usize, const N: usize>(
     mesh: &'m Mesh<D, N>,
     name: &str,
 ) -> Result<&'m [ElementId], Cause> {
-    group(mesh.element_groups(), name)
+    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(D))
 }
 
-fn group<'m, Id>(groups: &'m BTreeMap<String, Vec<Id>>, name: &str) -> Result<&'m [Id], Cause> {
-    match groups.get(name) {
-        None => Err(Cause::UnknownGroup { name: name.to_string(), known: groups.keys().cloned().collect() }),
-        Some(members) if members.is_empty() => Err(Cause::EmptyGroup { name: name.to_string() }),
+fn group<'m, Id, Other>(
+    groups: &'m BTreeMap<String, Vec<Id>>,
+    name: &str,
+    of: GroupOf,
+    others: &BTreeMap<String, Vec<Other>>,
+    found: GroupOf,
+) -> Result<&'m [Id], Cause> {
+    let (known, name) = (|| groups.keys().cloned().collect(), name.to_string());
+    match groups.get(&name) {
+        None if others.contains_key(&name) => Err(Cause::OtherGroup { name, found, of, known: known() }),
+        None => Err(Cause::UnknownGroup { name, of, known: known() }),
+        Some(members) if members.is_empty() => Err(Cause::EmptyGroup { name, of }),
         Some(members) => Ok(members),
     }
+}
+
+/// The first support or traction on each facet, which then cannot touch a plane.
+pub(super) fn held<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: &Statement<D>) -> Vec<Option<HeldBy>> {
+    let mut held = vec![None; mesh.facets().len()];
+    let supports = stated.supports.iter().enumerate().map(|(i, s)| (HeldBy::Support(i), &s.group));
+    let tractions = stated.tractions.iter().enumerate().map(|(i, t)| (HeldBy::Traction(i), &t.group));
+    for (by, group) in supports.chain(tractions) {
+        for facet in mesh.facet_groups().get(group).into_iter().flatten() {
+            held[facet.index()].get_or_insert(by);
+        }
+    }
+    held
+}
+
+/// Refuses numbers that are not finite.
+fn finite<'v>(numbers: impl IntoIterator<Item = &'v f64>) -> Result<(), Cause> {
+    numbers.into_iter().find(|x| !x.is_finite()).map_or(Ok(()), |&value| Err(Cause::NotFinite { value }))
 }
 
 /// Supported facets, prescribed components of nodes, and velocity tables.
@@ -52,9 +78,8 @@ pub(super) fn supports<const D: usize, const N: usize>(
         if support.components == [false; D] {
             return Err(fail(Cause::NoComponent, "components"));
         }
-        if support.velocity.as_ref().is_some_and(|t| !t.is_finite()) {
-            return Err(fail(Cause::NotFinite, "velocity"));
-        }
+        let velocities = support.velocity.iter().flat_map(|table| table.value().iter().flatten());
+        finite(velocities).map_err(|cause| fail(cause, "velocity"))?;
         for component in (0..D).filter(|&c| support.components[c]) {
             let motion = support.velocity.as_ref().map(|table| motion_index(&mut motions, table.component(component)));
             for facet in members {
@@ -94,9 +119,7 @@ pub(super) fn tractions<const D: usize, const N: usize>(
     for (table, traction) in tractions.iter().enumerate() {
         let fail = |cause: Cause, key| cause.at("traction", Some(table), key);
         let members = facet_group(mesh, &traction.group).map_err(|c| fail(c, "group"))?;
-        if !traction.value.is_finite() {
-            return Err(fail(Cause::NotFinite, "value"));
-        }
+        finite(traction.value.value().iter().flatten()).map_err(|cause| fail(cause, "value"))?;
         let acts = traction.value.acting_components();
         for &facet in members {
             if let Some(c) = (0..D).find(|&c| acts[c] && supported[facet.index()][c]) {
@@ -104,9 +127,7 @@ pub(super) fn tractions<const D: usize, const N: usize>(
                 return Err(fail(Cause::LoadedSupport { component: axis(c), nodes }, "group"));
             }
             let profile = Problem::profile_on(mesh, facet, &traction.profile);
-            if profile.iter().any(|p| !p.is_finite()) {
-                return Err(fail(Cause::NotFinite, "profile"));
-            }
+            finite(&profile).map_err(|cause| fail(cause, "profile"))?;
             loads.push(FacetLoad { facet, profile, table });
         }
     }
@@ -124,9 +145,7 @@ pub(super) fn body_forces<const D: usize, const N: usize>(
     let mut by_element = vec![Vec::new(); if forces.is_empty() { 0 } else { mesh.element_count() }];
     for (index, force) in forces.iter().enumerate() {
         let fail = |cause: Cause, key| cause.at("body_force", Some(index), key);
-        if !force.value.is_finite() {
-            return Err(fail(Cause::NotFinite, "value"));
-        }
+        finite(force.value.value().iter().flatten()).map_err(|cause| fail(cause, "value"))?;
         let members: Vec<ElementId> = match &force.group {
             Some(name) => element_group(mesh, name).map_err(|c| fail(c, "group"))?.to_vec(),
             None => (0..mesh.element_count()).map(ElementId::new).collect(),

@@ -135,6 +135,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self.check_counts()?;
         let mesh = &self.mesh;
         let (materials, element_material) = materials(mesh, &self.stated.materials)?;
+        waves(&materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
         let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
         let area = |f: FacetId| mesh.facet_normal(f).1 * extent(mesh.facets()[f.index()].owner);
@@ -156,14 +157,14 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
-        let mut loaded = vec![false; mesh.facets().len()];
-        facet_loads.iter().for_each(|load| loaded[load.facet.index()] = true);
+        let held = boundary::held(mesh, &self.stated);
         let mut fixed = vec![[false; D]; mesh.node_count()];
         prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
-        let free = |f: FacetId| !loaded[f.index()] && supported[f.index()] == [false; D];
         let mut surface = ContactSurface::default();
         for (index, plane) in self.obstacles.iter().enumerate() {
-            surface.add(mesh, index, plane, free, |node| fixed[node.index()], area)?;
+            in_front(mesh, plane, &initial_displacement)
+                .map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
+            surface.add(mesh, index, plane, |f| held[f.index()], |node| fixed[node.index()], area)?;
         }
 
         let problem = Problem {
@@ -218,6 +219,38 @@ fn materials<const D: usize, const N: usize>(
     Ok((given.iter().map(|(_, material)| *material).collect(), of_element))
 }
 
+/// No material can have waves faster than light.
+fn waves(materials: &[Elastic]) -> Result<(), InputError> {
+    const LIGHT: f64 = 299_792_458.0;
+    for (index, material) in materials.iter().enumerate() {
+        let (density, young) = (material.density(), material.young());
+        let speed = (young / density).sqrt();
+        if speed > LIGHT {
+            let cause = Cause::FasterThanLight { density, young, speed };
+            return Err(cause.at("material", Some(index), "density"));
+        }
+    }
+    Ok(())
+}
+
+/// A plane that has the whole body behind it has its normal reversed.
+fn in_front<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    plane: &Plane<D>,
+    displacement: &[[f64; D]],
+) -> Result<(), Cause> {
+    let gap = |(x, u): (&[f64; D], &[f64; D])| plane.gap(&std::array::from_fn(|c| x[c] + u[c]));
+    let gaps: Vec<f64> = mesh.points().iter().zip(displacement).map(gap).collect();
+    let node = (0..gaps.len()).fold(0, |deepest, i| if gaps[i] < gaps[deepest] { i } else { deepest });
+    // As for contact: rounding must not put a body that rests on the plane behind it.
+    let tolerance = 1e-12 * mesh.size();
+    if gaps.iter().any(|gap| *gap > tolerance) || gaps[node] >= -tolerance {
+        return Ok(());
+    }
+    let reversed = plane.direction().iter().map(|n| -n).collect();
+    Err(Cause::Behind { node, depth: -gaps[node], reversed })
+}
+
 /// The values of an initial field at the nodes.
 fn nodal<const D: usize>(field: &Initial<D>, nodes: usize, key: &'static str) -> Result<Vec<[f64; D]>, InputError> {
     let values = match field {
@@ -255,16 +288,23 @@ fn check_start_of_supports<const D: usize, const N: usize>(problem: &Problem<D, 
 /// At t = 0 no candidate node may lie behind its plane, nor on it with an inward velocity.
 fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
     let tolerance = problem.contact_tolerance();
-    for (at, contact) in problem.surface.nodes().iter().enumerate() {
+    let nodes = problem.surface.nodes();
+    let gap =
+        |at: usize| problem.surface.gap(at, &problem.initial_displacement[nodes[at].node.index()], &problem.obstacles);
+    let deeper = |a: usize, b: usize| if gap(b) < gap(a) { b } else { a };
+    if let Some(at) = (0..nodes.len()).reduce(deeper).filter(|&at| gap(at) < -tolerance) {
+        let (obstacle, depth) = (nodes[at].obstacle, -gap(at));
+        let plane = &problem.obstacles[obstacle];
+        let clear = plane.point().iter().zip(plane.normal()).map(|(x, n)| x - depth * n).collect();
+        let cause = Cause::Penetrates { node: nodes[at].node.index(), depth, clear };
+        return Err(cause.at("obstacle", Some(obstacle), "point"));
+    }
+    for (at, contact) in nodes.iter().enumerate() {
         let node = contact.node.index();
-        let fail = |cause: Cause, key| cause.at("obstacle", Some(contact.obstacle), key);
-        let gap = problem.surface.gap(at, &problem.initial_displacement[node], &problem.obstacles);
-        if gap < -tolerance {
-            return Err(fail(Cause::Penetrates { node, depth: -gap }, "point"));
-        }
         let (normal, _) = problem.obstacles[contact.obstacle].split(&problem.initial_velocity[node]);
-        if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
-            return Err(fail(Cause::StrikesAtStart { node, gap, speed: -normal }, "point"));
+        if gap(at) <= tolerance && normal < -problem.speed_tolerance() && contact.free {
+            let cause = Cause::StrikesAtStart { node, gap: gap(at), speed: -normal };
+            return Err(cause.at("obstacle", Some(contact.obstacle), "point"));
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! What can be wrong with a problem, where it is, and what to do.
 
+use super::doubt::short;
 use crate::load::TableError;
 use crate::material::MaterialError;
 use crate::obstacle::PlaneError;
@@ -10,7 +11,7 @@ use thiserror::Error;
 /// several, and a key in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// `mesh`, `material`, `initial`, `obstacle`, `support`, `traction` or `body_force`.
+    /// `mesh`, `material`, `initial`, `obstacle`, `support`, `traction`, `body_force` or `time`.
     pub table: &'static str,
     /// Position among tables of that name, from 0.
     pub index: Option<usize>,
@@ -54,18 +55,47 @@ pub enum Cause {
     #[error(transparent)]
     Table(#[from] TableError),
     /// A name that the mesh does not know.
-    #[error("there is no group \"{name}\"; the mesh has {}", list(.known))]
+    #[error("there is no group of {of} \"{name}\"; the mesh has {}", list(*.of, .known))]
     UnknownGroup {
         /// The name.
         name: String,
+        /// What should be in it.
+        of: GroupOf,
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A group of elements where one of the boundary is needed, or the other way round.
+    #[error("\"{name}\" is a group of {found}; a group of {of} is needed here: the mesh has {}", list(*.of, .known))]
+    OtherGroup {
+        /// The name.
+        name: String,
+        /// What is in it.
+        found: GroupOf,
+        /// What should be in it.
+        of: GroupOf,
+        /// The names of such groups.
+        known: Vec<String>,
+    },
     /// A group without members.
-    #[error("group \"{name}\" is empty")]
+    #[error("group \"{name}\" is empty; give it {of}, or leave out what names it")]
     EmptyGroup {
         /// The name.
         name: String,
+        /// What should be in it.
+        of: GroupOf,
+    },
+    /// Waves faster than light.
+    #[error(
+        "is {density:?} kg/m³; with a Young's modulus of {young:?} Pa waves would run at {speed:.3e} m/s, faster than light: did you \
+         mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa"
+    )]
+    FasterThanLight {
+        /// Density (kg/m³).
+        density: f64,
+        /// Young's modulus (Pa).
+        young: f64,
+        /// Wave speed (m/s).
+        speed: f64,
     },
     /// More materials or body forces than can be told apart.
     #[error("there are {count} of them; at most {most} can be told apart")]
@@ -86,7 +116,9 @@ pub enum Cause {
         count: usize,
     },
     /// Two materials on one element.
-    #[error("element {element} already has material {first}; groups of materials must not overlap")]
+    #[error(
+        "element {element} already has material {first}; groups of materials must not overlap: take it out of one of them"
+    )]
     TwoMaterials {
         /// The element.
         element: usize,
@@ -94,7 +126,7 @@ pub enum Cause {
         first: usize,
     },
     /// A nodal field of the wrong length.
-    #[error("the field has {given} values; the mesh has {nodes} nodes")]
+    #[error("the field has {given} values, but the mesh has {nodes} nodes; give a value for each node, or one for all")]
     FieldLength {
         /// Values given.
         given: usize,
@@ -102,7 +134,7 @@ pub enum Cause {
         nodes: usize,
     },
     /// A nodal field with NaN or infinity.
-    #[error("the value at node {node} is {value}; it must be finite")]
+    #[error("the value at node {node} is {value}; all values must be finite numbers")]
     FieldNotFinite {
         /// The node.
         node: usize,
@@ -110,16 +142,25 @@ pub enum Cause {
         value: f64,
     },
     /// A number in a load that is NaN or infinite.
-    #[error("the value is not finite")]
-    NotFinite,
+    #[error("holds the number {value}; all numbers must be finite")]
+    NotFinite {
+        /// The number.
+        value: f64,
+    },
     /// A support of nothing.
     #[error("no component is named; give at least one, as in components = [\"x\"]")]
     NoComponent,
     /// Nothing is left to move.
-    #[error("the supports prescribe every component of every node; nothing is left to simulate")]
+    #[error(
+        "the supports prescribe every component of every node; nothing is left to simulate: take a support away, name fewer of \
+         its components, or refine the mesh"
+    )]
     NoFreedom,
     /// Two supports that disagree.
-    #[error("component {component} of node {node} is already prescribed by support {first} with another motion")]
+    #[error(
+        "component {component} of node {node} is already prescribed by support {first} with another motion; make the two \
+         agree, or take the node out of one of the groups"
+    )]
     ConflictingSupports {
         /// The node.
         node: usize,
@@ -130,8 +171,8 @@ pub enum Cause {
     },
     /// The initial velocity disagrees with a support.
     #[error(
-        "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s at t = 0; \
-         make the two agree"
+        "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s by a support at t = 0; \
+         make the two agree, by the initial velocity or by the velocity of the support"
     )]
     InconsistentStart {
         /// The node.
@@ -144,7 +185,10 @@ pub enum Cause {
         prescribed: f64,
     },
     /// A load on a supported component.
-    #[error("component {component} of the facet of nodes {nodes:?} is both loaded and supported")]
+    #[error(
+        "the {} is loaded along {component}, where a support prescribes its motion; take it out of one of the two groups, or \
+         leave {component} to the load or to the support", facet(.nodes)
+    )]
     LoadedSupport {
         /// x, y or z.
         component: char,
@@ -152,20 +196,47 @@ pub enum Cause {
         nodes: Vec<usize>,
     },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
-    #[error(
-        "the facet of nodes {nodes:?} is supported or loaded and cannot touch a plane too; take it out of the group"
-    )]
+    #[error("the {} is {by} and cannot touch a plane too; take it out of one of the two groups", facet(.nodes))]
     NotFree {
         /// Nodes of the facet.
         nodes: Vec<usize>,
+        /// What holds it.
+        by: HeldBy,
+    },
+    /// The facets that face a plane are all supported or loaded.
+    #[error(
+        "nothing can touch the plane: of what faces it the {} is {by}, and no other part of the boundary is free to touch; \
+         leave free what shall touch", facet(.nodes)
+    )]
+    AllHeld {
+        /// Nodes of the first facet.
+        nodes: Vec<usize>,
+        /// What holds it.
+        by: HeldBy,
+    },
+    /// The nodes that face a plane cannot move towards it.
+    #[error(
+        "nothing can touch the plane: supports prescribe the motion towards it of all nodes that face it, as of node {node}; \
+         leave that component free, or take the plane away"
+    )]
+    HeldNodes {
+        /// The first of them.
+        node: usize,
     },
     /// A plane that nothing can touch.
-    #[error("no free facet {of} faces the plane; does its normal {normal:?} point from the plane to the body?")]
+    #[error(
+        "nothing in group \"{group}\" faces the plane: the group looks along {}, and the plane's normal, from the plane to the body, \
+         is {}; towards the plane look {}", vector(.outward), vector(.normal), named(.facing)
+    )]
     NothingFaces {
-        /// `of group "…"`, or `of the boundary`.
-        of: String,
-        /// The unit normal.
-        normal: Vec<f64>,
+        /// The group that the plane names.
+        group: String,
+        /// Mean outward normal of the group.
+        outward: Box<[f64]>,
+        /// The plane's unit normal.
+        normal: Box<[f64]>,
+        /// Groups that face it.
+        facing: Box<[String]>,
     },
     /// A facet or node that could touch two planes.
     #[error(
@@ -178,17 +249,36 @@ pub enum Cause {
         /// The earlier obstacle, from 1.
         first: usize,
     },
-    /// A node behind the plane.
-    #[error("node {node} starts {depth:.6e} m behind the plane; move the plane or the body apart")]
-    Penetrates {
-        /// The node.
+    /// The body on the wrong side of a plane.
+    #[error(
+        "the whole body lies behind the plane, node {node} by {depth:.6e} m; the normal must point from the plane to the body: \
+         should it be {}?", vector(.reversed)
+    )]
+    Behind {
+        /// The deepest node.
         node: usize,
         /// How far behind (m).
         depth: f64,
+        /// The opposite of the normal that was given.
+        reversed: Vec<f64>,
+    },
+    /// A node behind the plane.
+    #[error(
+        "the plane cuts through the body: node {node} starts {depth:.6e} m behind it; move the plane by more than that against its \
+         normal, to {} or beyond", vector(.clear)
+    )]
+    Penetrates {
+        /// The deepest node.
+        node: usize,
+        /// How far behind (m).
+        depth: f64,
+        /// Where a point of the plane through that node lies (m).
+        clear: Vec<f64>,
     },
     /// A node on the plane that moves into it.
     #[error(
-        "node {node} starts on the plane (gap {gap:.3e} m) and moves into it at {speed} m/s; leave a gap before the impact"
+        "node {node} starts on the plane (gap {} m) and moves into it at {speed} m/s; leave a gap before the impact, of more than a \
+         quarter of this speed times the first time step", short(*.gap)
     )]
     StrikesAtStart {
         /// The node.
@@ -208,14 +298,81 @@ impl Cause {
     }
 }
 
+/// What a group consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GroupOf {
+    /// Facets of a bar.
+    Ends,
+    /// Facets of a plane body.
+    Edges,
+    /// Elements.
+    Elements,
+}
+
+impl GroupOf {
+    /// The facets of a dimension.
+    #[must_use]
+    pub fn facets(dimension: usize) -> Self {
+        if dimension == 1 { Self::Ends } else { Self::Edges }
+    }
+}
+
+impl fmt::Display for GroupOf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ends => "ends",
+            Self::Edges => "edges",
+            Self::Elements => "elements",
+        })
+    }
+}
+
+/// What keeps a facet from touching a plane (the paper's §2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeldBy {
+    /// A support, from 0.
+    Support(usize),
+    /// A traction, from 0.
+    Traction(usize),
+}
+
+impl fmt::Display for HeldBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Support(index) => write!(f, "held by support {}", index + 1),
+            Self::Traction(index) => write!(f, "loaded by traction {}", index + 1),
+        }
+    }
+}
+
 /// Name of a component.
 pub(crate) fn axis(component: usize) -> char {
     ['x', 'y', 'z'][component]
 }
 
-fn list(names: &[String]) -> String {
-    if names.is_empty() {
-        return "no groups".to_string();
+/// A facet by its nodes.
+pub(crate) fn facet(nodes: &[usize]) -> String {
+    match nodes {
+        [node] => format!("end at node {node}"),
+        [first, second] => format!("edge of nodes {first} and {second}"),
+        _ => format!("facet of nodes {nodes:?}"),
     }
+}
+
+/// A vector as users write it: a number for a bar. No sign before a zero.
+fn vector(components: &[f64]) -> String {
+    let shown = components.iter().map(|x| (x + 0.0).to_string()).collect::<Vec<_>>().join(", ");
+    if components.len() == 1 { shown } else { format!("[{shown}]") }
+}
+
+fn quoted(names: &[String]) -> String {
     names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(", ")
+}
+
+fn list(of: GroupOf, names: &[String]) -> String {
+    if names.is_empty() { format!("no groups of {of}") } else { quoted(names) }
+}
+
+fn named(names: &[String]) -> String {
+    if names.is_empty() { "none of the mesh's groups".to_string() } else { quoted(names) }
 }

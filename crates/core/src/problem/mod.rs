@@ -2,11 +2,15 @@
 
 mod boundary;
 mod builder;
+mod doubt;
 mod error;
 mod surface;
 
 pub use builder::{Builder, Initial, Statement};
-pub use error::{Cause, InputError, Place};
+pub(crate) use doubt::short;
+pub use doubt::{Doubt, doubts};
+pub(crate) use error::facet;
+pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub use surface::{ContactFacet, ContactNode, ContactSurface};
 
 use crate::ids::{ElementId, FacetId, NodeId};

@@ -1,6 +1,6 @@
 //! The candidate facets and nodes of contact.
 
-use super::{Cause, InputError};
+use super::{Cause, HeldBy, InputError};
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
 use crate::obstacle::Plane;
@@ -75,11 +75,11 @@ impl<const D: usize> ContactSurface<D> {
         mesh: &Mesh<D, N>,
         index: usize,
         plane: &Plane<D>,
-        free: impl Fn(FacetId) -> bool,
+        held: impl Fn(FacetId) -> Option<HeldBy>,
         prescribed: impl Fn(NodeId) -> [bool; D],
         area: impl Fn(FacetId) -> f64,
     ) -> Result<(), InputError> {
-        let facing = facing(mesh, index, plane, free)?;
+        let facing = facing(mesh, plane, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
         let start = self.nodes.len();
         for node in along_the_boundary(mesh, &facing) {
             if let Some(other) = self.nodes[..start].iter().find(|c| c.node == node) {
@@ -92,6 +92,9 @@ impl<const D: usize> ContactSurface<D> {
             let guided = free && held != [false; D];
             self.nodes.push(ContactNode { node, obstacle: index, undeformed_gap, free, guided });
         }
+        if let Some(first) = self.nodes.get(start).filter(|_| self.nodes[start..].iter().all(|c| !c.free)) {
+            return Err(Cause::HeldNodes { node: first.node.index() }.at("obstacle", Some(index), ""));
+        }
         let position: BTreeMap<NodeId, usize> =
             self.nodes.iter().enumerate().skip(start).map(|(i, c)| (c.node, i)).collect();
         for facet in facing {
@@ -103,29 +106,58 @@ impl<const D: usize> ContactSurface<D> {
     }
 }
 
-/// Free facets, of the plane's group if it names one, that face the plane.
+/// Free facets, of the plane's group if it names one, that face the plane; or what is wrong, with the key.
 fn facing<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    index: usize,
     plane: &Plane<D>,
-    free: impl Fn(FacetId) -> bool,
-) -> Result<Vec<FacetId>, InputError> {
+    held: impl Fn(FacetId) -> Option<HeldBy>,
+) -> Result<Vec<FacetId>, (Cause, &'static str)> {
+    let nodes = |facet: FacetId| mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
     let faces = |&facet: &FacetId| crate::obstacle::dot(&mesh.facet_normal(facet).0, plane.normal()) < FACES;
-    let (found, of): (Vec<_>, _) = if let Some(name) = plane.group() {
-        let group = super::boundary::facet_group(mesh, name).map_err(|c| c.at("obstacle", Some(index), "group"))?;
-        if let Some(facet) = group.iter().find(|&&f| !free(f)) {
-            let nodes = mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
-            return Err(Cause::NotFree { nodes }.at("obstacle", Some(index), "group"));
+    let mut found: Vec<FacetId>;
+    if let Some(name) = plane.group() {
+        let group = super::boundary::facet_group(mesh, name).map_err(|cause| (cause, "group"))?;
+        if let Some((facet, by)) = group.iter().find_map(|&facet| Some((facet, held(facet)?))) {
+            return Err((Cause::NotFree { nodes: nodes(facet), by }, "group"));
         }
-        (group.iter().copied().filter(faces).collect(), format!("of group \"{name}\""))
+        found = group.iter().copied().filter(faces).collect();
+        if found.is_empty() {
+            return Err((nothing_faces(mesh, plane, name, group), "group"));
+        }
     } else {
-        (mesh.boundary().filter(|&f| free(f)).filter(faces).collect(), "of the boundary".to_string())
-    };
-    if found.is_empty() {
-        let cause = Cause::NothingFaces { of, normal: plane.normal().to_vec() };
-        return Err(cause.at("obstacle", Some(index), "normal"));
+        found = mesh.boundary().filter(faces).collect();
+        // A closed boundary looks everywhere: something always faces the plane.
+        let first = found.first().and_then(|&facet| Some((facet, held(facet)?)));
+        found.retain(|&facet| held(facet).is_none());
+        if let (Some((facet, by)), true) = (first, found.is_empty()) {
+            return Err((Cause::AllHeld { nodes: nodes(facet), by }, ""));
+        }
     }
     Ok(found)
+}
+
+/// What a group that does not face a plane looks at, and which groups do face it.
+fn nothing_faces<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    plane: &Plane<D>,
+    name: &str,
+    group: &[FacetId],
+) -> Cause {
+    let mean = |facets: &[FacetId]| {
+        let mut sum = [0.0; D];
+        for &facet in facets {
+            let (normal, area) = mesh.facet_normal(facet);
+            (0..D).for_each(|c| sum[c] += area * normal[c]);
+        }
+        let length = crate::obstacle::dot(&sum, &sum).sqrt();
+        // A few digits are enough to be shown.
+        sum.map(|s| if length > 0.0 { (1e3 * s / length).round() / 1e3 } else { 0.0 })
+    };
+    let outward = mean(group);
+    let looks = |facets: &[FacetId]| crate::obstacle::dot(&mean(facets), plane.normal()) < FACES;
+    let facing = mesh.facet_groups().iter().filter(|(_, facets)| looks(facets)).map(|(name, _)| name.clone()).collect();
+    let normal = plane.normal().map(|n| (1e3 * n).round() / 1e3);
+    Cause::NothingFaces { group: name.to_string(), outward: Box::new(outward), normal: Box::new(normal), facing }
 }
 
 /// Nodes of the facets, piece by piece along the boundary. A piece is never closed: not all

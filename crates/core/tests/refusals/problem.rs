@@ -4,7 +4,7 @@ use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Tractio
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
 use percute_core::obstacle::Plane;
-use percute_core::problem::{Builder, Cause, Initial, InputError, Place, TriangleProblem};
+use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, TriangleProblem};
 
 /// A unit square of two triangles, 0-1-2 below the diagonal and 0-2-3 above it, with its sides, an
 /// empty group, the groups of elements `lower` and `all`, and no material.
@@ -73,9 +73,12 @@ fn parts_that_were_refused_before() {
 
 #[test]
 fn unknown_and_empty_groups() {
-    let unknown = Cause::UnknownGroup { name: "roof".to_string(), known: known() };
-    let empty = Cause::EmptyGroup { name: "nothing".to_string() };
-    for (name, cause) in [("roof", unknown), ("nothing", empty)] {
+    let (edges, roof) = (GroupOf::Edges, "roof".to_string());
+    let unknown = Cause::UnknownGroup { name: roof, of: edges, known: known() };
+    let empty = Cause::EmptyGroup { name: "nothing".to_string(), of: edges };
+    let lower = "lower".to_string();
+    let other = Cause::OtherGroup { name: lower, found: GroupOf::Elements, of: edges, known: known() };
+    for (name, cause) in [("roof", unknown), ("nothing", empty), ("lower", other)] {
         let held = solid().support(support("left", [true, false], None)).support(support(name, [true, true], None));
         assert_eq!(refused(held), (place("support", Some(1), "group"), cause.clone()));
         assert_eq!(
@@ -84,8 +87,8 @@ fn unknown_and_empty_groups() {
         );
         assert_eq!(refused(solid().obstacle(floor(-1.0, Some(name)))), (place("obstacle", Some(0), "group"), cause));
     }
-    let elements =
-        Cause::UnknownGroup { name: "core".to_string(), known: vec!["all".to_string(), "lower".to_string()] };
+    let (name, known) = ("core".to_string(), vec!["all".to_string(), "lower".to_string()]);
+    let elements = Cause::UnknownGroup { name, of: GroupOf::Elements, known };
     assert_eq!(
         refused(square().material_of("core", elastic())),
         (place("material", Some(0), "group"), elements.clone())
@@ -116,18 +119,27 @@ fn initial_fields() {
 
 #[test]
 fn loads_that_are_not_finite() {
-    let nan = [f64::NAN, 0.0];
+    let endless = [f64::INFINITY, 0.0];
     let at = |builder| refused(builder);
     assert_eq!(
-        at(solid().support(support("left", [true, false], Some(nan)))),
-        (place("support", Some(0), "velocity"), Cause::NotFinite)
+        at(solid().support(support("left", [true, false], Some(endless)))),
+        (place("support", Some(0), "velocity"), Cause::NotFinite { value: f64::INFINITY })
     );
-    assert_eq!(at(solid().traction(traction("top", nan))), (place("traction", Some(0), "value"), Cause::NotFinite));
+    assert_eq!(
+        at(solid().traction(traction("top", endless))),
+        (place("traction", Some(0), "value"), Cause::NotFinite { value: f64::INFINITY })
+    );
     let steep =
         Traction { profile: Profile { value: 1.0, gradient: [f64::INFINITY, 0.0] }, ..traction("right", [1.0, 0.0]) };
-    assert_eq!(at(solid().traction(steep)), (place("traction", Some(0), "profile"), Cause::NotFinite));
-    let force = BodyForce { group: None, value: Table::constant(nan) };
-    assert_eq!(at(solid().body_force(force)), (place("body_force", Some(0), "value"), Cause::NotFinite));
+    assert_eq!(
+        at(solid().traction(steep)),
+        (place("traction", Some(0), "profile"), Cause::NotFinite { value: f64::INFINITY })
+    );
+    let force = BodyForce { group: None, value: Table::constant(endless) };
+    assert_eq!(
+        at(solid().body_force(force)),
+        (place("body_force", Some(0), "value"), Cause::NotFinite { value: f64::INFINITY })
+    );
 }
 
 /// Bottom and right share node 1.
@@ -167,22 +179,29 @@ fn loads_on_supports() {
 
 #[test]
 fn contact_on_facets_that_are_not_free() {
-    let cause = Cause::NotFree { nodes: vec![0, 1] };
+    let cause = |by| Cause::NotFree { nodes: vec![0, 1], by };
     let at = place("obstacle", Some(0), "group");
     let held = solid().support(support("bottom", [true, false], None)).obstacle(floor(-1.0, Some("bottom")));
-    assert_eq!(refused(held), (at, cause.clone()));
+    assert_eq!(refused(held), (at, cause(HeldBy::Support(0))));
     let loaded = solid().traction(traction("bottom", [1.0, 0.0])).obstacle(floor(-1.0, Some("bottom")));
-    assert_eq!(refused(loaded), (at, cause));
+    assert_eq!(refused(loaded), (at, cause(HeldBy::Traction(0))));
 }
 
 #[test]
 fn planes_that_nothing_faces() {
-    let normal = vec![0.0, 1.0];
-    let away = Cause::NothingFaces { of: "of group \"top\"".to_string(), normal: normal.clone() };
-    assert_eq!(refused(solid().obstacle(floor(-1.0, Some("top")))), (place("obstacle", Some(0), "normal"), away));
-    let taken = Cause::NothingFaces { of: "of the boundary".to_string(), normal };
+    let away = Cause::NothingFaces {
+        group: "top".to_string(),
+        outward: Box::new([0.0, 1.0]),
+        normal: Box::new([0.0, 1.0]),
+        facing: Box::new(["bottom".to_string()]),
+    };
+    assert_eq!(refused(solid().obstacle(floor(-1.0, Some("top")))), (place("obstacle", Some(0), "group"), away));
+    let taken = Cause::AllHeld { nodes: vec![0, 1], by: HeldBy::Support(0) };
     let held = solid().support(support("bottom", [true, true], None)).obstacle(floor(-1.0, None));
-    assert_eq!(refused(held), (place("obstacle", Some(0), "normal"), taken));
+    assert_eq!(refused(held), (place("obstacle", Some(0), ""), taken));
+    let sides = ["left", "right"].map(|side| support(side, [false, true], None));
+    let guided = sides.into_iter().fold(solid(), |solid, side| solid.support(side)).obstacle(floor(-1.0, None));
+    assert_eq!(refused(guided), (place("obstacle", Some(0), ""), Cause::HeldNodes { node: 0 }));
 }
 
 /// Bottom and left share node 0.
@@ -196,10 +215,19 @@ fn nodes_between_two_planes() {
 #[test]
 fn starts_behind_or_into_the_plane() {
     let inside = solid().obstacle(floor(0.25, None));
-    assert_eq!(refused(inside), (place("obstacle", Some(0), "point"), Cause::Penetrates { node: 0, depth: 0.25 }));
+    assert_eq!(
+        refused(inside),
+        (place("obstacle", Some(0), "point"), Cause::Penetrates { node: 0, depth: 0.25, clear: vec![0.0, 0.0] })
+    );
     // A displacement counts: the body lies above the plane, but starts pushed into it.
     let pushed = solid().obstacle(floor(-0.5, None)).initial_displacement(Initial::Uniform([0.0, -0.75]));
-    assert_eq!(refused(pushed).1, Cause::Penetrates { node: 0, depth: 0.25 });
+    assert_eq!(refused(pushed).1, Cause::Penetrates { node: 0, depth: 0.25, clear: vec![0.0, -0.75] });
+    // All of it behind: the normal is the wrong way round. Where it rests on the plane it is not behind.
+    let reversed = |height| solid().obstacle(Plane::new([0.0, height], [0.0, -1.0], 0.0, None).unwrap());
+    let behind = Cause::Behind { node: 2, depth: 1.5, reversed: vec![-0.0, 1.0] };
+    assert_eq!(refused(reversed(-0.5)), (place("obstacle", Some(0), "normal"), behind));
+    assert!(matches!(refused(reversed(0.0)).1, Cause::Behind { depth: 1.0, .. }));
+    assert!(reversed(1.0).build().is_ok());
     let blow = solid().obstacle(floor(0.0, None)).initial_velocity(Initial::Uniform([1.0, -3.0]));
     let cause = Cause::StrikesAtStart { node: 0, gap: 0.0, speed: 3.0 };
     assert_eq!(refused(blow), (place("obstacle", Some(0), "point"), cause));

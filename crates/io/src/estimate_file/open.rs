@@ -5,7 +5,7 @@ use crate::error::{FileCause, FileError};
 use crate::history::{case, provenance};
 use crate::kind::Kind;
 use crate::mesh;
-use crate::read::{Opened, Part, reading};
+use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_estimator::{Parts, Sample};
@@ -96,8 +96,20 @@ fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
         fields: !instants.is_empty() && has_admissible(&vtk)?,
         instants,
         over_time: over_time(&ours.group("over_time")?)?,
-        by_element: by_element.floats()?,
+        by_element: finite(&by_element)?,
     })
+}
+
+/// Numbers of the elements, none of which may be NaN or infinite.
+fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
+    let values = data.floats()?;
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(values),
+        Some(element) => {
+            let detail = format!("element {element} has {}; all values must be finite", values[element]);
+            Err(FileCause::Value { name: data.name.clone(), detail })
+        }
+    }
 }
 
 /// How large all is.

@@ -28,7 +28,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("50 2 9 4", "90 2 9 4", &["element 90 is given twice"], "90 2 9"),
         ("50 2 9 4", "0 2 9 4", &["the tag of an element is 0"], "0 2"),
         ("\n9\n6\n", "\n9\n4\n", &["node 4 is given twice"], "4"),
-        ("50 2 9 4", "50 2 4 4", &["element 50 is degenerate: nodes [2, 4, 4]", "tags in Gmsh"], "50"),
+        ("50 2 9 4", "50 2 4 4", &["element 50 is degenerate: its nodes [2, 4, 4]", "tags in Gmsh"], "50"),
         ("50 2 9 4", "50 2 30 4", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
         ("0 1 0\n7 7 7", "0 1 0.5\n7 7 7", &["not in a plane z = const", "node 9 has z = 0.5 m"], ""),
         ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["`inf` stands where a coordinate of a node"], "0 1 inf"),
@@ -81,7 +81,7 @@ fn bodies_that_only_seem_to_touch_are_told_to_be_joined() {
         .replace("1 5 2 30\n2 1 0 5\n2\n", "1 6 2 30\n2 1 0 6\n7\n2\n")
         .replace("\n0 0 0\n1 0 0", "\n0 0 0\n0 0 0\n1 0 0");
     let (message, _) = said(&text.replace("50 2 9 4", "50 7 9 4"));
-    assert!(message.contains("nodes 2 and 7 are 0") && message.contains("Coherence;"), "{message}");
+    assert!(message.contains("nodes 2 and 7 lie at one place") && message.contains("Coherence;"), "{message}");
 }
 
 #[test]

@@ -1,0 +1,70 @@
+//! What is possible, but more likely a slip: a mixture of units, a body that never touches, a run that is too short.
+
+mod motion;
+mod time;
+mod units;
+
+use super::{Place, Problem};
+use crate::time::TimeGrid;
+use std::fmt;
+
+/// Something that may be meant, but more likely is not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// Where.
+    pub place: Place,
+    /// Its name, for programs.
+    pub name: &'static str,
+    /// A few words.
+    pub brief: String,
+    /// What is the matter, with values and units, and what to do.
+    pub message: String,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.message)
+    }
+}
+
+/// Everything that is doubtful about a run, known before any step of it.
+#[must_use]
+pub fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
+    let mut all = units::doubts(problem);
+    // What follows from the speed of waves says nothing where that is in doubt.
+    let mixed = all.iter().any(|doubt| doubt.name == "units" && ["mesh", "material"].contains(&doubt.place.table));
+    let others = motion::doubts(problem, times).into_iter().chain(time::doubts(problem, times));
+    all.extend(others.filter(|doubt| !mixed || !["supersonic", "single_step"].contains(&doubt.name)));
+    all
+}
+
+/// A doubt about a key.
+fn doubt(place: Place, name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Doubt {
+    Doubt { place, name, brief: brief.into(), message: message.into() }
+}
+
+/// The place of a key in a table of which there may be several.
+fn at(table: &'static str, index: Option<usize>, key: &'static str) -> Place {
+    Place { table, index, key }
+}
+
+/// A number in at most four digits.
+pub(crate) fn short(x: f64) -> String {
+    let rounded = format!("{x:.3e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e5).contains(&f64::abs(rounded)) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_short() {
+        let shown = [0.0, 1.0 / 3.0, 5091.75, 7.85e-9, 69_999_999_999.0, -400.0, f64::INFINITY].map(short);
+        assert_eq!(shown, ["0", "0.3333", "5092", "7.85e-9", "7e10", "-400", "inf"]);
+    }
+}

@@ -1,0 +1,193 @@
+//! A body that cannot touch before the end, does not move at all, or moves faster than waves.
+
+use super::{Doubt, at, doubt, short};
+use crate::obstacle::dot;
+use crate::problem::Problem;
+use crate::time::TimeGrid;
+
+/// Values that differ by less, relatively, are the same but for rounding.
+const SAME: f64 = 1e-9;
+/// A plane so many times the size of the body away is more likely one in other units.
+const FAR: f64 = 10.0;
+
+pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
+    let mut all: Vec<Doubt> = [initial_speed(problem), at_rest(problem)].into_iter().flatten().collect();
+    all.extend(support_speed(problem));
+    if all.iter().all(|doubt| doubt.name != "at_rest") {
+        all.extend(no_touch(problem, times));
+    }
+    all
+}
+
+/// The slowest wave of all materials (m/s).
+fn wave_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+    problem.materials().iter().map(|material| material.wave_speed()).fold(f64::INFINITY, f64::min)
+}
+
+fn too_fast(speed: f64, waves: f64) -> Option<(String, String)> {
+    let (shown, waves) = (speed > waves).then(|| (short(speed), short(waves)))?;
+    let millimetres = short(1e-3 * speed);
+    let message = format!(
+        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), where small strains end; speeds are in m/s: if it \
+         is in mm/s, write {millimetres}"
+    );
+    Some((format!("a speed of {shown} m/s, above that of waves"), message))
+}
+
+fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+    let speed = |v: &[f64; D]| dot(v, v).sqrt();
+    let largest = problem.initial_velocity().iter().map(speed).fold(0.0, f64::max);
+    let (brief, message) = too_fast(largest, wave_speed(problem))?;
+    Some(doubt(at("initial", None, "velocity"), "supersonic", brief, message))
+}
+
+fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+    let waves = wave_speed(problem);
+    problem.statement().supports.iter().enumerate().find_map(|(index, support)| {
+        let largest = support.velocity.as_ref()?.value().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let (brief, message) = too_fast(largest, waves)?;
+        Some(doubt(at("support", Some(index), "velocity"), "supersonic", brief, message))
+    })
+}
+
+/// Whether nothing will ever move: no velocity, no load, no moving support, and no strain that is released.
+fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+    let still = |field: &[[f64; D]]| field.iter().flatten().all(|x| *x == 0.0);
+    let moving = problem.motions().iter().any(|motion| motion.acting_components()[0]);
+    if problem.is_loaded() || moving || !still(problem.initial_velocity()) || !still(problem.initial_displacement()) {
+        return None;
+    }
+    let message = "nothing moves: there is no initial velocity, no load and no support that moves; give the body a velocity \
+                   (m/s), or say what drives it";
+    Some(doubt(at("initial", None, "velocity"), "at_rest", "nothing moves", message))
+}
+
+/// How a body moves that is not strained until it touches: velocity (m/s) and acceleration (m/s²).
+struct Flight<const D: usize> {
+    velocity: [f64; D],
+    acceleration: [f64; D],
+}
+
+/// The flight of a body that nothing strains; `None` if that cannot be told beforehand.
+fn flight<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Flight<D>> {
+    let velocity = uniform(problem.initial_velocity())?;
+    uniform(problem.initial_displacement())?;
+    let steady = |motion: &crate::load::Table<1>| motion.value().iter().all(|v| v == &motion.value()[0]);
+    if !problem.facet_loads().is_empty() || !problem.motions().iter().all(steady) {
+        return None;
+    }
+    if problem.body_loads().is_empty() {
+        return Some(Flight { velocity, acceleration: [0.0; D] });
+    }
+    if !problem.prescribed().is_empty() || problem.body_loads().iter().any(|load| load.value.value().len() > 1) {
+        return None;
+    }
+    let mut acceleration = vec![[0.0; D]; problem.mesh().node_count()];
+    for load in problem.body_loads() {
+        let force = load.value.at(0.0);
+        for &(node, volume) in &load.nodal_volume {
+            for c in 0..D {
+                acceleration[node.index()][c] += force[c] * volume / problem.mass()[node.index()];
+            }
+        }
+    }
+    Some(Flight { velocity, acceleration: uniform(&acceleration)? })
+}
+
+/// The value of a field that is the same everywhere.
+fn uniform<const D: usize>(field: &[[f64; D]]) -> Option<[f64; D]> {
+    let first = *field.first()?;
+    let largest = field.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let same = |value: &[f64; D]| value.iter().zip(&first).all(|(a, b)| (a - b).abs() <= SAME * largest);
+    field.iter().all(same).then_some(first)
+}
+
+/// The nearest candidate node of a plane, and when it will touch.
+struct Approach {
+    obstacle: usize,
+    /// The smallest gap (m).
+    gap: f64,
+    /// Speed towards the plane (m/s).
+    speed: f64,
+    /// When the gap closes (s), infinite if it never does.
+    time: f64,
+}
+
+/// A body in flight that reaches no plane before the end, or whose plane is very far. Once it touches one, nobody knows
+/// where it goes.
+fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<Doubt> {
+    let flight = flight(problem)?;
+    let approach = |(obstacle, plane): (usize, &crate::obstacle::Plane<D>)| {
+        let surface = problem.surface();
+        let candidates = surface.nodes().iter().enumerate().filter(|(_, node)| node.obstacle == obstacle && node.free);
+        let displacement = problem.initial_displacement();
+        let gap = |(at, node): (usize, &crate::problem::ContactNode)| {
+            surface.gap(at, &displacement[node.node.index()], problem.obstacles())
+        };
+        let gap = candidates.map(gap).fold(f64::INFINITY, f64::min).max(0.0);
+        let (speed, push) = (-dot(&flight.velocity, plane.normal()), -dot(&flight.acceleration, plane.normal()));
+        Approach { obstacle, gap, speed, time: closing_time(gap, speed, push) }
+    };
+    let first = problem.obstacles().iter().enumerate().map(approach).min_by(|a, b| a.time.total_cmp(&b.time))?;
+    if first.time > times.end() { never(&first, times.end()) } else { far(&first, problem.mesh().size()) }
+}
+
+/// When gap − speed t − push t²/2 becomes 0 (s).
+fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
+    let root = speed + (speed * speed + 2.0 * push * gap).sqrt();
+    // NaN, where there is no root, is not above 0 either.
+    if root > 0.0 { 2.0 * gap / root } else { f64::INFINITY }
+}
+
+fn never(first: &Approach, end: f64) -> Option<Doubt> {
+    let Approach { obstacle, gap, speed, time } = *first;
+    let (gap, towards, end) = (short(gap), short(speed), short(end));
+    if time.is_finite() {
+        let when = short(time);
+        let message = format!(
+            "the gap of {gap} m is closed after {when} s only (the body starts at {towards} m/s towards the plane), but the run \
+             ends at {end} s: run to a later `end`, start nearer, or check the units of gap and velocity"
+        );
+        let brief = format!("no contact before {when} s");
+        return Some(doubt(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
+    }
+    let away = short(-speed);
+    let message = if speed < 0.0 {
+        format!("moves the body away from the plane at {away} m/s, so that it never touches: is its sign as meant?")
+    } else {
+        format!(
+            "moves the body no nearer to the plane, which is {gap} m away: it never touches; give it a velocity towards it"
+        )
+    };
+    Some(doubt(at("initial", None, "velocity"), "never_touches", "the body never touches the plane", message))
+}
+
+fn far(first: &Approach, size: f64) -> Option<Doubt> {
+    let Approach { obstacle, gap, time, .. } = *first;
+    if gap <= FAR * size {
+        return None;
+    }
+    let (gap, size, time) = (short(gap), short(size), short(time));
+    let message = format!(
+        "the plane is {gap} m away from a body of {size} m, which takes {time} s to reach it: is the point in metres? Start \
+         nearer to save the steps before contact"
+    );
+    Some(doubt(at("obstacle", Some(obstacle), "point"), "far_plane", format!("a gap of {gap} m"), message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closing_time;
+
+    #[test]
+    fn a_gap_closes_by_speed_and_by_push() {
+        assert_eq!(closing_time(6.0, 3.0, 0.0), 2.0);
+        assert_eq!(closing_time(8.0, 0.0, 4.0), 2.0);
+        // Up first, and back: 2 + 2 t − 2 t² = 0 at (1 + √5)/2.
+        assert!((closing_time(2.0, -2.0, 4.0) - 0.5 * (1.0 + 5.0_f64.sqrt())).abs() < 1e-15);
+        assert_eq!(closing_time(1.0, -3.0, 0.0), f64::INFINITY);
+        assert_eq!(closing_time(1.0, 0.0, 0.0), f64::INFINITY);
+        // Thrown up to the plane, and back before it gets there.
+        assert_eq!(closing_time(1.0, 1.0, -4.0), f64::INFINITY);
+    }
+}

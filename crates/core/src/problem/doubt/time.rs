@@ -1,0 +1,89 @@
+//! Runs of one step or of millions, and tables that do not change while they last.
+
+use super::{Doubt, at, doubt, short};
+use crate::load::Table;
+use crate::problem::Problem;
+use crate::time::TimeGrid;
+
+/// More steps than this are more likely a slip in the end or in a unit.
+const MANY_STEPS: usize = 1_000_000;
+/// A table that does less of all its change than this before the end is more likely in other units.
+const UNUSED: f64 = 0.01;
+/// If it is so many times as long as the run: one that is only cut short is meant.
+const LONGER: f64 = 100.0;
+
+pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
+    let mut all: Vec<Doubt> = steps(times.step_count(), times.end()).into_iter().collect();
+    let stated = problem.statement();
+    let supports = stated
+        .supports
+        .iter()
+        .enumerate()
+        .filter_map(|(i, s)| Some((at("support", Some(i), "velocity"), s.velocity.as_ref()?)));
+    let tractions = stated.tractions.iter().enumerate().map(|(i, t)| (at("traction", Some(i), "time"), &t.value));
+    let forces = stated.body_forces.iter().enumerate().map(|(i, f)| (at("body_force", Some(i), "time"), &f.value));
+    for (place, table) in supports.chain(tractions).chain(forces) {
+        all.extend(unused(table, times.end()).map(|message| {
+            doubt(place, "unused_table", format!("{}: hardly changes before `end`", place.table), message)
+        }));
+    }
+    all
+}
+
+fn steps(count: usize, end: f64) -> Option<Doubt> {
+    let place = at("time", None, "end");
+    let shown = short(end);
+    if count == 1 {
+        let message = format!(
+            "is {shown} s, no more than one time step: nothing can happen in it; is it in seconds, and are lengths in metres?"
+        );
+        return Some(doubt(place, "single_step", "a run of one step", message));
+    }
+    if count <= MANY_STEPS {
+        return None;
+    }
+    let message = format!("is {shown} s, which takes {count} steps: is it as meant, and in seconds?");
+    Some(doubt(place, "many_steps", format!("{count} steps"), message))
+}
+
+/// What is the matter with a table that changes after the end only.
+fn unused<const C: usize>(table: &Table<C>, end: f64) -> Option<String> {
+    let change = |from: &[f64; C], to: &[f64; C]| from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let start = table.at(0.0);
+    let largest = table.value().iter().map(|value| change(&start, value)).fold(0.0, f64::max);
+    let before = table.time().iter().filter(|t| (0.0..end).contains(*t)).chain([&end]);
+    let used = before.map(|&t| change(&start, &table.at(t))).fold(0.0, f64::max);
+    let last = table.time().last().copied().unwrap_or(0.0);
+    if used >= UNUSED * largest || last <= LONGER * end {
+        return None;
+    }
+    Some(format!(
+        "its `time` runs to {} s, the run to {} s only, before which the table hardly changes: is `time` in seconds?",
+        short(last),
+        short(end)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_one_step_and_of_more_than_a_million_are_doubted() {
+        let name = |count| steps(count, 1.0).map(|doubt| doubt.name);
+        assert_eq!([1, 2, MANY_STEPS, MANY_STEPS + 1].map(name), [Some("single_step"), None, None, Some("many_steps")]);
+    }
+
+    #[test]
+    fn tables_that_change_in_time_are_not_doubted() {
+        let ramp = Table::new(vec![0.0, 10.0], vec![[0.0], [3.0]]).unwrap();
+        assert!(unused(&ramp, 0.05).is_some_and(|message| message.contains("10 s")));
+        assert_eq!(unused(&ramp, 0.11), None);
+        let late = Table::new(vec![0.0, 10.0, 11.0], vec![[0.0], [0.0], [3.0]]).unwrap();
+        assert_eq!(unused(&late, 1.0), None);
+        assert_eq!(unused(&Table::constant([3.0]), 1e-9), None);
+        // A pulse before the end counts, though it comes back to where it was.
+        let pulse = Table::new(vec![0.0, 1.0, 2.0, 999.0], vec![[0.0], [1.0], [0.0], [1.0]]).unwrap();
+        assert_eq!(unused(&pulse, 3.0), None);
+    }
+}

@@ -1,0 +1,176 @@
+//! Numbers that look like those of other units.
+
+use super::{Doubt, at, doubt, short};
+use crate::load::BodyForce;
+use crate::material::{Elastic, Hypothesis};
+use crate::problem::Problem;
+
+/// Less dense than any solid but foams (kg/m³).
+const LIGHT: f64 = 10.0;
+/// Denser than osmium, 22 600 kg/m³.
+const HEAVY: f64 = 25e3;
+/// Densities of most solids (kg/m³).
+const SOLIDS: [f64; 2] = [100.0, 25e3];
+/// Softer than rubber (Pa).
+const SOFT: f64 = 1e6;
+/// Stiffer than diamond, 1.2e12 Pa.
+const STIFF: f64 = 1.3e12;
+/// Waves in a jelly are slower (m/s).
+const SLOW: f64 = 10.0;
+/// Waves in diamond run at 18 000 m/s.
+const FAST: f64 = 2e4;
+/// Larger than most bodies that strike a plane (m).
+const LARGE: f64 = 20.0;
+/// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one in
+/// other units.
+const WIDE: f64 = 10.0;
+const THICK: f64 = 100.0;
+/// A coefficient of friction above this is more likely a percentage.
+const ROUGH: f64 = 2.0;
+/// From here on triangles in plane strain are far too stiff.
+const INCOMPRESSIBLE: f64 = 0.49;
+
+pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Doubt> {
+    let size = problem.mesh().size();
+    // The reader of mesh files has said so, with the key that mends it.
+    let noticed = problem.mesh().notices().iter().any(|notice| notice.name == "large_mesh");
+    let mut all: Vec<Doubt> = size_of_body(size).filter(|_| !noticed).into_iter().collect();
+    for (index, material) in problem.materials().iter().enumerate() {
+        all.extend([density(material, index), stiffness(material, size, index)].into_iter().flatten().take(1));
+        all.extend(extent(material, size, index));
+        all.extend(locking(material, index));
+    }
+    let lightest = problem.materials().iter().map(|material| material.density()).fold(f64::INFINITY, f64::min);
+    let forces = problem.statement().body_forces.iter().enumerate();
+    all.extend(forces.filter_map(|(index, force)| weight(force, lightest, index)));
+    all.extend(problem.obstacles().iter().enumerate().filter_map(|(index, plane)| friction(plane.friction(), index)));
+    all
+}
+
+fn units(table: &'static str, index: Option<usize>, key: &'static str, message: String) -> Option<Doubt> {
+    let brief = match key {
+        "" => format!("{table}: did you mix units?"),
+        key => format!("{table}, {key}: did you mix units?"),
+    };
+    Some(doubt(at(table, index, key), "units", brief, message))
+}
+
+fn size_of_body(size: f64) -> Option<Doubt> {
+    if size <= LARGE {
+        return None;
+    }
+    let (shown, metres) = (short(size), short(1e-3 * size));
+    let message =
+        format!("the body is {shown} m large; lengths are in metres: if these are millimetres, make it {metres} m");
+    units("mesh", None, "", message)
+}
+
+fn density(material: &Elastic, index: usize) -> Option<Doubt> {
+    let density = material.density();
+    // A modulus of 1 and a density of 1 are normalised on purpose.
+    if (density == 1.0 && material.young() == 1.0) || (LIGHT..=HEAVY).contains(&density) {
+        return None;
+    }
+    let shown = short(density);
+    let looks = |(unit, factor): &(&str, f64)| {
+        let meant = factor * density;
+        let likely = (SOLIDS[0]..=SOLIDS[1]).contains(&meant);
+        likely.then(|| format!("is {shown} kg/m³, no density of a solid; if it is in {unit}, write {}", short(meant)))
+    };
+    let others = [("g/cm³", 1e3), ("kg/mm³", 1e9), ("t/mm³", 1e12)];
+    let message = others.iter().find_map(looks).unwrap_or_else(|| {
+        format!("is {shown} kg/m³; solids have between {} and {}: is it in kg/m³?", short(SOLIDS[0]), short(SOLIDS[1]))
+    });
+    units("material", Some(index), "density", message)
+}
+
+fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
+    // Along a bar: waves in a plane body that hardly changes its volume are as fast as you like.
+    let (young, speed) = (material.young(), (material.young() / material.density()).sqrt());
+    if young == 1.0 && material.density() == 1.0 {
+        return None;
+    }
+    let (shown, waves) = (short(young), short(speed));
+    let message = if young < SOFT && (size > 1.0 || speed < SLOW) {
+        let (unit, factor) = if young < 1300.0 { ("GPa", 1e9) } else { ("MPa", 1e6) };
+        let meant = short(factor * young);
+        format!(
+            "is {shown} Pa, softer than rubber, in a body of {} m (waves run at {waves} m/s): did you mix units? If it is in \
+             {unit}, write {meant}",
+            short(size)
+        )
+    } else if young > STIFF {
+        format!("is {shown} Pa, stiffer than diamond (1.2e12 Pa): is it in Pa?")
+    } else if speed > FAST {
+        let density = short(material.density());
+        format!(
+            "is {shown} Pa; with a density of {density} kg/m³ waves run at {waves} m/s, faster than in any material (diamond: \
+             18000 m/s): did you mix units? They are Pa and kg/m³"
+        )
+    } else {
+        return None;
+    };
+    units("material", Some(index), "young", message)
+}
+
+fn extent(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
+    let (extent, length) = (material.extent(), short(size));
+    let shown = short(extent);
+    if material.hypothesis() == Hypothesis::Bar {
+        if extent.sqrt() <= WIDE * size {
+            return None;
+        }
+        let metres = short(1e-6 * extent);
+        let message = format!(
+            "is {shown} m², far wider than the bar's length of {length} m; sections are in m²: if it is in mm², write {metres}"
+        );
+        return units("material", Some(index), "section", message);
+    }
+    // 1 is the default, for energies per metre.
+    if extent <= THICK * size || extent == 1.0 {
+        return None;
+    }
+    let metres = short(1e-3 * extent);
+    let message = format!("is {shown} m, far more than the body's size of {length} m; if it is in mm, write {metres}");
+    units("material", Some(index), "thickness", message)
+}
+
+fn locking(material: &Elastic, index: usize) -> Option<Doubt> {
+    let poisson = material.poisson();
+    if material.hypothesis() != Hypothesis::PlaneStrain || poisson <= INCOMPRESSIBLE {
+        return None;
+    }
+    let message = format!(
+        "is {poisson}: linear triangles in plane strain lock when the material hardly changes its volume; up to \
+         {INCOMPRESSIBLE} results can be trusted"
+    );
+    Some(doubt(at("material", Some(index), "poisson"), "locking", "material, poisson: triangles will lock", message))
+}
+
+/// Accelerations of gravity in the two digits in which they are written (m/s²).
+const GRAVITY: [f64; 2] = [9.75, 10.0];
+
+fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> Option<Doubt> {
+    let largest = force.value.value().iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
+    // In what is lighter than water by as much, this may be a force.
+    if !(GRAVITY[0]..=GRAVITY[1]).contains(&largest) || density < 10.0 * GRAVITY[1] {
+        return None;
+    }
+    let (shown, weight) = (short(largest), short(density * largest));
+    let message = format!(
+        "reaches {shown} N/m³, the number of g in m/s²; a weight is density times g, here {weight} N/m³: did you leave out the density?"
+    );
+    units("body_force", Some(index), "value", message)
+}
+
+fn friction(friction: f64, index: usize) -> Option<Doubt> {
+    if friction <= ROUGH {
+        return None;
+    }
+    let message = format!(
+        "is {}, far above that of any materials; it is a coefficient: if it is in percent, write {}",
+        short(friction),
+        short(0.01 * friction)
+    );
+    Some(doubt(at("obstacle", Some(index), "friction"), "friction", "friction above 2: in percent?", message))
+}
