@@ -75,6 +75,9 @@ pub enum FileCause {
     /// Another file has taken its place.
     #[error("the file was replaced since it was opened; open it again")]
     Replaced,
+    /// No bytes at all.
+    #[error("the file is empty, neither a history nor an estimate; make it anew")]
+    Empty,
     /// No HDF5 file.
     #[error("this is no HDF5 file, and so neither a history nor an estimate; a case is to be run first")]
     NotHdf5,

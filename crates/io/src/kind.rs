@@ -37,7 +37,7 @@ pub fn kind(path: impl AsRef<Path>) -> Result<Kind, FileError> {
     let path = path.as_ref();
     let found = Opened::new(path).and_then(|opened| opened.kind());
     match found {
-        Err(FileCause::NotHdf5) => Ok(Kind::Other),
+        Err(FileCause::NotHdf5 | FileCause::Empty) => Ok(Kind::Other),
         Err(FileCause::Foreign { .. }) => Ok(Kind::OtherHdf5),
         found => found.map_err(|cause| cause.at(path)),
     }

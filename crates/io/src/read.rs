@@ -95,7 +95,7 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     }
     let held = Held::shared(File::open(path).map_err(refused)?)?;
     if found.len() == 0 {
-        return Err(FileCause::Damaged { detail: "it is empty".to_string() });
+        return Err(FileCause::Empty);
     }
     if begins_as_hdf5(held.file()).map_err(refused)? { Ok((held, found.len())) } else { Err(FileCause::NotHdf5) }
 }

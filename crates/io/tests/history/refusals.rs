@@ -209,7 +209,7 @@ fn indices_and_flags_out_of_range() {
     assert_says(&said, &["`percute/facet_groups/bottom`: entry 0 is 99"]);
     // Inside the mesh: nodes 6 and 7 are joined by an edge that two elements share.
     let said = spoilt(|f| replace(f, "percute/facet_groups/bottom", &[1, 2], &[6_i64, 7]));
-    assert_says(&said, &["the mesh: group \"bottom\" names the facet of nodes [6, 7], which is not on the boundary"]);
+    assert_says(&said, &["the mesh: group \"bottom\" names the edge of nodes 6 and 7, which is not on the boundary"]);
 }
 
 #[test]
