@@ -25,8 +25,13 @@ problem = pc.Problem(
 critical = problem.critical_time_step
 history = pc.simulate(problem, end=8 * critical, courant=0.9)
 sent = []
+under_way = threading.Event()
+def note(progress):
+    if progress.done > 1:
+        under_way.set()
 def interrupt():
-    time.sleep(0.5)
+    # What tells no progress is under way after half a second.
+    under_way.wait({patience})
     sent.append(time.monotonic())
     os.kill(os.getpid(), signal.SIGINT)
 threading.Thread(target=interrupt).start()
@@ -41,11 +46,11 @@ else:
 {then}
 """
 THEN = "print('steps', len(done), done.complete, done.displacement.shape == (len(done), len(problem.mesh.points), 2))"
-LONG = "pc.simulate(problem, end=300 * critical, courant=0.9{store})"
+LONG = "pc.simulate(problem, end=300 * critical, courant=0.9, progress=note{store})"
 
 
 def interrupted(work: str, then: str = THEN) -> list[str]:
-    program = INTERRUPTED.format(work=work, then=then)
+    program = INTERRUPTED.format(work=work, then=then, patience=60.0 if "note" in work else 0.5)
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
     late, *rest = done.stdout.split("\n")
