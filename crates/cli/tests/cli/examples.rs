@@ -116,7 +116,7 @@ fn as_far_from_the_truth_as_measured() {
     for Example(name, _, effectivity) in EXAMPLES {
         let file = folder().join(format!("{name}.toml"));
         let text = std::fs::read_to_string(&file).unwrap();
-        let ratio = match Case::parse(Source::new(file.to_str().unwrap(), text).in_folder(&folder())).unwrap() {
+        let ratio = match Case::parse(Source::new(file.to_str().unwrap(), text).in_folder(folder())).unwrap() {
             Case::Plane(case) => {
                 let (motion, estimated) = run(&case);
                 estimated / true_error(&case, &motion)
