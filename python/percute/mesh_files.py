@@ -42,6 +42,14 @@ REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:t
 """Whole numbers of cells that name groups, as formats without names have them."""
 
 
+NO_MESH = {
+    ".geo": "is a script of Gmsh and has no mesh yet: `gmsh -2 block.geo -o block.msh` makes one",
+    ".toml": "is a case and no mesh; percute.run runs it",
+    ".vtkhdf": "is a history or an estimate and no mesh; percute.open opens it, and `mesh` is its mesh",
+}
+"""What files with these endings are, for which nobody shall install anything."""
+
+
 def is_gmsh(file: str) -> bool:
     """Tell whether a file is percute's own business."""
     return file.lower().endswith(".msh")
@@ -67,9 +75,12 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
     """Read a mesh by meshlane; give it with what was left out."""
     if not (np.isfinite(scale) and scale > 0):
         raise InputError(f"`scale` is {scale}; it must be a positive finite number: metres per unit of length in the file")
-    name, meshlane = encodable(file), _meshlane(file)
+    name = encodable(file)
     if not os.path.isfile(file):
         raise MissingFileError(f"{name}: there is no such file")
+    if no_mesh := NO_MESH.get(os.path.splitext(file)[1].lower()):
+        raise InputError(f"`path`: {name!r} {no_mesh}")
+    meshlane = _meshlane(file)
     found = _quietly(lambda: meshlane.read(file), FileFormatError, f"cannot read {name}")
     reader = _Reader(name, found)
     points, cells, groups, elements = reader.arrays(scale)

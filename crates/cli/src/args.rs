@@ -20,7 +20,7 @@ pub struct Arguments {
 /// What to do.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Print a commented case to start from: percute new block > case.toml
+    /// Print a commented case to start from (bar, block or drop): percute new block > case.toml
     New(NewArguments),
     /// Simulate a case and estimate its error
     Run(RunArguments),

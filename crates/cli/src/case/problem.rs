@@ -80,6 +80,12 @@ fn located(root: &Table<'_>, error: &InputError, notices: &[Notice]) -> CaseErro
         let of_group = notices.iter().filter(|notice| notice.groups.contains(name));
         of_group.for_each(|notice| message += &format!("; {}", notice.message));
     }
+    if error.place.table == "obstacle" && !matches!(error.cause, Cause::UnknownGroup { .. } | Cause::EmptyGroup { .. })
+    {
+        // Planes are stated in metres: a body read in millimetres reaches far beyond them.
+        let large = notices.iter().filter(|notice| notice.name == "large_mesh");
+        large.for_each(|notice| message += &format!("; {}", notice.message));
+    }
     if let (Cause::UnknownGroup { name, .. }, true) = (&error.cause, in_file(root)) {
         let what = if matches!(error.place.table, "material" | "body_force") { "Surface" } else { "Curve" };
         message += &format!("; in Gmsh, `Physical {what}(\"{name}\") = {{…}};` names one, before the mesh is saved");

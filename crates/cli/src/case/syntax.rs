@@ -4,6 +4,9 @@
 pub(super) fn advice(line: &str, told: &str) -> Option<&'static str> {
     let line = line.split('#').next().unwrap_or_default().trim();
     if told.contains("duplicate") {
+        if line.starts_with('[') {
+            return Some("this table is given twice; of several, each begins with two brackets, as in [[material]]");
+        }
         return Some("this key is given twice in its table; leave one out");
     }
     if line.starts_with('[') && line.matches('[').count() > line.matches(']').count() {

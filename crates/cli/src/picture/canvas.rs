@@ -101,8 +101,8 @@ fn head(root: &DrawingArea<SVGBackend<'_>, Shift>, report: &Report) -> Result<()
     let until = trimmed(report.end, 4);
     let name = std::path::Path::new(&report.case).file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
     let line = format!(
-        "{name}: share of each element up to t = {until} s{cut}; the largest misfit at t = {} s",
-        trimmed(report.time_of_sup, 4)
+        "{name}: share of each element up to t = {until} s{cut}; their squares add up to the mean's, ({} J^½)²",
+        short(report.error.mean, 4)
     );
     let left = px(f64::from(MARGIN)) as i32;
     root.draw_text(&title, &font(19.0, &INK), (left, px(14.0) as i32)).map_err(DrawError::from_library)?;

@@ -107,6 +107,9 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
 /// The error in one line, the last one, for `tail -n 1`.
 fn result(report: &Report) -> String {
     let e = &report.error;
+    if !report.problem.obstacles.is_empty() && report.kept_impulse.is_none() && e.sup == 0.0 {
+        return "no contact, and nothing that could be wrong: see the warnings".to_string();
+    }
     let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
     let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);
     format!("sup {at_most} ({sup} J^½ at {time} s), mean {mean}")

@@ -207,7 +207,8 @@ fn materials<const D: usize, const N: usize>(
         for element in members {
             let slot = &mut of_element[element.index()];
             if *slot != NONE {
-                return Err(fail(Cause::TwoMaterials { element: element.index(), first: usize::from(*slot) + 1 }));
+                let (first, everywhere) = (usize::from(*slot) + 1, given[usize::from(*slot)].0.is_none());
+                return Err(fail(Cause::TwoMaterials { element: element.index(), first, everywhere }));
             }
             *slot = index as u16;
         }

@@ -117,13 +117,17 @@ pub enum Cause {
     },
     /// Two materials on one element.
     #[error(
-        "element {element} already has material {first}; groups of materials must not overlap: take it out of one of them"
+        "element {element} already has material {first}{}",
+        if *.everywhere { ", which has no group and so takes all elements: give it a group too" }
+        else { "; groups of materials must not overlap: take it out of one of them" }
     )]
     TwoMaterials {
         /// The element.
         element: usize,
         /// The earlier material, from 1.
         first: usize,
+        /// Whether the earlier one is for all elements.
+        everywhere: bool,
     },
     /// A nodal field of the wrong length.
     #[error("the field has {given} values, but the mesh has {nodes} nodes; give a value for each node, or one for all")]

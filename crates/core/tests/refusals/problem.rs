@@ -103,7 +103,10 @@ fn materials_missing_or_twice() {
     let half = square().material_of("lower", elastic());
     assert_eq!(refused(half.clone()), (place("material", None, ""), Cause::NoMaterial { element: 1, count: 1 }));
     let twice = half.material_of("all", elastic());
-    assert_eq!(refused(twice), (place("material", Some(1), "group"), Cause::TwoMaterials { element: 0, first: 1 }));
+    let two =
+        |everywhere| (place("material", Some(1), "group"), Cause::TwoMaterials { element: 0, first: 1, everywhere });
+    assert_eq!(refused(twice), two(false));
+    assert_eq!(refused(square().material(elastic()).material_of("lower", elastic())), two(true));
 }
 
 #[test]

@@ -90,7 +90,7 @@ pub(super) fn large(size: f64, scale: f64) -> Option<Notice> {
     );
     Some(Notice {
         name: "large_mesh",
-        brief: "large mesh: are its lengths in metres?".to_string(),
+        brief: format!("mesh of {size:.4} m: if that is millimetres, give scale = 1e-3"),
         message,
         groups: vec![],
     })
