@@ -3,8 +3,8 @@
 use super::{CaseOf, parsed, place};
 use crate::case::table::Table;
 use crate::info::memory;
-use crate::report::Warning;
 use crate::report::number::bytes;
+use crate::report::{Warning, few_samples};
 use percute_core::problem::{Place, doubts};
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
@@ -21,14 +21,10 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         let stated = doubts(&self.problem, &self.times);
         let mut all: Vec<Warning> =
             stated.into_iter().map(|doubt| located(doubt.place, doubt.name, doubt.brief, doubt.message)).collect();
-        let (every, steps) = (self.options.every, self.times.step_count());
-        if every >= steps && every > 1 {
+        all.extend(few_samples(self.options.every, self.times.step_count()).map(|few| {
             let place = Place { table: "estimate", index: None, key: "every" };
-            let message = format!(
-                "is {every}, but the run has {steps} steps: the error is sampled at its start and its end only; give a smaller number"
-            );
-            all.push(located(place, "few_samples", "the error is sampled twice".to_string(), message));
-        }
+            located(place, few.name, few.brief, few.message)
+        }));
         let needed = memory::of_case(self, in_memory);
         all.extend(memory::scarce(needed, memory::available(), in_memory).map(|message| {
             let place = Place { table: "mesh", index: None, key: "" };

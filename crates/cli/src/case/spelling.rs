@@ -31,10 +31,31 @@ pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>)
     known.into_iter().filter_map(|name| Some((near(name)?, name))).min_by_key(|&(changes, _)| changes).map(|(_, n)| n)
 }
 
+/// Names that other programs and books have.
+const ELSEWHERE: [(&str, &str); 14] = [
+    ("nu", "poisson"),
+    ("e", "young"),
+    ("modulus", "young"),
+    ("rho", "density"),
+    ("mu", "friction"),
+    ("dt", "step"),
+    ("cfl", "courant"),
+    ("t", "end"),
+    ("tend", "end"),
+    ("duration", "end"),
+    ("v", "velocity"),
+    ("v0", "velocity"),
+    ("area", "section"),
+    ("plane", "obstacle"),
+];
+
 /// `; did you mean …?`, or nothing.
 #[must_use]
 pub fn hint<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(given, known).map(|name| format!("; did you mean `{name}`?")).unwrap_or_default()
+    let known: Vec<&str> = known.into_iter().collect();
+    let low = given.to_lowercase();
+    let elsewhere = ELSEWHERE.iter().find(|(name, ours)| *name == low && known.contains(ours)).map(|(_, ours)| *ours);
+    elsewhere.or_else(|| nearest(given, known)).map(|name| format!("; did you mean `{name}`?")).unwrap_or_default()
 }
 
 /// The names in a sentence, each in backquotes.

@@ -6,7 +6,9 @@ use crate::case::{Case, CaseOf};
 use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
 use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
-use percute_io::{Kind, estimate_file, gmsh, kind};
+use crate::report::noticed;
+use percute_io::gmsh::{self, MeshFile};
+use percute_io::{Kind, estimate_file, kind};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -18,7 +20,9 @@ pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> R
 fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let found = kind(file)?;
     match found {
-        Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => return of_gmsh(file),
+        Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => {
+            return of_gmsh(file, console);
+        }
         Kind::Other => return of_text(file, console),
         Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
         // The reader of histories says what a stranger holds instead.
@@ -31,8 +35,13 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
 }
 
 /// A mesh as it is, in the unit of the file.
-fn of_gmsh(file: &Path) -> Result<Info, Failure> {
+fn of_gmsh(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let mesh = gmsh::read(file, 1.0).map_err(|error| Failure::Argument(error.to_string()))?;
+    let notices: Vec<_> = match &mesh {
+        MeshFile::Bar(read) => noticed(&read.mesh).collect(),
+        MeshFile::Plane(read) => noticed(&read.mesh).collect(),
+    };
+    console.warn(&notices);
     Ok(of_mesh(file, &mesh))
 }
 
@@ -52,5 +61,6 @@ fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
 /// A case, of which is told what is doubtful.
 fn doubted<const D: usize, const N: usize>(case: &CaseOf<D, N>, console: &mut Console<'_>) -> Result<Info, Failure> {
     console.doubt(case, false);
+    console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());
     Ok(of_case(case)?)
 }

@@ -84,7 +84,6 @@ impl MeshInfo {
                 lines.push((title, "no group".to_string()));
             }
         }
-        lines.extend(self.warnings.iter().map(|warning| ("WARNING", warning.brief.clone())));
         lines
     }
 }

@@ -1,6 +1,6 @@
 //! From the results of a run to its report.
 
-use super::warnings::{Facts, noticed, warnings};
+use super::warnings::{Facts, Warning, few_samples, noticed, warnings};
 use super::{
     ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
     ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
@@ -28,11 +28,16 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let doubts = doubts(subject.problem, times);
+        let mut doubts = doubts(subject.problem, times);
+        // What was foreseen and did not come is no warning any more.
+        doubts.retain(|doubt| doubt.name != "never_touches" || estimate.kept_impulse.is_none());
         let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
         let facts = Facts { problem: &problem, doubts: &doubts, drift, interrupted, kept_impulse, residual };
         let mut warnings = warnings(&facts);
+        warnings.extend(
+            few_samples(options.every, planned).map(|few| Warning { message: format!("every {}", few.message), ..few }),
+        );
         warnings.extend(noticed(subject.problem.mesh()));
         Self {
             format: FORMAT,

@@ -10,7 +10,7 @@ mod warnings;
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use summary::summary;
 pub use warnings::Warning;
-pub(crate) use warnings::noticed;
+pub(crate) use warnings::{few_samples, noticed};
 
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;

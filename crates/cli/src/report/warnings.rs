@@ -130,6 +130,17 @@ fn mended(facts: &Facts<'_>) -> Option<Warning> {
     if count == 0 { None } else { warning("mended_elements", format!("{count} elements turned round"), message) }
 }
 
+/// An error that is sampled at the start and at the end only; told before the run, too.
+pub(crate) fn few_samples(every: usize, steps: usize) -> Option<Warning> {
+    if every <= 1 || every < steps {
+        return None;
+    }
+    let message = format!(
+        "is {every}, but the run has {steps} steps: the error is sampled at its start and its end only; give a smaller number"
+    );
+    Some(Warning { name: "few_samples", brief: "the error is sampled twice".to_string(), message })
+}
+
 /// What was noticed when the mesh was read.
 pub(crate) fn noticed<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Iterator<Item = Warning> {
     mesh.notices().iter().map(|Notice { name, brief, message, .. }| {

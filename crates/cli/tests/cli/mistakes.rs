@@ -151,6 +151,71 @@ fn commands_with_a_mistake() {
     }));
 }
 
+/// A block at rest on the ground, under its weight.
+const RESTING: &str = r#"[mesh]
+rectangle = { width = 0.05, height = 0.04, nx = 5, ny = 4 }
+
+[material]
+young = 70e9
+poisson = 0.3
+density = 2700.0
+plane = "stress"
+
+[[obstacle]]
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+friction = 0.2
+
+[[body_force]]
+value = [0.0, -26487.0]
+
+[time]
+end = 5e-6
+courant = 0.9
+"#;
+
+/// The bouncing bar of Doyen, Ern and Piperno (2011), in round numbers.
+const NORMALISED: &str = r#"[mesh]
+bar = { length = 10.0, elements = 20 }
+
+[material]
+young = 900.0
+density = 1.0
+section = 1.0
+
+[[obstacle]]
+point = -5.0
+normal = 1.0
+
+[[body_force]]
+value = -10.0
+
+[time]
+end = 3.0
+courant = 0.9
+"#;
+
+/// A pile that is driven into hard ground.
+const PILE: &str = r#"[mesh]
+bar = { length = 30.0, elements = 20 }
+
+[material]
+young = 35e9
+density = 2400.0
+section = 0.16
+
+[initial]
+velocity = -3.0
+
+[[obstacle]]
+point = -0.01
+normal = 1.0
+
+[time]
+end = 0.01
+courant = 0.9
+"#;
+
 /// Nothing is said of what is as it should be.
 #[test]
 fn good_cases_are_not_doubted() {
@@ -159,8 +224,13 @@ fn good_cases_are_not_doubted() {
     let examples: Vec<_> = examples.map(|path| path.to_str().unwrap().to_string()).collect();
     assert!(examples.len() > 2);
     let bench = Bench::new(BLOCK);
-    std::fs::write(bench.path("bar.toml"), BAR).unwrap();
-    for case in examples.iter().map(String::as_str).chain(["case.toml", "bar.toml"]) {
+    for (name, text) in
+        [("bar.toml", BAR), ("resting.toml", RESTING), ("normalised.toml", NORMALISED), ("pile.toml", PILE)]
+    {
+        std::fs::write(bench.path(name), text).unwrap();
+    }
+    let ours = ["case.toml", "bar.toml", "resting.toml", "normalised.toml", "pile.toml"];
+    for case in examples.iter().map(String::as_str).chain(ours) {
         let output = bench.percute(&["info", case]);
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{case}");
     }

@@ -9,7 +9,7 @@ pub struct Resultant<const D: usize> {
     pub force: [f64; D],
     /// Sum of the normal components (N).
     pub normal_force: f64,
-    /// Impulse given to the body up to t_n (N s): that takes its momentum from v₀ to v_n.
+    /// Impulse given to the body up to t_n (N s): what contact adds to its momentum, from v₀ to v_n.
     pub impulse: [f64; D],
     /// Area of contact (m²): the shares of the nodes that are not free.
     pub area: f64,

@@ -126,6 +126,8 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
         };
         let gap = candidates.map(gap).fold(f64::INFINITY, f64::min).max(0.0);
         let (speed, push) = (-dot(&flight.velocity, plane.normal()), -dot(&flight.acceleration, plane.normal()));
+        // What rounding leaves of a gap is none.
+        let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
         Approach { obstacle, gap, speed, time: closing_time(gap, speed, push) }
     };
     let first = problem.obstacles().iter().enumerate().map(approach).min_by(|a, b| a.time.total_cmp(&b.time))?;
@@ -134,6 +136,17 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
 
 /// When gap − speed t − push t²/2 becomes 0 (s).
 fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
+    if gap == 0.0 {
+        // On the plane: it is pressed against it, or leaves it and may fall back.
+        let pressed = speed > 0.0 || (speed == 0.0 && push > 0.0);
+        return if pressed {
+            0.0
+        } else if push > 0.0 {
+            -2.0 * speed / push
+        } else {
+            f64::INFINITY
+        };
+    }
     let root = speed + (speed * speed + 2.0 * push * gap).sqrt();
     // NaN, where there is no root, is not above 0 either.
     if root > 0.0 { 2.0 * gap / root } else { f64::INFINITY }
@@ -185,6 +198,9 @@ mod tests {
         assert_eq!(closing_time(8.0, 0.0, 4.0), 2.0);
         // Up first, and back: 2 + 2 t − 2 t² = 0 at (1 + √5)/2.
         assert!((closing_time(2.0, -2.0, 4.0) - 0.5 * (1.0 + 5.0_f64.sqrt())).abs() < 1e-15);
+        // At rest on the plane under its weight; thrown up from it, back after 2 v/g; sliding along it without weight.
+        assert_eq!([closing_time(0.0, 0.0, 4.0), closing_time(0.0, -6.0, 4.0)], [0.0, 3.0]);
+        assert_eq!(closing_time(0.0, 0.0, 0.0), f64::INFINITY);
         assert_eq!(closing_time(1.0, -3.0, 0.0), f64::INFINITY);
         assert_eq!(closing_time(1.0, 0.0, 0.0), f64::INFINITY);
         // Thrown up to the plane, and back before it gets there.

@@ -19,8 +19,8 @@ const STIFF: f64 = 1.3e12;
 const SLOW: f64 = 10.0;
 /// Waves in diamond run at 18 000 m/s.
 const FAST: f64 = 2e4;
-/// Larger than most bodies that strike a plane (m).
-const LARGE: f64 = 20.0;
+/// Larger than all but a few bodies that strike something: piles have tens of metres.
+const LARGE: f64 = 60.0;
 /// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one in
 /// other units.
 const WIDE: f64 = 10.0;
@@ -67,8 +67,7 @@ fn size_of_body(size: f64) -> Option<Doubt> {
 
 fn density(material: &Elastic, index: usize) -> Option<Doubt> {
     let density = material.density();
-    // A modulus of 1 and a density of 1 are normalised on purpose.
-    if (density == 1.0 && material.young() == 1.0) || (LIGHT..=HEAVY).contains(&density) {
+    if is_normalised(material) || (LIGHT..=HEAVY).contains(&density) {
         return None;
     }
     let shown = short(density);
@@ -84,19 +83,28 @@ fn density(material: &Elastic, index: usize) -> Option<Doubt> {
     units("material", Some(index), "density", message)
 }
 
+/// Whether the numbers are such as examples in books have: a density of 1, and waves that a pencil can follow.
+fn is_normalised(material: &Elastic) -> bool {
+    material.density() == 1.0 && material.young() <= 1e4
+}
+
 fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
     // Along a bar: waves in a plane body that hardly changes its volume are as fast as you like.
     let (young, speed) = (material.young(), (material.young() / material.density()).sqrt());
-    if young == 1.0 && material.density() == 1.0 {
+    if is_normalised(material) {
         return None;
     }
     let (shown, waves) = (short(young), short(speed));
     let message = if young < SOFT && (size > 1.0 || speed < SLOW) {
-        let (unit, factor) = if young < 1300.0 { ("GPa", 1e9) } else { ("MPa", 1e6) };
-        let meant = short(factor * young);
+        let (unit, meant) = if young < 1300.0 { ("GPa", 1e9 * young) } else { ("MPa", 1e6 * young) };
+        // No solid but a few ceramics is stiffer.
+        let advice = if meant <= 6e11 {
+            format!("If it is in {unit}, write {}", short(meant))
+        } else {
+            "It is in Pa".to_string()
+        };
         format!(
-            "is {shown} Pa, softer than rubber, in a body of {} m (waves run at {waves} m/s): did you mix units? If it is in \
-             {unit}, write {meant}",
+            "is {shown} Pa, softer than rubber, in a body of {} m (waves run at {waves} m/s): did you mix units? {advice}",
             short(size)
         )
     } else if young > STIFF {
@@ -117,7 +125,8 @@ fn extent(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
     let (extent, length) = (material.extent(), short(size));
     let shown = short(extent);
     if material.hypothesis() == Hypothesis::Bar {
-        if extent.sqrt() <= WIDE * size {
+        // 1 is often a section that does not matter.
+        if extent.sqrt() <= WIDE * size || extent == 1.0 {
             return None;
         }
         let metres = short(1e-6 * extent);
