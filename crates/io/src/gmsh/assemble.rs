@@ -82,7 +82,8 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
             (at(all[1]), OVERLAP, MeshError::Overlap { elements: all.map(element) })
         }
         MeshError::PartsTouch { elements: all } => {
-            let advice = "; in Gmsh, join surfaces that touch or overlap by `Coherence;` (OpenCASCADE: `BooleanFragments`) before meshing";
+            let advice = "; in Gmsh, join surfaces that touch or overlap by `Coherence;` (OpenCASCADE: `BooleanFragments`) \
+                          before meshing";
             (at(all[1]), advice, MeshError::PartsTouch { elements: all.map(element) })
         }
         MeshError::NonManifoldNode { node: n, elements, reached } => {
