@@ -159,7 +159,7 @@ fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
         MeshError::DuplicateNodes { second, .. } => entry("points", *second),
         MeshError::NoSuchNode { element, .. } | MeshError::Degenerate { element, .. } => entry("cells", *element),
         MeshError::NonManifoldFacet { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
-        MeshError::Overlap { elements } => entry("cells", elements[1]),
+        MeshError::Overlap { elements } | MeshError::PartsTouch { elements } => entry("cells", elements[1]),
         MeshError::NonManifoldNode { node, .. } => entry("points", *node),
         MeshError::NoSuchFacet { group, .. } => named("groups", group),
         MeshError::NoSuchElement { group, .. } => named("elements", group),

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// Nodes closer than this fraction of the body's size are duplicates: far above rounding, far
 /// below any element.
-const DUPLICATE: f64 = 1e-10;
+pub(super) const DUPLICATE: f64 = 1e-10;
 /// An element whose volume is below this fraction of diameterᴰ is degenerate (an angle of about
 /// 1e-7 degrees): its gradients would have no correct digit left.
 const DEGENERATE: f64 = 1e-9;
@@ -108,6 +108,15 @@ pub enum MeshError {
     #[error("elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave one out", .elements[0], .elements[1])]
     Overlap {
         /// The elements.
+        elements: [usize; 2],
+    },
+    /// Two parts of the mesh that touch or overlap without a common node.
+    #[error(
+        "elements {} and {} touch or overlap, but the parts of the mesh they belong to share no node: each would move through the other; \
+         let them share the nodes where they meet (mesh them as one, merge the nodes), or keep them apart", .elements[0], .elements[1]
+    )]
+    PartsTouch {
+        /// One element of each part.
         elements: [usize; 2],
     },
     /// A node at which parts of the body touch by a point only.

@@ -7,6 +7,7 @@ mod check;
 mod generator;
 mod geometry;
 mod notice;
+mod parts;
 mod star;
 mod topology;
 
@@ -30,7 +31,7 @@ pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
 pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 
 /// A conforming mesh of simplices without degenerate elements, unused or duplicate nodes, or
-/// non-manifold facets and nodes. Elements are positively oriented.
+/// non-manifold facets and nodes. Elements are positively oriented; separate parts do not touch.
 #[derive(Clone, Debug)]
 pub struct Mesh<const D: usize, const N: usize> {
     points: Vec<[f64; D]>,
@@ -42,6 +43,7 @@ pub struct Mesh<const D: usize, const N: usize> {
     element_groups: BTreeMap<String, Vec<ElementId>>,
     size: f64,
     mended: usize,
+    parts: usize,
     notices: Vec<Notice>,
 }
 
@@ -66,6 +68,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let mended = check::orient(&points, &mut cells)?;
         let (facets, cell_facets) = topology::facets(&cells)?;
         let stars = Stars::new(points.len(), &cells, &facets, &cell_facets)?;
+        let parts = parts::separate(&points, &cells, &facets, check::DUPLICATE * size)?;
         let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
@@ -78,6 +81,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             element_groups,
             size,
             mended,
+            parts,
             notices: Vec::new(),
         })
     }
@@ -134,6 +138,12 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     #[must_use]
     pub fn mended_elements(&self) -> usize {
         self.mended
+    }
+
+    /// How many separate parts there are: elements that share a node are of one part.
+    #[must_use]
+    pub fn parts(&self) -> usize {
+        self.parts
     }
 
     /// The same mesh with what was noticed when it was read.

@@ -4,5 +4,6 @@
 #![allow(clippy::unwrap_used)]
 
 mod mesh;
+mod parts;
 mod problem;
 mod time;

@@ -81,6 +81,11 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
         MeshError::Overlap { elements: all } => {
             (at(all[1]), OVERLAP, MeshError::Overlap { elements: all.map(element) })
         }
+        MeshError::PartsTouch { elements: all } => {
+            let advice = "; in Gmsh, join surfaces that touch or overlap by `Coherence;` (OpenCASCADE: `BooleanFragments`) \
+                          before meshing";
+            (at(all[1]), advice, MeshError::PartsTouch { elements: all.map(element) })
+        }
         MeshError::NonManifoldNode { node: n, elements, reached } => {
             let advice = "; in Gmsh, let the surfaces share a curve, or keep them apart";
             (None, advice, MeshError::NonManifoldNode { node: node(n), elements, reached })

@@ -85,6 +85,14 @@ fn bodies_that_only_seem_to_touch_are_told_to_be_joined() {
 }
 
 #[test]
+fn bodies_that_overlap_are_told_to_be_cut_apart() {
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 3 0 0\n3 0 3 0\n4 1 1 0\n5 4 1 0\n6 4 4 0\n$EndNodes\n\
+                $Elements\n2\n40 2 2 0 1 1 2 3\n70 2 2 0 2 4 5 6\n$EndElements\n";
+    let (message, _) = said(text);
+    assert!(message.contains("elements 40 and 70 touch or overlap") && message.contains("Coherence;"), "{message}");
+}
+
+#[test]
 fn a_plane_that_is_not_x_y_is_told_how_to_turn() {
     let places = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
     for (turned, axis) in [("0 3 0\n1 3 0\n1 3 1\n0 3 1\n", "y = const"), ("3 0 0\n3 1 0\n3 1 1\n3 0 1\n", "x = const")]

@@ -1,0 +1,162 @@
+//! The separate parts of a mesh, which must be apart.
+//!
+//! Elements that share a node are of one part. Parts that touched or covered each other would not
+//! feel it: one would move through the other.
+
+use super::{Facet, MeshError};
+use crate::ids::{ElementId, NodeId};
+use std::collections::HashMap;
+
+/// Counts the parts; if there are several, they must be further apart than `tolerance` (m).
+pub(super) fn separate<const D: usize, const N: usize>(
+    points: &[[f64; D]],
+    cells: &[[NodeId; N]],
+    facets: &[Facet<D>],
+    tolerance: f64,
+) -> Result<usize, MeshError> {
+    let part = part_of_nodes(points.len(), cells);
+    let count = part.iter().enumerate().filter(|&(node, &root)| node == root.index()).count();
+    if count > 1 {
+        let part_of = |e: ElementId| part[cells[e.index()][0].index()];
+        let corners = |e: ElementId| cells[e.index()].map(|node| points[node.index()]);
+        let grid = Grid::new(points[0], (0..cells.len()).map(|e| corners(ElementId::new(e))), tolerance);
+        apart(grid, cells.len(), facets, part_of, corners)?;
+    }
+    Ok(count)
+}
+
+/// For each node the one that stands for its part: the first of it.
+fn part_of_nodes<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> Vec<NodeId> {
+    let mut parent: Vec<NodeId> = (0..node_count).map(NodeId::new).collect();
+    for cell in cells {
+        for pair in cell.windows(2) {
+            let (a, b) = (root(&mut parent, pair[0]), root(&mut parent, pair[1]));
+            parent[a.max(b).index()] = a.min(b);
+        }
+    }
+    for node in 0..node_count {
+        parent[node] = root(&mut parent, NodeId::new(node));
+    }
+    parent
+}
+
+/// Follows the parents to the last, and halves the way for whoever comes next.
+fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
+    while parent[node.index()] != node {
+        let above = parent[parent[node.index()].index()];
+        parent[node.index()] = above;
+        node = above;
+    }
+    node
+}
+
+/// Where parts meet, an element at the boundary of one of them meets an element of the other: only
+/// cells of the grid with elements at the boundary are kept, far fewer than there are elements.
+fn apart<const D: usize, const N: usize>(
+    mut grid: Grid<D>,
+    element_count: usize,
+    facets: &[Facet<D>],
+    part_of: impl Fn(ElementId) -> NodeId,
+    corners: impl Fn(ElementId) -> [[f64; D]; N],
+) -> Result<(), MeshError> {
+    let mut outer = vec![false; element_count];
+    for facet in facets.iter().filter(|facet| facet.neighbour.is_none()) {
+        outer[facet.owner.index()] = true;
+    }
+    for at_boundary in [true, false] {
+        for element in (0..element_count).filter(|&e| outer[e] == at_boundary).map(ElementId::new) {
+            let own = corners(element);
+            for key in grid.keys(&own) {
+                if at_boundary {
+                    grid.cells.entry(key).or_default();
+                }
+                let Some(there) = grid.cells.get_mut(&key) else { continue };
+                let meets =
+                    |&other: &ElementId| part_of(other) != part_of(element) && meet(&own, &corners(other), grid.margin);
+                if let Some(&other) = there.iter().find(|other| meets(other)) {
+                    let (first, second) = (element.min(other), element.max(other));
+                    return Err(MeshError::PartsTouch { elements: [first.index(), second.index()] });
+                }
+                there.push(element);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Elements by place, in cells of the elements' root mean square extent: an element of extent d lies
+/// in at most (d/spacing + 2)ᴰ cells, so that all together lie in a bounded number of cells each.
+struct Grid<const D: usize> {
+    origin: [f64; D],
+    spacing: f64,
+    margin: f64,
+    cells: HashMap<[i64; D], Vec<ElementId>>,
+}
+
+impl<const D: usize> Grid<D> {
+    /// An empty grid for these elements, each of which reaches `margin` (m) beyond its corners.
+    fn new<const N: usize>(
+        origin: [f64; D],
+        elements: impl ExactSizeIterator<Item = [[f64; D]; N]> + Clone,
+        margin: f64,
+    ) -> Self {
+        let extents = elements.map(|corners| {
+            let [low, high] = bounds(&corners);
+            (0..D).map(|c| high[c] - low[c]).fold(0.0, f64::max)
+        });
+        // Relative to the largest, whose square might underflow.
+        let (count, largest) = (extents.len() as f64, extents.clone().fold(f64::MIN_POSITIVE, f64::max));
+        let square: f64 = extents.map(|extent| (extent / largest) * (extent / largest)).sum();
+        let spacing = (largest * (square / count).sqrt()).max(f64::MIN_POSITIVE);
+        Self { origin, spacing, margin, cells: HashMap::new() }
+    }
+
+    /// The cells of the grid that an element reaches.
+    fn keys<const N: usize>(&self, corners: &[[f64; D]; N]) -> impl Iterator<Item = [i64; D]> + use<D, N> {
+        let [low, high] = bounds(corners);
+        let key = |x: f64, c: usize| ((x - self.origin[c]) / self.spacing).floor() as i64;
+        let first: [i64; D] = std::array::from_fn(|c| key(low[c] - self.margin, c));
+        let last: [i64; D] = std::array::from_fn(|c| key(high[c] + self.margin, c));
+        let (rows, columns) = (first[D - 1]..=last[D - 1], first[0]..=last[0]);
+        rows.flat_map(move |y| {
+            // In 1D the row is the cell.
+            let columns = if D == 1 { y..=y } else { columns.clone() };
+            columns.map(move |x| std::array::from_fn(|c| if c == 0 { x } else { y }))
+        })
+    }
+}
+
+/// Lowest and highest coordinates.
+fn bounds<const D: usize, const N: usize>(corners: &[[f64; D]; N]) -> [[f64; D]; 2] {
+    [f64::min, f64::max].map(|pick| std::array::from_fn(|c| corners.iter().map(|p| p[c]).fold(corners[0][c], pick)))
+}
+
+/// Whether two simplices are at most `tolerance` apart: then no direction separates them by more.
+/// The distance is taken along a normal of an edge, or from corner to corner.
+fn meet<const D: usize, const N: usize>(a: &[[f64; D]; N], b: &[[f64; D]; N], tolerance: f64) -> bool {
+    let difference = |p: &[f64; D], q: &[f64; D]| -> [f64; D] { std::array::from_fn(|c| q[c] - p[c]) };
+    let separates = |direction: [f64; D]| gap(a, b, direction) > tolerance;
+    let normals = [a, b].into_iter().flat_map(|corners| {
+        (0..N).map(move |k| {
+            let edge = difference(&corners[k], &corners[(k + 1) % N]);
+            // A quarter turn in 2D; in 1D the only direction there is.
+            let mut normal = [edge[D - 1]; D];
+            normal[D - 1] = -edge[0];
+            normal
+        })
+    });
+    let between = a.iter().flat_map(|p| b.iter().map(move |q| difference(p, q)));
+    !normals.chain(between).any(separates)
+}
+
+/// How far two simplices are apart along a direction (m), negative if they cover each other there.
+fn gap<const D: usize, const N: usize>(a: &[[f64; D]; N], b: &[[f64; D]; N], direction: [f64; D]) -> f64 {
+    let length = direction.iter().fold(0.0, |length: f64, x| length.hypot(*x));
+    // From a corner, not from an origin that may be far away.
+    let along = |p: &[f64; D]| (0..D).map(|c| (p[c] - a[0][c]) * (direction[c] / length)).sum::<f64>();
+    let span = |corners: &[[f64; D]; N]| {
+        corners.iter().map(along).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    };
+    let ([low_a, high_a], [low_b, high_b]) = (span(a), span(b));
+    (low_b - high_a).max(low_a - high_b)
+}
