@@ -69,7 +69,7 @@ pub fn parse(path: &Path, bytes: &[u8], scale: f64) -> Result<MeshFile, GmshErro
         return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::Scale { value: scale } });
     }
     let mut cursor = Cursor::new(bytes);
-    let mesh = sections::read(&mut cursor).and_then(|raw| assemble::mesh(raw, scale));
+    let mesh = sections::read(&mut cursor, path).and_then(|raw| assemble::mesh(raw, scale));
     let text = cursor.form == Form::Text;
     mesh.map_err(|fault| fault.of(path, bytes, text))
 }

@@ -1,7 +1,7 @@
 //! Files that are refused: each with its place, in the tags of Gmsh, and with what to do there.
 
 use crate::common::*;
-use percute_io::gmsh::{Place, read};
+use percute_io::gmsh::{Place, parse, read};
 
 /// What is said of a file, and where.
 fn said(text: &str) -> (String, Option<Place>) {
@@ -101,12 +101,24 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
     for (text, phrase) in [
         ("", "it is empty"),
         ("Point(1) = {0, 0, 0};\n", "gmsh -2 block.geo"),
+        ("SetFactory(\"OpenCASCADE\");\n", "gmsh -2 block.geo"),
+        ("// a block\nlc = 1;\n", "gmsh -2 block.geo"),
         ("# vtk DataFile Version 5.1\n", "the extra `mesh`"),
+        ("<VTKFile type=\"UnstructuredGrid\">\n<PointData>\n<Points>\n", "the extra `mesh`"),
+        ("$ NASTRAN, mesh of a block\nGRID,1,,0.,0.,0.\n", "no Gmsh mesh: it begins with `$ NASTRAN"),
+        ("$ NASTRAN\n$ GRID Point(1)\n", "the extra `mesh`"),
         ("$NOD\n3\n", "version 1 of the MSH format"),
     ] {
         let (message, place) = said(text);
         assert!(message.contains(phrase), "{message}");
         assert_eq!(place, Some(Place::Line(1)));
+    }
+    let by_ending = |name: &str, text: &str| parse(name.as_ref(), text.as_bytes(), 1.0).unwrap_err().to_string();
+    for (name, text) in [("a.geo", "lc = 1;\n"), ("a.GEO", "h = 2;\nPoint(1) = {0, 0, 0};\n")] {
+        assert!(by_ending(name, text).contains("gmsh -2 block.geo"), "{}", by_ending(name, text));
+    }
+    for (name, text) in [("a.geo", "<VTKFile>"), ("a.geo", ""), ("a.inp", "*Part\nPoint(1)\n")] {
+        assert!(by_ending(name, text).contains("the extra `mesh`"), "{}", by_ending(name, text));
     }
     let missing = read("/nowhere/a.msh".as_ref(), 1.0).unwrap_err().to_string();
     assert!(missing.contains("/nowhere/a.msh: there is no such file"), "{missing}");
