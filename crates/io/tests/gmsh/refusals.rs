@@ -29,7 +29,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("50 2 9 4", "0 2 9 4", &["the tag of an element is 0"], "0 2"),
         ("\n9\n6\n", "\n9\n4\n", &["node 4 is given twice"], "4"),
         ("50 2 9 4", "50 2 4 4", &["element 50 is degenerate: its nodes [2, 4, 4]", "tags in Gmsh"], "50"),
-        ("50 2 9 4", "50 2 30 4", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
+        ("50 2 9 4", "50 2 30 9", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
         ("0 1 0\n7 7 7", "0 1 0.5\n7 7 7", &["not in a plane z = const", "node 9 has z = 0.5 m"], ""),
         ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["`inf` stands where a coordinate of a node"], "0 1 inf"),
         ("0 1 0\n7 7 7", "0 1 0,5\n7 7 7", &["`0,5` stands where a coordinate of a node"], "0 1 0,5"),
