@@ -73,8 +73,11 @@ def _meshlane(file: str) -> Any:
 
 def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[str]]:
     """Read a mesh by meshlane; give it with what was left out."""
-    if not (np.isfinite(scale) and scale > 0):
-        raise InputError(f"`scale` is {scale}; it must be a positive finite number: metres per unit of length in the file")
+    if not 1e-12 <= scale <= 1e12:
+        raise InputError(
+            f"`scale` is {scale}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, "
+            "1e-3 for millimetres"
+        )
     name = encodable(file)
     if not os.path.isfile(file):
         raise MissingFileError(f"{name}: there is no such file")

@@ -127,13 +127,27 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
 }
 
 #[test]
-fn a_scale_must_be_positive_and_leave_numbers_finite() {
-    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+fn a_scale_must_be_positive_and_of_a_sane_size() {
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1.1e12, 0.9e-12, 1e-300] {
         let error = read(&file("block-4.1.msh"), scale).unwrap_err().to_string();
-        assert!(error.contains("must be a positive finite number"), "{error}");
+        assert!(error.contains(&format!("the scale is {scale:?}; it must be a positive number from 1e-12")), "{error}");
+        assert!(error.contains("1e-3 for millimetres"), "{error}");
     }
-    let error = read(&file("block-4.1.msh"), 1e308).unwrap_err().to_string();
+    for scale in [1e-12, 1e12] {
+        assert!(read(&file("block-4.1.msh"), scale).is_ok(), "{scale}");
+    }
+    let far = SQUARE.replace("1 1 0\n0 1 0", "1e300 1 0\n0 1 0");
+    let error = parse("a.msh".as_ref(), far.as_bytes(), 1e12).unwrap_err().to_string();
     assert!(error.contains("must be finite") && error.contains("is the scale as meant?"), "{error}");
+}
+
+#[test]
+fn a_name_that_is_no_utf_8_is_not_called_damage() {
+    let latin: Vec<u8> = SQUARE.replace("foot", "Fuß").chars().map(|c| c as u8).collect();
+    let error = of_bytes(&latin).unwrap_err();
+    assert!(error.to_string().contains("save names in UTF-8"), "{error}");
+    assert!(!error.to_string().contains("damaged"), "{error}");
+    assert_eq!(error.place, Some(Place::Line(6)));
 }
 
 /// A binary file names the byte.
