@@ -41,6 +41,8 @@ LARGE = 10.0
 REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:tag")
 """Whole numbers of cells that name groups, as formats without names have them."""
 
+SURE = ".msh, .vtu, .inp or .med"
+"""Endings of formats to choose where another one fails."""
 
 NO_MESH = {
     ".geo": "is a script of Gmsh and has no mesh yet: `gmsh -2 block.geo -o block.msh` makes one",
@@ -73,8 +75,11 @@ def _meshlane(file: str) -> Any:
 
 def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[str]]:
     """Read a mesh by meshlane; give it with what was left out."""
-    if not (np.isfinite(scale) and scale > 0):
-        raise InputError(f"`scale` is {scale}; it must be a positive finite number: metres per unit of length in the file")
+    if not 1e-12 <= scale <= 1e12:
+        raise InputError(
+            f"`scale` is {scale}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, "
+            "1e-3 for millimetres"
+        )
     name = encodable(file)
     if not os.path.isfile(file):
         raise MissingFileError(f"{name}: there is no such file")
@@ -103,7 +108,9 @@ def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft
     except (SystemExit, Exception) as error:
         told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
         told = told.replace(f"{os.path.basename(draft)}{os.sep}", "") if draft else told
-        raise kind(f"meshlane {what}: {told or type(error).__name__}") from error
+        told = (told or type(error).__name__).rstrip(".")
+        known = "the ending of the name tells the format: " if "deduce file format" in told else ""
+        raise kind(f"meshlane {what}: {told}; {known}choose {SURE}") from error
 
 
 class _Reader:

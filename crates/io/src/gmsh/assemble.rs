@@ -35,7 +35,7 @@ fn assemble<const D: usize, const N: usize>(
     points: Option<&Sorted<1>>,
     scale: f64,
 ) -> Result<MeshOf<D, N>, Fault> {
-    let Sorted { elements, members } = raw.sorted(cells)?;
+    let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);
     let places = kept.flat()?;
@@ -44,6 +44,7 @@ fn assemble<const D: usize, const N: usize>(
     let parts = raw.named(D, &members, |at| at);
     let noticed = [
         notices::dropped(&kept.dropped, D),
+        notices::doubled(&doubled),
         points.and_then(|points| notices::points(raw, points)),
         notices::inner(&inner, D),
         notices::empty(raw, D, &groups, &inner, &parts),

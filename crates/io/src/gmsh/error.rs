@@ -48,7 +48,10 @@ pub enum GmshCause {
     #[error(transparent)]
     File(#[from] FileCause),
     /// A factor that is none.
-    #[error("the scale is {value}; it must be a positive finite number: metres per unit of length in the file")]
+    #[error(
+        "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, \
+         1e-3 for millimetres"
+    )]
     Scale {
         /// The factor.
         value: f64,

@@ -9,6 +9,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 /// Elements by increasing tags, each once.
 pub(super) struct Sorted<const N: usize> {
     pub(super) elements: Vec<Element<N>>,
+    /// Tags of those left out, since an element before has the same nodes; its groups are those of both.
+    pub(super) doubled: Vec<u64>,
     /// Positions among them of the members of each physical group, by its tag.
     pub(super) members: BTreeMap<i64, Vec<usize>>,
 }
@@ -29,7 +31,8 @@ impl Raw {
         if let Some(pair) = elements.windows(2).find(|pair| pair[0].tag == pair[1].tag) {
             return Err(GmshCause::Twice { what: "element", tag: pair[1].tag }.at(pair[1].at));
         }
-        Ok(Sorted { elements, members })
+        let doubled = once(&mut elements, &mut members);
+        Ok(Sorted { elements, doubled, members })
     }
 
     /// The name of a physical group: its tag if it has none.
@@ -67,7 +70,7 @@ fn merged<const N: usize>(elements: Vec<Element<N>>, members: &mut BTreeMap<i64,
             let mut nodes = element.nodes;
             nodes.sort_unstable();
             let (first, of) = seen.entry((element.entity, nodes)).or_insert_with(|| (at, BTreeSet::new()));
-            // Twice in the same group is no doubling but an overlap, which the mesh refuses.
+            // Twice in the same group is not how Gmsh writes groups: of that the user is told.
             if of.insert(group) {
                 at = *first;
             }
@@ -83,6 +86,35 @@ fn merged<const N: usize>(elements: Vec<Element<N>>, members: &mut BTreeMap<i64,
         }
     }
     once
+}
+
+/// Keeps the first of all elements on the same nodes, for the groups of all; gives the tags of the others.
+fn once<const N: usize>(elements: &mut Vec<Element<N>>, members: &mut BTreeMap<i64, Vec<usize>>) -> Vec<u64> {
+    let mut keys: Vec<_> = elements.iter().map(|element| element.nodes).zip(0..).collect();
+    keys.iter_mut().for_each(|(nodes, _): &mut ([u64; N], usize)| nodes.sort_unstable());
+    keys.sort_unstable();
+    let mut first: Vec<usize> = (0..elements.len()).collect();
+    for pair in keys.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        first[pair[1].1] = first[pair[0].1];
+    }
+    let doubled: Vec<u64> = (0..first.len()).filter(|&at| first[at] != at).map(|at| elements[at].tag).collect();
+    if doubled.is_empty() {
+        return doubled;
+    }
+    let (mut kept, mut numbers) = (Vec::with_capacity(elements.len()), Vec::with_capacity(elements.len()));
+    for (at, &of) in first.iter().enumerate() {
+        numbers.push(if of == at { kept.len() } else { numbers[of] });
+        if of == at {
+            kept.push(elements[at]);
+        }
+    }
+    *elements = kept;
+    for all in members.values_mut() {
+        all.iter_mut().for_each(|at| *at = numbers[*at]);
+        all.sort_unstable();
+        all.dedup();
+    }
+    doubled
 }
 
 /// Names in a sentence.

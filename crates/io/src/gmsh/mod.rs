@@ -28,7 +28,11 @@ use crate::error::FileCause;
 use cursor::{Cursor, Form};
 use percute_core::mesh::Mesh;
 use std::io::ErrorKind;
+use std::ops::RangeInclusive;
 use std::path::Path;
+
+/// Metres per unit of length that a file may have: beyond any body, and far from where squares of lengths overflow.
+const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 
 /// A mesh as it was read. What was left out is among its notices.
 #[derive(Clone, Debug)]
@@ -50,7 +54,7 @@ pub enum MeshFile {
     Plane(MeshOf<2, 3>),
 }
 
-/// Reads a mesh. `scale` is metres per unit of length in the file: 1e-3 for millimetres.
+/// Reads a mesh. `scale` is metres per unit of length in the file, from 1e-12 to 1e12: 1e-3 for millimetres.
 ///
 /// # Errors
 /// A file that cannot be read or is no such mesh, with the line or byte and what to do in Gmsh.
@@ -65,11 +69,11 @@ pub fn read(path: &Path, scale: f64) -> Result<MeshFile, GmshError> {
 /// # Errors
 /// As for [`read`].
 pub fn parse(path: &Path, bytes: &[u8], scale: f64) -> Result<MeshFile, GmshError> {
-    if !(scale.is_finite() && scale > 0.0) {
+    if !SCALES.contains(&scale) {
         return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::Scale { value: scale } });
     }
     let mut cursor = Cursor::new(bytes);
-    let mesh = sections::read(&mut cursor).and_then(|raw| assemble::mesh(raw, scale));
+    let mesh = sections::read(&mut cursor, path).and_then(|raw| assemble::mesh(raw, scale));
     let text = cursor.form == Form::Text;
     mesh.map_err(|fault| fault.of(path, bytes, text))
 }

@@ -1,7 +1,7 @@
 //! The section $PhysicalNames, a text in binary files too.
 
-use super::cursor::Cursor;
-use super::error::Fault;
+use super::cursor::{Cursor, shown};
+use super::error::{Fault, GmshCause};
 use super::raw::Tagged;
 use super::v2::text_count;
 use std::collections::BTreeMap;
@@ -12,9 +12,12 @@ pub(super) fn read(cursor: &mut Cursor<'_>, names: &mut BTreeMap<Tagged, String>
         cursor.skip_space();
         let at = cursor.at();
         let line = cursor.line();
-        let named = std::str::from_utf8(line).ok().and_then(name);
-        let what = "a dimension, a tag and a name in quotes (in UTF-8)";
-        let (key, name) = named.ok_or_else(|| Cursor::fault(line, what, at))?;
+        let text = std::str::from_utf8(line).map_err(|_| {
+            let advice = "save names in UTF-8: the script (.geo) in that encoding, then mesh again";
+            GmshCause::Unexpected { found: shown(line), what: "a name in UTF-8", advice }.at(at)
+        })?;
+        let what = "a dimension, a tag and a name in quotes";
+        let (key, name) = name(text).ok_or_else(|| Cursor::fault(line, what, at))?;
         names.insert(key, name.to_string());
     }
     Ok(())

@@ -16,11 +16,7 @@ pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
     if tags.is_empty() {
         return None;
     }
-    let mut shown: Vec<_> = tags.iter().take(SHOWN).map(u64::to_string).collect();
-    if tags.len() > SHOWN {
-        shown.push("…".to_string());
-    }
-    let (count, shown) = (tags.len(), shown.join(", "));
+    let (count, shown) = (tags.len(), shown(tags));
     let (nodes, tag, were, them) = if count == 1 {
         ("node", "tag", "was", "it; it often is the centre of an arc")
     } else {
@@ -29,6 +25,30 @@ pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
     let element = if dimension == 2 { "triangle" } else { "bar" };
     let message = format!("{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses {them}");
     Some(Notice { name: "dropped_nodes", brief: format!("{count} unused {nodes} left out"), message, groups: vec![] })
+}
+
+/// Elements on the nodes of others.
+pub(super) fn doubled(tags: &[u64]) -> Option<Notice> {
+    if tags.is_empty() {
+        return None;
+    }
+    let (count, shown) = (tags.len(), shown(tags));
+    let (elements, tag, were, each) = if count == 1 {
+        ("element", "tag", "was", "it has the nodes of an element before, which is in the groups of both")
+    } else {
+        ("elements", "tags", "were", "each has the nodes of an element before, which is in the groups of both")
+    };
+    let message = format!("{count} {elements} of the mesh file ({tag} {shown}) {were} left out: {each}");
+    let brief = format!("{count} {elements} that {were} there already left out");
+    Some(Notice { name: "duplicate_elements", brief, message, groups: vec![] })
+}
+
+fn shown(tags: &[u64]) -> String {
+    let mut shown: Vec<_> = tags.iter().take(SHOWN).map(u64::to_string).collect();
+    if tags.len() > SHOWN {
+        shown.push("…".to_string());
+    }
+    shown.join(", ")
 }
 
 /// Physical groups of points, in a plane mesh.

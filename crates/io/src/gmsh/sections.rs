@@ -5,11 +5,29 @@ use super::error::{Fault, GmshCause};
 use super::header::{self, Version};
 use super::raw::Raw;
 use super::{names, v2, v4};
+use std::path::Path;
 
-/// Reads all sections.
-pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Fault> {
+/// Sections of the format that a file may begin with.
+const FIRST: [&str; 13] = [
+    "MeshFormat",
+    "Comments",
+    "PhysicalNames",
+    "Entities",
+    "PartitionedEntities",
+    "Nodes",
+    "ParametricNodes",
+    "Elements",
+    "Periodic",
+    "GhostElements",
+    "Parametrizations",
+    "NodeData",
+    "ElementData",
+];
+
+/// Reads all sections of the file at `path`, whose ending tells what it may be instead of a mesh.
+pub(super) fn read(cursor: &mut Cursor<'_>, path: &Path) -> Result<Raw, Fault> {
     let (mut raw, mut version, mut seen) = (Raw::default(), None, [false; 2]);
-    while let Some(name) = begin(cursor)? {
+    while let Some(name) = begin(cursor, path)? {
         match (name, version) {
             ("MeshFormat", None) => {
                 let found = header::read(cursor)?;
@@ -40,7 +58,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Fault> {
 }
 
 /// Takes the line that begins a section and gives its name; `None` at the end of the file.
-fn begin<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a str>, Fault> {
+fn begin<'a>(cursor: &mut Cursor<'a>, path: &Path) -> Result<Option<&'a str>, Fault> {
     let first = cursor.at() <= 3;
     cursor.skip_space();
     let (at, rest) = (cursor.at(), cursor.rest());
@@ -50,8 +68,12 @@ fn begin<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a str>, Fault> {
     let name = cursor.line().strip_prefix(b"$").and_then(|name| std::str::from_utf8(name).ok());
     match name {
         Some("NOD" | "NOE") => Err(GmshCause::Version { found: "1".to_string() }.at(at)),
+        Some(name) if first && !FIRST.contains(&name) && find(cursor.rest(), &format!("$End{name}")).is_none() => {
+            // Other formats have comments that begin with `$`.
+            Err(no_mesh(rest, path).at(at))
+        }
         Some(name) => Ok(Some(name)),
-        None if first => Err(no_mesh(rest).at(at)),
+        None if first => Err(no_mesh(rest, path).at(at)),
         None => {
             let advice = "sections begin with `$` and their name; the file is damaged, or was not written by Gmsh";
             Err(GmshCause::Unexpected { found: shown(rest), what: "the beginning of a section", advice }.at(at))
@@ -59,10 +81,15 @@ fn begin<'a>(cursor: &mut Cursor<'a>) -> Result<Option<&'a str>, Fault> {
     }
 }
 
-fn no_mesh(rest: &[u8]) -> GmshCause {
-    let start = &rest[..rest.len().min(400)];
-    let holds = |what: &[u8]| start.windows(what.len()).any(|window| window == what);
-    let advice = if holds(b"Point") || holds(b"SetFactory") || holds(b"Mesh.") || start.starts_with(b"//") {
+/// Where a text is first met.
+fn find(bytes: &[u8], text: &str) -> Option<usize> {
+    bytes.windows(text.len()).position(|window| window == text.as_bytes())
+}
+
+fn no_mesh(rest: &[u8], path: &Path) -> GmshCause {
+    let ending = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("geo"));
+    let begins = ["Point(", "SetFactory(", "Mesh.", "//"].iter().any(|word| rest.starts_with(word.as_bytes()));
+    let advice = if !rest.is_empty() && !rest.starts_with(b"<") && (ending || begins) {
         "a script (.geo) has no mesh yet: `gmsh -2 block.geo -o block.msh` makes it"
     } else {
         "in Gmsh, save as .msh (version 4.1 or 2.2). Other formats: `percute.Mesh.read(…).write(\"block.msh\")` in Python, with \
@@ -74,7 +101,7 @@ fn no_mesh(rest: &[u8]) -> GmshCause {
 /// Skips all that a section holds.
 fn return_to_text(cursor: &mut Cursor<'_>, name: &str) -> Result<(), Fault> {
     let mark = format!("$End{name}");
-    let found = cursor.rest().windows(mark.len()).position(|window| window == mark.as_bytes());
+    let found = find(cursor.rest(), &mark);
     let what = "the end of a section";
     let length = found.ok_or_else(|| GmshCause::Cut { what }.at(cursor.at()))?;
     cursor.take(length, what).map(|_| ())

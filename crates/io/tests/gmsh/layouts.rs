@@ -1,7 +1,6 @@
 //! What a file may look like: the same mesh whatever its order, its bytes and what else it holds.
 
 use crate::common::*;
-use percute_io::gmsh::Place;
 
 /// Numbers in either order of bytes, with tags of 4 or 8 bytes.
 struct Binary {
@@ -123,7 +122,7 @@ fn parametric_nodes_are_read() {
     assert_eq!(plane(of_bytes(old.as_bytes()).unwrap()).mesh.points(), [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
 }
 
-/// Version 2.2 has an element once for each of its groups; twice in one group it is there twice.
+/// Version 2.2 has an element once for each of its groups; twice in one group or surface is worth a word.
 #[test]
 fn doubled_elements_of_version_2_are_one() {
     let file = |second: &str| {
@@ -135,11 +134,39 @@ fn doubled_elements_of_version_2_are_one() {
     let read = plane(of_bytes(file("2 8 1 3 2 1").as_bytes()).unwrap());
     assert_eq!((read.mesh.element_count(), read.element_tags), (1, vec![1]));
     assert_eq!(read.mesh.element_groups().keys().collect::<Vec<_>>(), ["7", "8"]);
-    for second in ["2 7 1 1 2 3", "2 8 2 1 2 3"] {
-        let error = of_bytes(file(second).as_bytes()).unwrap_err();
-        assert!(error.to_string().contains("elements 1 and 2 lie on the same side"), "{error}");
-        assert_eq!(error.place, Some(Place::Line(13)));
+    assert!(read.mesh.notices().is_empty());
+    for (second, groups) in [("2 7 1 1 2 3", &["7"][..]), ("2 8 2 3 1 2", &["7", "8"])] {
+        let read = plane(of_bytes(file(second).as_bytes()).unwrap());
+        assert_eq!((read.mesh.element_count(), read.element_tags), (1, vec![1]));
+        assert_eq!(read.mesh.element_groups().keys().collect::<Vec<_>>(), groups);
+        assert!(read.mesh.element_groups().values().all(|members| members.len() == 1));
+        let names: Vec<_> = read.mesh.notices().iter().map(|notice| notice.name).collect();
+        assert_eq!(names, ["duplicate_elements"]);
     }
+}
+
+/// Gmsh makes such files of those of version 2.2 in which elements are in several groups.
+#[test]
+fn elements_of_version_4_on_the_same_nodes_are_one() {
+    // Triangle 90 comes again as 95 in the surface "upper", between others; its edge comes again in a second curve.
+    let text = SQUARE
+        .replace("0 1 2 0\n", "0 2 2 0\n")
+        .replace("1 0 0 0 1 0 0 1 1 0\n", "1 0 0 0 1 0 0 1 1 0\n2 0 0 0 1 0 0 1 2 0\n")
+        .replace("3 3 10 90\n", "4 5 10 97\n")
+        .replace(
+            "2 1 2 1\n90 2 30 4\n2 2 2 1\n50 2 9 4",
+            "1 2 1 1\n97 2 30\n2 2 2 2\n95 4 2 30\n96 2 9 4\n2 1 2 1\n90 2 30 4",
+        );
+    let read = plane(of_bytes(text.as_bytes()).unwrap());
+    assert_eq!(read.element_tags, [90, 96]);
+    let numbers = |group: &str| read.mesh.element_groups()[group].iter().map(|e| e.index()).collect::<Vec<_>>();
+    assert_eq!((numbers("lower"), numbers("upper")), (vec![0], vec![0, 1]));
+    for foot in ["foot", "2"] {
+        let facet = read.mesh.facet_groups()[foot][0];
+        assert_eq!(read.mesh.facets()[facet.index()].nodes.map(|node| node.index()), [0, 3]);
+    }
+    let notice = read.mesh.notices().iter().find(|notice| notice.name == "duplicate_elements").unwrap();
+    assert!(notice.message.contains("1 element of the mesh file (tag 95) was left out"), "{}", notice.message);
 }
 
 #[test]

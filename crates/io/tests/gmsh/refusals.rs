@@ -1,7 +1,7 @@
 //! Files that are refused: each with its place, in the tags of Gmsh, and with what to do there.
 
 use crate::common::*;
-use percute_io::gmsh::{Place, read};
+use percute_io::gmsh::{Place, parse, read};
 
 /// What is said of a file, and where.
 fn said(text: &str) -> (String, Option<Place>) {
@@ -29,7 +29,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("50 2 9 4", "0 2 9 4", &["the tag of an element is 0"], "0 2"),
         ("\n9\n6\n", "\n9\n4\n", &["node 4 is given twice"], "4"),
         ("50 2 9 4", "50 2 4 4", &["element 50 is degenerate: its nodes [2, 4, 4]", "tags in Gmsh"], "50"),
-        ("50 2 9 4", "50 2 30 4", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
+        ("50 2 9 4", "50 2 30 9", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
         ("0 1 0\n7 7 7", "0 1 0.5\n7 7 7", &["not in a plane z = const", "node 9 has z = 0.5 m"], ""),
         ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["`inf` stands where a coordinate of a node"], "0 1 inf"),
         ("0 1 0\n7 7 7", "0 1 0,5\n7 7 7", &["`0,5` stands where a coordinate of a node"], "0 1 0,5"),
@@ -109,12 +109,24 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
     for (text, phrase) in [
         ("", "it is empty"),
         ("Point(1) = {0, 0, 0};\n", "gmsh -2 block.geo"),
+        ("SetFactory(\"OpenCASCADE\");\n", "gmsh -2 block.geo"),
+        ("// a block\nlc = 1;\n", "gmsh -2 block.geo"),
         ("# vtk DataFile Version 5.1\n", "the extra `mesh`"),
+        ("<VTKFile type=\"UnstructuredGrid\">\n<PointData>\n<Points>\n", "the extra `mesh`"),
+        ("$ NASTRAN, mesh of a block\nGRID,1,,0.,0.,0.\n", "no Gmsh mesh: it begins with `$ NASTRAN"),
+        ("$ NASTRAN\n$ GRID Point(1)\n", "the extra `mesh`"),
         ("$NOD\n3\n", "version 1 of the MSH format"),
     ] {
         let (message, place) = said(text);
         assert!(message.contains(phrase), "{message}");
         assert_eq!(place, Some(Place::Line(1)));
+    }
+    let by_ending = |name: &str, text: &str| parse(name.as_ref(), text.as_bytes(), 1.0).unwrap_err().to_string();
+    for (name, text) in [("a.geo", "lc = 1;\n"), ("a.GEO", "h = 2;\nPoint(1) = {0, 0, 0};\n")] {
+        assert!(by_ending(name, text).contains("gmsh -2 block.geo"), "{}", by_ending(name, text));
+    }
+    for (name, text) in [("a.geo", "<VTKFile>"), ("a.geo", ""), ("a.inp", "*Part\nPoint(1)\n")] {
+        assert!(by_ending(name, text).contains("the extra `mesh`"), "{}", by_ending(name, text));
     }
     let missing = read("/nowhere/a.msh".as_ref(), 1.0).unwrap_err().to_string();
     assert!(missing.contains("/nowhere/a.msh: there is no such file"), "{missing}");
@@ -123,13 +135,27 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
 }
 
 #[test]
-fn a_scale_must_be_positive_and_leave_numbers_finite() {
-    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+fn a_scale_must_be_positive_and_of_a_sane_size() {
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1.1e12, 0.9e-12, 1e-300] {
         let error = read(&file("block-4.1.msh"), scale).unwrap_err().to_string();
-        assert!(error.contains("must be a positive finite number"), "{error}");
+        assert!(error.contains(&format!("the scale is {scale:?}; it must be a positive number from 1e-12")), "{error}");
+        assert!(error.contains("1e-3 for millimetres"), "{error}");
     }
-    let error = read(&file("block-4.1.msh"), 1e308).unwrap_err().to_string();
+    for scale in [1e-12, 1e12] {
+        assert!(read(&file("block-4.1.msh"), scale).is_ok(), "{scale}");
+    }
+    let far = SQUARE.replace("1 1 0\n0 1 0", "1e300 1 0\n0 1 0");
+    let error = parse("a.msh".as_ref(), far.as_bytes(), 1e12).unwrap_err().to_string();
     assert!(error.contains("must be finite") && error.contains("is the scale as meant?"), "{error}");
+}
+
+#[test]
+fn a_name_that_is_no_utf_8_is_not_called_damage() {
+    let latin: Vec<u8> = SQUARE.replace("foot", "Fuß").chars().map(|c| c as u8).collect();
+    let error = of_bytes(&latin).unwrap_err();
+    assert!(error.to_string().contains("save names in UTF-8"), "{error}");
+    assert!(!error.to_string().contains("damaged"), "{error}");
+    assert_eq!(error.place, Some(Place::Line(6)));
 }
 
 /// A binary file names the byte.
