@@ -139,7 +139,8 @@ fn about_number(number: &str, rest: &str, in_list: bool) -> Option<&'static str>
     }
     let number = number.trim_start_matches(['+', '-']);
     let mantissa = number.split(['e', 'E']).next().unwrap_or_default();
-    if mantissa.contains(['+', '-']) || next.is_some_and(|c| "+-".contains(c)) {
+    let exponent = number[mantissa.len()..].get(1..).unwrap_or_default().trim_start_matches(['+', '-']);
+    if mantissa.contains(['+', '-']) || exponent.contains(['+', '-']) || next.is_some_and(|c| "+-".contains(c)) {
         return Some(ARITHMETIC);
     }
     if mantissa.starts_with('.') || mantissa.ends_with('.') {
