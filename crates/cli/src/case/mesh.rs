@@ -72,7 +72,9 @@ pub(super) fn file(table: &Table<'_>) -> Option<PathBuf> {
 /// A mesh in a file of Gmsh, relative to the folder of the case.
 fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let file = value.source.beside(value.text("the name of a Gmsh file, such as \"block.msh\"")?.as_ref());
-    let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.number("metres per unit of length in the file"))?;
+    let scale = table
+        .get("scale")
+        .map_or(Ok(1.0), |scale| scale.number("metres per unit of length in the file: 1e-3 for millimetres"))?;
     match gmsh::read(&file, scale) {
         Ok(MeshFile::Bar(read)) => Ok(AnyMesh::Bar(read.mesh)),
         Ok(MeshFile::Plane(read)) => Ok(AnyMesh::Plane(read.mesh)),
