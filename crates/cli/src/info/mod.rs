@@ -4,9 +4,11 @@
 mod estimate;
 pub mod memory;
 mod mesh;
+mod setting;
 
 pub use estimate::{EstimateInfo, of_estimate};
 pub use mesh::{GroupInfo, MeshInfo, of_mesh};
+pub use setting::{MaterialInfo, PlaneInfo};
 
 use crate::case::{CaseOf, Output, Unsayable};
 use crate::history::{Stored, plan};
@@ -40,6 +42,8 @@ pub struct CaseInfo {
     pub versions: Versions,
     pub file: String,
     pub problem: ProblemSummary,
+    pub materials: Vec<MaterialInfo>,
+    pub planes: Vec<PlaneInfo>,
     pub time: TimeInfo,
     pub history_bytes: u64,
     pub run_memory: u64,
@@ -129,6 +133,8 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
         versions: Versions::of_this_program(),
         file: case.source.name().to_string(),
         problem: problem_summary(&case.subject()),
+        materials: setting::materials(&case.problem),
+        planes: setting::planes(&case.problem),
         time: TimeInfo::new(&case.times, case.critical_step),
         history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source))?.bytes(),
         run_memory: memory::of_run(&case.problem, &case.times),
@@ -184,6 +190,8 @@ impl Info {
 impl CaseInfo {
     fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines = vec![("case", self.file.clone()), ("body", body(&self.problem))];
+        lines.extend(self.materials.iter().map(MaterialInfo::line));
+        lines.extend(self.planes.iter().map(PlaneInfo::line));
         lines.extend(self.time.lines());
         lines.push(("history", format!("{} on disk", bytes(self.history_bytes))));
         let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));

@@ -225,8 +225,9 @@ fn info_is_a_few_lines() {
             "case.toml",
             [
                 "case      case.toml",
-                "40 triangles",
-                "critical",
+                "material  E 7e10 Pa, density 2700 kg/m³",
+                // 0.5 mm at 400 m/s.
+                "plane     gap 5e-4 m at 400 m/s: 1.25e-6 s, 6 nodes may touch",
                 "on disk",
                 "for the estimate",
                 "output    history to h.vtkhdf",
