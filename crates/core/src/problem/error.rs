@@ -86,8 +86,8 @@ pub enum Cause {
     },
     /// Waves faster than light.
     #[error(
-        "is {density:?} kg/m³; with a Young's modulus of {young:?} Pa waves would run at {speed:.3e} m/s, faster than light: did you \
-         mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa"
+        "is {density:?} kg/m³; with a Young's modulus of {} Pa waves would run at {speed:.3e} m/s, faster than light: did you \
+         mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa", short(*.young)
     )]
     FasterThanLight {
         /// Density (kg/m³).
@@ -255,8 +255,8 @@ pub enum Cause {
     },
     /// The body on the wrong side of a plane.
     #[error(
-        "the whole body lies behind the plane, node {node} by {depth:.6e} m; the normal must point from the plane to the body: \
-         should it be {}?", vector(.reversed)
+        "the whole body lies behind the plane, node {node} by {} m; the normal must point from the plane to the body: \
+         should it be {}?", short(*.depth), vector(.reversed)
     )]
     Behind {
         /// The deepest node.
@@ -268,8 +268,8 @@ pub enum Cause {
     },
     /// A node behind the plane.
     #[error(
-        "the plane cuts through the body: node {node} starts {depth:.6e} m behind it; move the plane by more than that against its \
-         normal, to {} or beyond", vector(.clear)
+        "the plane cuts through the body: node {node} starts {} m behind it; move the plane by more than that against its \
+         normal, to {} or beyond", short(*.depth), vector(.clear)
     )]
     Penetrates {
         /// The deepest node.
