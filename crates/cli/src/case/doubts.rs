@@ -5,31 +5,33 @@ use crate::case::table::Table;
 use crate::info::memory;
 use crate::report::number::bytes;
 use crate::report::{Warning, few_samples};
-use percute_core::problem::{Place, doubts};
+use percute_core::problem::{Doubt, Place, doubts};
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
     /// What may be meant, but more likely is not, each with its line: to be told before the run. With `in_memory`, the
     /// history is kept in memory.
     #[must_use]
     pub fn doubts(&self, in_memory: bool) -> Vec<Warning> {
-        let Ok(document) = parsed(&self.source) else { return Vec::new() };
-        let root = Table::root(&self.source, document.get_ref());
-        let located = |place: Place, name, brief: String, message: String| {
-            let message = self.source.error(&place::find(&root, place), message).to_string();
-            Warning { name, brief, message }
-        };
-        let stated = doubts(&self.problem, &self.times);
-        let mut all: Vec<Warning> =
-            stated.into_iter().map(|doubt| located(doubt.place, doubt.name, doubt.brief, doubt.message)).collect();
-        all.extend(few_samples(self.options.every, self.times.step_count()).map(|few| {
-            let place = Place { table: "estimate", index: None, key: "every" };
-            located(place, few.name, few.brief, few.message)
+        let mut all = doubts(&self.problem, &self.times);
+        all.extend(few_samples(self.options.every, self.times.step_count()).map(|Warning { name, brief, message }| {
+            Doubt { place: Place { table: "estimate", index: None, key: "every" }, name, brief, message }
         }));
         let needed = memory::of_case(self, in_memory);
         all.extend(memory::scarce(needed, memory::available(), in_memory).map(|message| {
             let place = Place { table: "mesh", index: None, key: "" };
-            located(place, "memory", format!("the run needs {}", bytes(needed)), message)
+            Doubt { place, name: "memory", brief: format!("the run needs {}", bytes(needed)), message }
         }));
-        all
+        // The lines are looked up only if there is something to say: meshes as arrays make long texts.
+        if all.is_empty() { Vec::new() } else { self.at_their_lines(all) }
+    }
+
+    fn at_their_lines(&self, doubts: Vec<Doubt>) -> Vec<Warning> {
+        let Ok(document) = parsed(&self.source) else { return Vec::new() };
+        let root = Table::root(&self.source, document.get_ref());
+        let located = |Doubt { place, name, brief, message }| {
+            let message = self.source.error(&place::find(&root, place), message).to_string();
+            Warning { name, brief, message }
+        };
+        doubts.into_iter().map(located).collect()
     }
 }

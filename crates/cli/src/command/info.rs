@@ -7,8 +7,7 @@ use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
 use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
 use crate::report::noticed;
-use percute_io::gmsh::{self, MeshFile};
-use percute_io::{Kind, estimate_file, kind};
+use percute_io::{Kind, estimate_file, gmsh, kind};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -37,12 +36,9 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
 /// A mesh as it is, in the unit of the file.
 fn of_gmsh(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let mesh = gmsh::read(file, 1.0).map_err(|error| Failure::Argument(error.to_string()))?;
-    let notices: Vec<_> = match &mesh {
-        MeshFile::Bar(read) => noticed(&read.mesh).collect(),
-        MeshFile::Plane(read) => noticed(&read.mesh).collect(),
-    };
-    console.warn(&notices);
-    Ok(of_mesh(file, &mesh))
+    let info = of_mesh(file, &mesh);
+    console.warn(&info.warnings);
+    Ok(Info::Mesh(Box::new(info)))
 }
 
 /// A case, unless it is no text at all.

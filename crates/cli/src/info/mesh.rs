@@ -1,6 +1,5 @@
 //! What a mesh file holds.
 
-use super::Info;
 use crate::report::number::short;
 use crate::report::{FORMAT, Versions, Warning, noticed};
 use percute_core::mesh::Mesh;
@@ -36,11 +35,11 @@ pub struct GroupInfo {
 
 /// What a mesh file holds.
 #[must_use]
-pub fn of_mesh(path: &Path, file: &MeshFile) -> Info {
-    Info::Mesh(Box::new(match file {
+pub fn of_mesh(path: &Path, file: &MeshFile) -> MeshInfo {
+    match file {
         MeshFile::Bar(read) => told(path, &read.mesh),
         MeshFile::Plane(read) => told(path, &read.mesh),
-    }))
+    }
 }
 
 fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshInfo {

@@ -40,17 +40,13 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
 /// The planes, in their order.
 pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
     let told = |(obstacle, plane): (usize, &percute_core::obstacle::Plane<D>)| {
-        let (surface, mut told) =
-            (problem.surface(), PlaneInfo { gap: f64::INFINITY, contact_nodes: 0, approach_speed: f64::NEG_INFINITY });
-        let mine = surface.nodes().iter().enumerate().filter(|(_, node)| node.obstacle == obstacle && node.free);
-        for (at, contact) in mine {
-            let node = contact.node.index();
-            let gap = surface.gap(at, &problem.initial_displacement()[node], problem.obstacles());
-            told.gap = told.gap.min(gap);
-            told.approach_speed = told.approach_speed.max(-plane.split(&problem.initial_velocity()[node]).0);
-            told.contact_nodes += 1;
+        let mine = problem.surface().nodes().iter().filter(|node| node.obstacle == obstacle && node.free);
+        let speeds = mine.clone().map(|contact| -plane.split(&problem.initial_velocity()[contact.node.index()]).0);
+        PlaneInfo {
+            gap: problem.initial_gap(obstacle),
+            contact_nodes: mine.count(),
+            approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
         }
-        told
     };
     problem.obstacles().iter().enumerate().map(told).collect()
 }

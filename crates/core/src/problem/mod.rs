@@ -210,6 +210,16 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         &self.surface
     }
 
+    /// The smallest gap at the start of the nodes that may touch a plane (m), eq. \[3\].
+    #[must_use]
+    pub fn initial_gap(&self, obstacle: usize) -> f64 {
+        let candidates = self.surface.nodes().iter().enumerate().filter(|(_, c)| c.obstacle == obstacle && c.free);
+        let gap = |(at, c): (usize, &ContactNode)| {
+            self.surface.gap(at, &self.initial_displacement()[c.node.index()], self.obstacles())
+        };
+        candidates.map(gap).fold(f64::INFINITY, f64::min)
+    }
+
     /// Volume of an element with section or thickness (m³).
     #[must_use]
     pub fn volume(&self, element: ElementId) -> f64 {

@@ -118,13 +118,7 @@ struct Approach {
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<Doubt> {
     let flight = flight(problem)?;
     let approach = |(obstacle, plane): (usize, &crate::obstacle::Plane<D>)| {
-        let surface = problem.surface();
-        let candidates = surface.nodes().iter().enumerate().filter(|(_, node)| node.obstacle == obstacle && node.free);
-        let displacement = problem.initial_displacement();
-        let gap = |(at, node): (usize, &crate::problem::ContactNode)| {
-            surface.gap(at, &displacement[node.node.index()], problem.obstacles())
-        };
-        let gap = candidates.map(gap).fold(f64::INFINITY, f64::min).max(0.0);
+        let gap = problem.initial_gap(obstacle).max(0.0);
         let (speed, push) = (-dot(&flight.velocity, plane.normal()), -dot(&flight.acceleration, plane.normal()));
         // What rounding leaves of a gap is none.
         let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
