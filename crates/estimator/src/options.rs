@@ -73,6 +73,11 @@ pub struct UnknownName {
 /// Gives the variants of an option their names, for reading and printing.
 macro_rules! named {
     ($type:ident: $($variant:ident = $name:literal),+) => {
+        impl $type {
+            /// All of them, in the order in which they are named to users.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+        }
+
         impl FromStr for $type {
             type Err = UnknownName;
 
@@ -103,10 +108,10 @@ mod tests {
 
     #[test]
     fn names_round_trip() {
-        for choice in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
+        for &choice in Acceleration::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        for choice in [ContactForce::Sharp, ContactForce::Paper] {
+        for &choice in ContactForce::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
         assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["sharp", "paper"]);
