@@ -7,6 +7,7 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur en
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
+mod companion;
 mod contact_force;
 mod element;
 mod error;

@@ -7,12 +7,16 @@ use thiserror::Error;
 /// The most threads that an estimate may use: more than any machine has cores for are a slip.
 pub const MOST_THREADS: usize = 1024;
 
-/// How contact reactions become admissible densities.
+/// The reading of the contact force, and what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactForce {
+    /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
+    /// normal contact law measured where they act off contact; the balance of a companion solution with less
+    /// dispersion; tractions of least energy.
+    #[default]
+    Whole,
     /// On each interval, on the edges that touch throughout it, statically equivalent to the
     /// reactions: force starts with contact.
-    #[default]
     Sharp,
     /// The paper's: reaction over tributary length, from one step after impact to one step before
     /// release and away from the border of the contact zone (eq. \[45\]–\[50\]).
@@ -99,7 +103,7 @@ macro_rules! named {
     };
 }
 
-named!(ContactForce: Sharp = "sharp", Paper = "paper");
+named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]
@@ -114,6 +118,6 @@ mod tests {
         for &choice in ContactForce::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["sharp", "paper"]);
+        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["whole", "sharp", "paper"]);
     }
 }

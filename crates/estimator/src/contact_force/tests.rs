@@ -23,7 +23,7 @@ fn surface() -> SurfaceStep<2> {
 
 fn residuals(interval: &Interval<2>) -> Residuals {
     let mut residuals = Residuals::default();
-    check(&problem(), &surface(), &surface(), interval, &mut residuals);
+    check(&problem(), &surface(), &surface(), interval, false, &mut residuals);
     residuals
 }
 
@@ -80,7 +80,7 @@ fn forces_beside_a_release_show() {
     let mut released = surface();
     released.touching[3] = false;
     let mut found = Residuals::default();
-    check(&problem(), &surface(), &released, &sharp, &mut found);
+    check(&problem(), &surface(), &released, &sharp, false, &mut found);
     assert!(found.force_off_contact > 1e-6);
 }
 

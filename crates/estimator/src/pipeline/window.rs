@@ -13,9 +13,9 @@ use crate::estimate::{Estimate, Sample};
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
 use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
-use crate::options::{Acceleration, Options};
+use crate::options::{Acceleration, ContactForce, Options};
 use crate::residual::{Residuals, worse};
-use crate::traction::Equilibration;
+use crate::traction::{Equilibration, LeastEnergy};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -67,6 +67,8 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     equilibration: Equilibration<'p, D, N>,
+    /// What improves the tractions of the reading `whole`.
+    least_energy: Option<LeastEnergy<D>>,
     choice: Acceleration,
     /// Number of intervals worked on at once.
     size: usize,
@@ -87,10 +89,13 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         let near = near_elements(problem);
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
+        let equilibration = Equilibration::new(problem);
+        let whole = options.contact_force == ContactForce::Whole;
         Self {
             problem,
             times,
-            equilibration: Equilibration::new(problem),
+            least_energy: if whole { LeastEnergy::new(problem, &equilibration.elements) } else { None },
+            equilibration,
             choice: options.acceleration,
             size: size(problem, options),
             levels: Vec::new(),
@@ -130,6 +135,9 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         pool.install(|| {
             self.stresses(first);
             self.stars(first);
+            if let Some(least_energy) = &self.least_energy {
+                least_energy.improve(self.problem, &self.equilibration, self.choice, &mut self.levels[first..]);
+            }
             let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
             self.maps.begin(problem, times.instants(), equilibration, choice, &self.levels[first..]);
             self.far_elements(first);

@@ -9,7 +9,7 @@ use percute_core::dynamics::simulate;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::PI;
 
@@ -31,7 +31,12 @@ fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>,
     let end = PERIODS * 2.0 * PI / MODE.angular_frequency();
     // Δt_c = h/c on a uniform bar, eq. [33].
     let times = TimeGrid::with_step(end, courant * MODE.length / elements as f64 / 2.0).unwrap();
-    let estimator = Estimator::new(&problem, &times, Options { acceleration, ..Options::default() }).unwrap();
+    let estimator = Estimator::new(
+        &problem,
+        &times,
+        Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() },
+    )
+    .unwrap();
     let mut sink = (Recorder::new(&problem, &times), estimator);
     simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
     (sink.0.finish(), sink.1.finish().unwrap(), times.step(0))
