@@ -23,14 +23,17 @@ pub(crate) struct Companion<const D: usize> {
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
     correction: Vec<[f64; D]>,
+    /// Whether it is made at all.
+    corrected: bool,
 }
 
 impl<const D: usize> Companion<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
         Self {
             displacement: problem.initial_displacement().to_vec(),
             half_step: problem.initial_velocity().to_vec(),
             correction: vec![[0.0; D]; problem.mesh().node_count()],
+            corrected,
         }
     }
 
@@ -52,7 +55,9 @@ impl<const D: usize> Companion<D> {
             return;
         }
         let (h, dt) = (times.velocity_step(n), times.step(n));
-        self.correct(problem, dynamics, dt * times.step(n.saturating_sub(1)), acceleration);
+        if self.corrected {
+            self.correct(problem, dynamics, dt * times.step(n.saturating_sub(1)), acceleration);
+        }
         let states = self.half_step.iter_mut().zip(&mut self.displacement).zip(acceleration).zip(&self.correction);
         for (((v, u), a), correction) in states {
             for c in 0..D {
@@ -120,3 +125,6 @@ fn mass_difference<const D: usize, const N: usize>(
     }
     difference
 }
+
+#[cfg(test)]
+mod tests;

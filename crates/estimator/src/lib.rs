@@ -30,7 +30,7 @@ mod traction;
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use map::{AdmissibleFields, ElementMap};
-pub use options::{Acceleration, ContactForce, MOST_THREADS, Options, UnknownName};
+pub use options::{Ablation, Acceleration, ContactForce, MOST_THREADS, Options, UnknownName};
 pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};

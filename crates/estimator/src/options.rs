@@ -35,6 +35,26 @@ pub enum Acceleration {
     Weak,
 }
 
+/// What the reading [`ContactForce::Whole`] is without one of its parts, or with another: no choice for an estimate, but
+/// the evidence of what each part is for. The other readings have none of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ablation {
+    /// All parts.
+    #[default]
+    None,
+    /// The balance of the simulation's own displacements, with accelerations that take up what the nodal forces of the
+    /// density and the reactions differ by.
+    Companion,
+    /// A companion with the dispersion of the simulation.
+    Correction,
+    /// The tractions of the star problems.
+    LeastEnergy,
+    /// No work of normal forces, only their energy off contact.
+    NormalWork,
+    /// Twice the work of normal forces, as \[14\] has twice that of friction.
+    DoubledWork,
+}
+
 /// Options of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -42,6 +62,8 @@ pub struct Options {
     pub contact_force: ContactForce,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
+    /// For evidence only.
+    pub ablation: Ablation,
     /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, … and at the end, so that the
     /// mean covers the whole run.
     pub every: usize,
@@ -57,6 +79,7 @@ impl Default for Options {
         Self {
             contact_force: ContactForce::default(),
             acceleration: Acceleration::default(),
+            ablation: Ablation::default(),
             every: 1,
             window: None,
             threads: None,
@@ -104,6 +127,8 @@ macro_rules! named {
 }
 
 named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
+named!(Ablation: None = "none", Companion = "companion", Correction = "correction", LeastEnergy = "least energy",
+    NormalWork = "normal work", DoubledWork = "doubled work");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]

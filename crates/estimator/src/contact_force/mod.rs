@@ -48,6 +48,11 @@ impl<const D: usize> Reading<D> {
         }
     }
 
+    /// Whether forces may act where a node does not touch.
+    pub(crate) fn acts_off_contact(&self) -> bool {
+        matches!(self, Self::Whole(_))
+    }
+
     /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
     /// them; there is none before the first, nor after the last.
     pub(crate) fn interval<const N: usize>(

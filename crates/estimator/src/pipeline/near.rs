@@ -109,6 +109,8 @@ pub(crate) struct Context<'a, 'p, const D: usize, const N: usize> {
     pub(crate) times: &'p TimeGrid,
     pub(crate) equilibration: &'a Equilibration<'p, D, N>,
     pub(crate) choice: Acceleration,
+    /// Weight of the work of normal forces off contact.
+    pub(crate) normal_work: f64,
     pub(crate) tracks: &'a [ContactTrack],
     pub(crate) maps: &'a Maps<D>,
 }
@@ -196,6 +198,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             for pressed in &waiting.pressed {
                 normal.add(&pressed.misfit(context.problem, context.times, context.tracks));
             }
+            normal.work.iter_mut().for_each(|work| *work *= context.normal_work);
             let so_far = self.normal_work;
             let contact = |k: usize, friction: f64| friction + (so_far + normal.work[k]) + normal.energy[k];
             let mut interval = NearInterval::default();

@@ -11,7 +11,7 @@ use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
 use crate::level::Level;
 use crate::loaded::LoadedFacets;
-use crate::options::Options;
+use crate::options::{Ablation, Options};
 use crate::residual::{Residuals, worse};
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
@@ -53,7 +53,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             times,
             dynamics: Dynamics::new(problem, times),
             loaded: LoadedFacets::new(problem),
-            companion: matches!(reading, Reading::Whole(_)).then(|| Companion::new(problem)),
+            companion: (matches!(reading, Reading::Whole(_)) && options.ablation != Ablation::Companion)
+                .then(|| Companion::new(problem, options.ablation != Ablation::Correction)),
             reading,
             every: options.every,
             motion: FreeMotion::new(problem),

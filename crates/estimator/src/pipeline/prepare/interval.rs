@@ -15,7 +15,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let after = level(2).map(|l| &l.surface);
         let before = self.before.as_ref();
         let interval = self.reading.interval(self.problem, before, &now.surface, &next.surface, after);
-        let off_contact = self.companion.is_some();
+        let off_contact = self.reading.acts_off_contact();
         let residuals = &mut self.residuals;
         contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
@@ -100,7 +100,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             let plane = &problem.obstacles()[problem.surface().facets()[facet].obstacle];
             [&now.density_after[facet], &next.density_before[facet]].map(|density| density.map(|f| plane.split(&f).0))
         };
-        let pressures = self.companion.is_some().then(|| (0..contact.len()).map(pressures).collect());
+        let pressures = self.reading.acts_off_contact().then(|| (0..contact.len()).map(pressures).collect());
         self.levels[first + 1].contact = contact;
         self.levels[first + 1].pressures = pressures.into_iter().collect();
     }

@@ -94,3 +94,6 @@ impl<const D: usize> LeastEnergy<D> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests;
