@@ -55,9 +55,14 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     // At the level and half way to the next.
     let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
     let steps = times.step_count() / options.every.max(1) + 1;
+    let elements = problem.mesh().element_count();
+    let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
+    let whole = D > 1 && options.contact_force == ContactForce::Whole;
+    let least_energy = if whole { LeastEnergy::<D>::memory(elements, levels, threads) } else { 0 };
     levels
         .saturating_mul(bytes_of_level(problem))
-        .saturating_add(element.saturating_mul(problem.mesh().element_count()))
+        .saturating_add(least_energy)
+        .saturating_add(element.saturating_mul(elements))
         .saturating_add(step.saturating_mul(steps))
 }
 

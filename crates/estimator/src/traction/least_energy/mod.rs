@@ -33,7 +33,7 @@ pub(crate) type Form = [[f64; MOMENTS]; MOMENTS];
 
 /// Instants worked on together: each form is read once for all of them, and their numbers lie side by side.
 /// None of them depends on which others it is with.
-pub(super) const LANES: usize = 4;
+pub(super) const LANES: usize = 8;
 
 /// A number at each of these instants.
 pub(super) type Lanes = [f64; LANES];
@@ -57,6 +57,16 @@ impl<const D: usize> LeastEnergy<D> {
         };
         let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
         Some(Self { basis: Basis::new(problem, &forms), forms })
+    }
+
+    /// About how much memory it takes (bytes), with so many levels in a window and so many threads.
+    pub(crate) fn memory(elements: usize, levels: usize, threads: usize) -> usize {
+        // Forms, and in a triangulation three edges and half a node of its basis for two elements.
+        let fixed = size_of::<Form>() + 3 * size_of::<basis::Side>() + 600;
+        // Slopes of each level; of each chunk at work, three arrays of moments and four of modes.
+        let chunk = size_of::<Lanes>() * (3 * 6 + 4 * 3);
+        let chunks = levels.div_ceil(LANES).min(threads);
+        elements.saturating_mul(fixed + levels * size_of::<[f64; MOMENTS]>() + chunks * chunk)
     }
 
     /// Improves the moments of all levels.
