@@ -47,6 +47,8 @@ pub enum Ablation {
     Companion,
     /// A companion with the dispersion of the simulation.
     Correction,
+    /// Reactions as they are, however short the step in which they stop a node.
+    Stopping,
     /// The tractions of the star problems.
     LeastEnergy,
     /// No work of normal forces, only their energy off contact.
@@ -127,7 +129,7 @@ macro_rules! named {
 }
 
 named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
-named!(Ablation: None = "none", Companion = "companion", Correction = "correction", LeastEnergy = "least energy",
+named!(Ablation: None = "none", Companion = "companion", Correction = "correction", Stopping = "stopping", LeastEnergy = "least energy",
     NormalWork = "normal work", DoubledWork = "doubled work");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 

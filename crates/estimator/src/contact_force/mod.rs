@@ -6,12 +6,14 @@
 
 mod paper;
 mod sharp;
+mod stopping;
 mod whole;
 
 use crate::options::ContactForce;
 use crate::residual::{Residuals, worse};
 use paper::Paper;
 use percute_core::problem::{ContactFacet, Problem};
+pub(crate) use stopping::Stopping;
 use whole::Whole;
 
 /// Nodal values of a density on each candidate facet (Pa).
@@ -21,6 +23,8 @@ pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceStep<const D: usize> {
     pub(crate) reaction: Vec<[f64; D]>,
+    /// What the densities of `whole` are made of: the reactions, with the impulses that stop a node spread.
+    pub(crate) pressing: Vec<[f64; D]>,
     pub(crate) touching: Vec<bool>,
 }
 
@@ -73,8 +77,8 @@ impl<const D: usize> Reading<D> {
             },
             Self::Sharp => sharp::interval(problem, now, next),
             Self::Whole(whole) => Interval {
-                start: whole.densities(problem, &now.reaction),
-                end: whole.densities(problem, &next.reaction),
+                start: whole.densities(problem, &now.pressing),
+                end: whole.densities(problem, &next.pressing),
             },
         }
     }

@@ -18,7 +18,7 @@ fn problem() -> TriangleProblem {
 /// Nodes 0 to 3 of five touch, pressed and pulled along the plane up to the cone.
 fn surface() -> SurfaceStep<2> {
     let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
-    SurfaceStep { reaction, touching: vec![true, true, true, true, false] }
+    SurfaceStep { pressing: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
 }
 
 fn residuals(interval: &Interval<2>) -> Residuals {
@@ -109,7 +109,7 @@ fn a_node_that_touches_alone_gets_no_force() {
 #[test]
 fn a_phase_of_one_step_gets_no_force() {
     let problem = problem();
-    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], pressing: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [&off, &surface(), &off];
     for choice in [ContactForce::Sharp, ContactForce::Paper] {
         let reading = Reading::new(choice, &problem);
@@ -122,7 +122,7 @@ fn a_phase_of_one_step_gets_no_force() {
 
 /// All five nodes touch and are pressed.
 fn pressed() -> SurfaceStep<2> {
-    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
+    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], pressing: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
 }
 
 /// Whether there is force at any place, at the beginning and at the end of a step.
@@ -135,7 +135,7 @@ fn acts(interval: &Interval<2>) -> [bool; 2] {
 #[test]
 fn force_begins_and_ends_with_contact() {
     let problem = problem();
-    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], pressing: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [off(), pressed(), pressed(), pressed(), pressed(), off()];
     let interval = |choice, n: usize, last: usize| {
         let before = n.checked_sub(1).map(|m| &steps[m]);
@@ -206,7 +206,7 @@ fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
 /// just arrived if `arriving`. All reactions are 1 N.
 fn paper_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let (problem, [left, right, middle]) = kinked(slope);
-    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
+    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], pressing: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
     let mut before = now.clone();
     before.touching[right] = !arriving;
     let reading = Reading::new(ContactForce::Paper, &problem);
@@ -253,7 +253,7 @@ fn the_whole_reaction_is_kept() {
     let problem = problem();
     let mut step = surface();
     // The last node brakes: it has a reaction before it touches.
-    step.reaction[4] = [1.0, 50.0];
+    step.pressing[4] = [1.0, 50.0];
     let reading = Reading::new(ContactForce::Whole, &problem);
     let first = reading.interval(&problem, None, &surface(), &step, None);
     let second = reading.interval(&problem, None, &step, &surface(), None);
@@ -262,11 +262,11 @@ fn the_whole_reaction_is_kept() {
     for c in 0..2 {
         let sum = |forces: &[[f64; 2]]| forces.iter().map(|f| f[c]).sum::<f64>();
         // Rounding of a dozen terms.
-        assert!((sum(&kept) - sum(&step.reaction)).abs() < 1e-12 * 600.0);
+        assert!((sum(&kept) - sum(&step.pressing)).abs() < 1e-12 * 600.0);
     }
     assert!(residuals(&first).cone < 1e-14 && first.end[3][1][1] > 0.0);
     // A reaction out of the cone, as a foreign history may have, is projected.
-    step.reaction[0] = [0.0, -10.0];
+    step.pressing[0] = [0.0, -10.0];
     let cut = reading.interval(&problem, None, &step, &step, None);
     assert_eq!(cut.start[0][0], [0.0; 2]);
 }

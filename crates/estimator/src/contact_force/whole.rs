@@ -25,13 +25,13 @@ impl Whole {
     pub(crate) fn densities<const D: usize, const N: usize>(
         &self,
         problem: &Problem<D, N>,
-        reaction: &[[f64; D]],
+        pressing: &[[f64; D]],
     ) -> Densities<D> {
         let mut densities = none(problem);
         for (facet, density) in problem.surface().facets().iter().zip(&mut densities) {
             let plane = &problem.obstacles()[facet.obstacle];
             // Reactions of the integrator are in the cone; those of a foreign history need not be.
-            *density = facet.nodes.map(|k| plane.project_into_cone(&reaction[k].map(|r| r / self.tributary[k])));
+            *density = facet.nodes.map(|k| plane.project_into_cone(&pressing[k].map(|r| r / self.tributary[k])));
         }
         densities
     }

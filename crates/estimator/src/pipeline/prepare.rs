@@ -5,7 +5,7 @@ mod interval;
 mod supports;
 
 use crate::companion::Companion;
-use crate::contact_force::{Reading, SurfaceStep};
+use crate::contact_force::{Reading, Stopping, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
@@ -31,6 +31,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     reading: Reading<D>,
     /// What the balance of the reading `whole` is built on.
     companion: Option<Companion<D>>,
+    stopping: Option<Stopping<D>>,
     every: usize,
     motion: FreeMotion<D>,
     tracks: Vec<ContactTrack>,
@@ -55,6 +56,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             loaded: LoadedFacets::new(problem),
             companion: (matches!(reading, Reading::Whole(_)) && options.ablation != Ablation::Companion)
                 .then(|| Companion::new(problem, options.ablation != Ablation::Correction)),
+            stopping: (reading.acts_off_contact() && options.ablation != Ablation::Stopping)
+                .then(|| Stopping::new(problem)),
             reading,
             every: options.every,
             motion: FreeMotion::new(problem),
@@ -156,13 +159,17 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let miss = self.supports.advance(self.problem, self.times, n, &knot);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
-        let (displacement, force) = self.source_of_balance(step, force);
+        let pressing = match &mut self.stopping {
+            Some(stopping) => stopping.advance(self.problem, self.times, n, step.reaction, &acceleration),
+            None => step.reaction.to_vec(),
+        };
+        let (displacement, force) = self.source_of_balance(n, step.displacement, &pressing, force);
         self.levels.push_back(Level {
             displacement,
             force,
             body_force: self.problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
-            surface: SurfaceStep { reaction: step.reaction.to_vec(), touching: step.touching.to_vec() },
+            surface: SurfaceStep { reaction: step.reaction.to_vec(), pressing, touching: step.touching.to_vec() },
             ..Level::new(n, mid, knot, self.problem.surface().facets().len())
         });
         if n == 0 {
@@ -219,13 +226,19 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// The displacement whose stress is equilibrated, and its forces but contact: those of the simulation, or the
     /// companion's, which then goes on to the next step.
-    fn source_of_balance(&mut self, step: &Step<'_, D>, mut force: Vec<[f64; D]>) -> Motion<D> {
+    fn source_of_balance(
+        &mut self,
+        n: usize,
+        displacement: &[[f64; D]],
+        pressing: &[[f64; D]],
+        mut force: Vec<[f64; D]>,
+    ) -> Motion<D> {
         let (Some(companion), Reading::Whole(whole)) = (&mut self.companion, &self.reading) else {
-            return (step.displacement.to_vec(), force);
+            return (displacement.to_vec(), force);
         };
         let displacement = companion.displacement().to_vec();
-        self.dynamics.forces_without_contact(step.index, &displacement, &mut force);
-        let densities = whole.densities(self.problem, step.reaction);
+        self.dynamics.forces_without_contact(n, &displacement, &mut force);
+        let densities = whole.densities(self.problem, pressing);
         let mut acceleration = force.clone();
         for (contact, pull) in self.problem.surface().nodes().iter().zip(interval::pull(self.problem, &densities)) {
             (0..D).for_each(|c| acceleration[contact.node.index()][c] += pull[c]);
@@ -233,7 +246,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         for (f, inverse) in acceleration.iter_mut().zip(self.dynamics.inverse_mass()) {
             (0..D).for_each(|c| f[c] *= inverse);
         }
-        companion.advance(self.problem, &self.dynamics, self.times, step.index, &acceleration);
+        companion.advance(self.problem, &self.dynamics, self.times, n, &acceleration);
         (displacement, force)
     }
 

@@ -115,11 +115,11 @@ impl Bar {
         let left = (1.0 / (self.courant * self.courant) - 1.0) * dt * dt / 12.0;
         let (mut u, mut v) = (vec![0.0; n + 1], vec![-self.speed; n + 1]);
         let mut made = Vec::new();
-        for (k, instant) in history.iter().enumerate() {
+        for (k, pressing) in self.pressing(history).into_iter().enumerate() {
             let force = self.forces(&u);
             let free = over_mass(&force);
             let mut a = free.clone();
-            a[0] += instant.reaction.max(0.0) / self.mass(0);
+            a[0] += pressing / self.mass(0);
             let correction = over_mass(&self.forces(&a));
             for i in 0..=n {
                 v[i] += if k == 0 { 0.5 * dt } else { dt } * (a[i] - left * correction[i]);
@@ -199,16 +199,35 @@ impl Bar {
         knots
     }
 
+    /// What `whole` presses with: of a reaction R, the part ma that stops node 0 goes on with weights 1 − s/τ until
+    /// τ = m/(ρcS) = h/2c later.
+    fn pressing(&self, history: &[Instant]) -> Vec<f64> {
+        let (dt, tau) = (self.step(), 0.5 * self.element() / (self.young / self.density).sqrt());
+        let weights: Vec<f64> = (0..).map(|j| 1.0 - j as f64 * dt / tau).take_while(|w| *w > 0.0).collect();
+        let all: f64 = weights.iter().sum();
+        let mut made = vec![0.0; history.len()];
+        for (k, now) in history.iter().enumerate().filter(|(_, now)| now.reaction > 0.0) {
+            let stopping = self.mass(0) * (now.free[0] + now.reaction / self.mass(0));
+            let share = (stopping / now.reaction).clamp(0.0, 1.0);
+            made[k] += (1.0 - share) * now.reaction;
+            for (made, weight) in made[k..].iter_mut().zip(&weights) {
+                *made += share * now.reaction * weight / all;
+            }
+        }
+        made
+    }
+
     /// Q at the two ends of the step from t_n to t_{n+1}, method.md §4.
     fn contact_force(&self, history: &[Instant], n: usize, reading: ContactForce) -> [f64; 2] {
         let touches = |k: usize| history[k].touching;
         let pushes = |k: usize| history[k].reaction.max(0.0);
+        let pressing = self.pressing(history);
         // [45]–[48]: from one step after the first touch to one before the last.
         let keeps = |k: usize| k > 0 && touches(k - 1) && touches(k) && (k == self.steps || touches(k + 1));
         [n, n + 1].map(|k| match reading {
             ContactForce::Paper if keeps(k) => pushes(k),
             ContactForce::Sharp if touches(n) && touches(n + 1) => pushes(k),
-            ContactForce::Whole => pushes(k),
+            ContactForce::Whole => pressing[k],
             _ => 0.0,
         })
     }

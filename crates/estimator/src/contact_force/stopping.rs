@@ -1,0 +1,150 @@
+//! Impulses that stop a node, spread over the time in which the exact force would stop its mass.
+//!
+//! The simulation stops the lumped mass of a node that arrives within a step. As a density, the reaction that does so
+//! would grow without bound as steps become shorter. An exact impact at speed v exerts ρcv: it
+//! stops the mass m of the tributary depth m/(ρℓ) in a time of the order of τ = m/(ρcℓ), a wave's through that depth.
+//! So the part of a reaction that changes the motion of its node goes on, ever weaker, until τ later. Where
+//! steps are as long as τ, on a uniform bar from half the critical step on, nothing is changed.
+
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::collections::VecDeque;
+
+/// What is still to come at each node of the contact surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Stopping<const D: usize> {
+    /// τ (s).
+    time: Vec<f64>,
+    /// Forces (N) at this step and those after it.
+    pending: Vec<VecDeque<[f64; D]>>,
+}
+
+impl<const D: usize> Stopping<D> {
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+        let (mesh, nodes) = (problem.mesh(), problem.surface().nodes());
+        // ρcℓ.
+        let mut impedance = vec![0.0; nodes.len()];
+        for facet in problem.surface().facets() {
+            let owner: ElementId = mesh.facets()[facet.facet.index()].owner;
+            let law = problem.material(owner);
+            facet.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * facet.area / D as f64);
+        }
+        let time = nodes.iter().zip(&impedance).map(|(contact, z)| problem.mass()[contact.node.index()] / z);
+        Self { time: time.collect(), pending: vec![VecDeque::new(); nodes.len()] }
+    }
+
+    /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but for
+    /// what is to come after the last step.
+    pub(crate) fn advance<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        n: usize,
+        reaction: &[[f64; D]],
+        acceleration: &[[f64; D]],
+    ) -> Vec<[f64; D]> {
+        let mut forces = reaction.to_vec();
+        for (k, (contact, force)) in problem.surface().nodes().iter().zip(&mut forces).enumerate() {
+            let plane = &problem.obstacles()[contact.obstacle];
+            let pending = &mut self.pending[k];
+            let (pressing, _) = plane.split(force);
+            if pressing > 0.0 && times.step(n) < self.time[k] {
+                let i = contact.node.index();
+                let stopping = problem.mass()[i] * plane.split(&acceleration[i]).0;
+                let share = (stopping / pressing).clamp(0.0, 1.0);
+                spread(times, n, self.time[k], &force.map(|f| share * f), pending);
+                *force = force.map(|f| (1.0 - share) * f);
+            }
+            if let Some(due) = pending.pop_front() {
+                (0..D).for_each(|c| force[c] += due[c]);
+            }
+        }
+        forces
+    }
+}
+
+/// Adds a force at t_n to what is to come: linearly weaker until a time later, with the same impulse.
+fn spread<const D: usize>(times: &TimeGrid, n: usize, time: f64, force: &[f64; D], pending: &mut VecDeque<[f64; D]>) {
+    let instants = times.instants();
+    let weight = |k: usize| 1.0 - (instants[k] - instants[n]) / time;
+    let steps = || (n..=times.step_count()).take_while(|&k| weight(k) > 0.0);
+    // Beyond the end steps go on like the last one.
+    let mut sum: f64 = steps().map(|k| weight(k) * times.velocity_step(k)).sum();
+    let (mut beyond, last) = (instants[times.step_count()], times.step(times.step_count() - 1));
+    while 1.0 - (beyond + last - instants[n]) / time > 0.0 {
+        beyond += last;
+        sum += (1.0 - (beyond - instants[n]) / time) * last;
+    }
+    for (at, k) in steps().enumerate() {
+        if pending.len() == at {
+            pending.push_back([0.0; D]);
+        }
+        let part = weight(k) * times.velocity_step(n) / sum;
+        (0..D).for_each(|c| pending[at][c] += part * force[c]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::material::Elastic;
+    use percute_core::mesh::BarMesh;
+    use percute_core::obstacle::Plane;
+    use percute_core::problem::BarProblem;
+
+    /// h = ½, c = 2, ρS = 3: m = ¾ at the end of the bar, ρcS = 6, so that τ = ⅛.
+    fn bar() -> BarProblem {
+        Problem::builder(BarMesh::uniform_bar(1.0, 2).unwrap())
+            .material(Elastic::bar(12.0, 3.0, 1.0).unwrap())
+            .obstacle(Plane::new([-1.0], [1.0], 0.0, None).unwrap())
+            .build()
+            .unwrap()
+    }
+
+    /// Forces of some steps, from reactions at the end of the bar and the accelerations of its node.
+    fn forces(times: &TimeGrid, steps: &[(f64, f64)]) -> Vec<f64> {
+        let problem = bar();
+        let mut stopping = Stopping::new(&problem);
+        let one = |(n, &(reaction, acceleration)): (usize, &(f64, f64))| {
+            let all = [[acceleration], [0.0], [0.0]];
+            stopping.advance(&problem, times, n, &[[reaction]], &all)[0][0]
+        };
+        steps.iter().enumerate().map(one).collect()
+    }
+
+    /// Steps of τ/2 have weights 1 and ½. A reaction of 9 of which ma = ¾·8 = 6 stops the node leaves 3 + 6·⅔ and
+    /// 6·⅓ at the next step; what holds a node at rest is not touched.
+    #[test]
+    fn impulses_are_spread_and_kept() {
+        let times = TimeGrid::uniform(1.0, 16).unwrap();
+        let made = forces(&times, &[(0.0, 0.0), (9.0, 8.0), (5.0, 0.0), (0.0, 0.0)]);
+        let expected = [0.0, 7.0, 7.0, 0.0];
+        assert!(made.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{made:?}");
+    }
+
+    /// As steps become shorter, the force tends to twice what the exact impact exerts, 2ρcv = 24 for v = 2, and its
+    /// impulse is mv.
+    #[test]
+    fn short_steps_make_no_spike() {
+        for count in [400, 4000] {
+            let (times, step) = (TimeGrid::uniform(1.0, count).unwrap(), 1.0 / count as f64);
+            let stop = 2.0 / step;
+            let mut steps = vec![(0.75 * stop, stop)];
+            steps[0] = (0.0, 0.0);
+            steps.push((0.75 * stop, stop));
+            steps.resize(count / 4, (0.0, 0.0));
+            let made = forces(&times, &steps);
+            assert!((made.iter().sum::<f64>() * step - 1.5).abs() < 1e-12);
+            // Of first order in Δt/τ.
+            assert!((made[1] / 24.0 - 1.0).abs() < 1.1 * step / 0.125, "{}", made[1]);
+        }
+    }
+
+    /// Steps as long as τ are left alone, to the bit.
+    #[test]
+    fn long_steps_are_left_alone() {
+        let times = TimeGrid::uniform(1.0, 8).unwrap();
+        assert_eq!(forces(&times, &[(0.1, 0.0), (0.3, 0.4), (0.7, 0.1)]), [0.1, 0.3, 0.7]);
+    }
+}
