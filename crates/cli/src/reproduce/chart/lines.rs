@@ -9,12 +9,14 @@ use plotters::style::RGBColor;
 use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 
 /// Size of a plot, for one, two and three columns (pixels).
-const PLOTS: [[f64; 2]; 3] = [[640.0, 330.0], [345.0, 240.0], [225.0, 180.0]];
+const PLOTS: [[f64; 2]; 3] = [[640.0, 330.0], [345.0, 240.0], [212.0, 190.0]];
 /// Room left of, above and below a plot, and beside all (pixels).
 const LEFT: f64 = 66.0;
 const ABOVE: f64 = 30.0;
 const BELOW: f64 = 46.0;
 const MARGIN: f64 = 16.0;
+/// Room right of a plot (pixels).
+const RIGHT: f64 = 18.0;
 /// Colours of curves, told apart on white and on black.
 const PALETTE: [RGBColor; 8] = [
     RGBColor(47, 121, 200),
@@ -151,7 +153,7 @@ impl Lines {
         let bands = self.bands.iter().flat_map(|band| [band.low, band.high]);
         let y = self.y.scale(points().map(|point| point[1]).chain(bands), true, 6);
         let rows = self.panels.len().div_ceil(columns);
-        let cell = [LEFT + size[0], ABOVE + size[1] + BELOW];
+        let cell = [LEFT + size[0] + RIGHT, ABOVE + size[1] + BELOW];
         let width = columns as f64 * cell[0] + 2.0 * MARGIN;
         let looks = self.panels.iter().flat_map(|panel| panel.series.iter().map(Series::look));
         let legend = Legend::new(looks, width - LEFT - 2.0 * MARGIN);

@@ -37,18 +37,17 @@ pub(super) struct Block {
 pub(super) enum Gap {
     /// As many steps until the impact: times Δt|v_y|.
     Steps(f64),
-    /// In metres.
-    Metres(f64),
+    /// Whole steps and a fraction of one, as near as that is to a length (m): so the impact falls on the same place inside
+    /// a step, whatever the step is.
+    Near { metres: f64, fraction: f64 },
 }
 
 /// A problem with its instants.
 pub(super) struct Impact {
     pub(super) problem: TriangleProblem,
     pub(super) times: TimeGrid,
-    /// Δt_c (s).
-    pub(super) critical: f64,
-    /// Distance from the plane at t = 0 (m).
-    pub(super) gap: f64,
+    /// When a rigid block would arrive at the plane (s).
+    pub(super) arrival: f64,
 }
 
 impl Block {
@@ -62,13 +61,16 @@ impl Block {
         // Contact does not enter the critical step: any gap will do to find it.
         let critical = critical_time_step(&self.problem(1.0)?);
         let step = self.courant * critical;
-        let gap = match self.gap {
-            Gap::Steps(steps) => steps * step * VELOCITY[1].abs(),
-            Gap::Metres(gap) => gap,
+        let travel = step * VELOCITY[1].abs();
+        let steps = match self.gap {
+            Gap::Steps(steps) => steps,
+            Gap::Near { metres, fraction } => (metres / travel - fraction).round().max(1.0) + fraction,
         };
+        let gap = steps * travel;
         let count = (self.past / step).floor() + 1.0;
         let times = TimeGrid::uniform(step * count, count as usize)?;
-        Ok(Impact { problem: self.problem(gap)?, times, critical, gap })
+        let arrival = steps * step;
+        Ok(Impact { problem: self.problem(gap)?, times, arrival })
     }
 
     fn problem(&self, gap: f64) -> Result<TriangleProblem, ReproduceError> {
@@ -83,6 +85,11 @@ impl Block {
 
     /// The mesh in words.
     pub(super) fn mesh(&self) -> String {
-        format!("{}×{}", self.cells[0], self.cells[1])
+        mesh_name(self.cells)
     }
+}
+
+/// A mesh of squares cut in two, in words.
+pub(super) fn mesh_name([nx, ny]: [usize; 2]) -> String {
+    format!("{nx}×{ny}")
 }
