@@ -46,14 +46,17 @@ pub fn html(sections: &[Section], effort: &Effort) -> String {
         let _ = writeln!(page, "<li><a href=\"#{}\">{}</a></li>", section.key, escape(&section.title));
     }
     page += "</ol>\n</nav>\n<main>\n";
-    let mut figures = 0;
+    let (mut figures, mut tables) = (0, 0);
     for section in sections {
         let _ = writeln!(page, "<section id=\"{}\">\n<h2>{}</h2>", section.key, escape(&section.title));
         for item in &section.items {
             match item {
                 Item::Heading(title) => _ = writeln!(page, "<h3>{}</h3>", escape(title)),
                 Item::Text(text) => _ = writeln!(page, "<p>{}</p>", rich(text)),
-                Item::Table(table) => page += &table.html(),
+                Item::Table(table) => {
+                    tables += 1;
+                    page += &table.html(tables);
+                }
                 Item::Figure(figure) => {
                     figures += 1;
                     page += &drawing(figure, figures);
@@ -88,14 +91,17 @@ pub fn markdown(sections: &[Section], effort: &Effort) -> String {
         let _ = write!(page, " {missing}");
     }
     page += "\n\n";
-    let mut figures = 0;
+    let (mut figures, mut tables) = (0, 0);
     for section in sections {
         let _ = write!(page, "## {}\n\n", section.title);
         for item in &section.items {
             match item {
                 Item::Heading(title) => _ = write!(page, "### {title}\n\n"),
                 Item::Text(text) => _ = write!(page, "{text}\n\n"),
-                Item::Table(table) => page += &table.markdown(),
+                Item::Table(table) => {
+                    tables += 1;
+                    page += &table.markdown(tables);
+                }
                 Item::Figure(figure) => {
                     figures += 1;
                     let Figure { name, caption, .. } = figure;

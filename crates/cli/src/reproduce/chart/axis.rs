@@ -40,7 +40,10 @@ impl Axis {
     /// With marks at these values.
     #[must_use]
     pub fn marks(self, marks: &[f64]) -> Self {
-        Self { marks: Some(marks.to_vec()), ..self }
+        let mut marks = marks.to_vec();
+        marks.sort_by(f64::total_cmp);
+        marks.dedup();
+        Self { marks: Some(marks), ..self }
     }
 
     /// Name and unit.

@@ -11,7 +11,7 @@ use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 const SHADES: usize = 96;
 /// Width of the bar and of all that stands beside it (pixels).
 const BAR: f64 = 14.0;
-pub(super) const ROOM: f64 = 78.0;
+pub(super) const ROOM: f64 = 70.0;
 /// From below through the middle to above.
 const AROUND: [[f64; 3]; 5] =
     [[33.0, 75.0, 140.0], [120.0, 170.0, 215.0], [240.0, 238.0, 226.0], [236.0, 150.0, 90.0], [160.0, 40.0, 35.0]];

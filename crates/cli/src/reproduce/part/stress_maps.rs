@@ -180,15 +180,15 @@ fn error(section: &mut Section, drawn: &Drawn<'_>, estimates: &[Estimate<2>]) ->
         }
     }
     for reading in ContactForce::ALL {
-        let colours = Colours::between("accumulated e_E (J^½)", 0.0, most);
+        let colours = Colours::ratio("accumulated e_E (J^½)", 0.01 * most, most);
         let svg = drawn.maps(&table, &reading.to_string(), colours).svg()?;
         section.figure(
             format!("figure-9-{reading}"),
             svg,
             format!(
                 "The paper's figure 9, with the contact force `{reading}`: what each element has contributed to the mean error \
-                 until the instant, √((1/T)∫₀ᵗ η_E dt) [20] (J^½). All readings have the same colours; the squares of the \
-                 last map add up to e_mean². Most comes from the elements at the plane and from the wave that passes.",
+                 until the instant, √((1/T)∫₀ᵗ η_E dt) [20] (J^½). The colours are logarithmic, from a hundredth of the largest value on, and the same for all \
+                 readings; the squares of the last map add up to e_mean². Most comes from the elements at the plane and from the wave that passes.",
             ),
         );
     }

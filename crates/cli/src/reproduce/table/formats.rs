@@ -38,7 +38,7 @@ impl Table {
 
     /// As an HTML figure with its caption.
     #[must_use]
-    pub fn html(&self) -> String {
+    pub fn html(&self, number: usize) -> String {
         let mut body = String::from("<table>\n<thead><tr>");
         for column in &self.columns {
             let small = [&column.unit, &column.equation].into_iter().filter(|text| !text.is_empty());
@@ -55,7 +55,11 @@ impl Table {
             body += "</tr>\n";
         }
         body += "</tbody>\n</table>";
-        let caption = format!("{} <span class=\"file\">tables/{}.csv</span>", rich(&self.caption), self.name);
+        let caption = format!(
+            "<b>Table {number}.</b> {} <span class=\"file\">tables/{}.csv</span>",
+            rich(&self.caption),
+            self.name
+        );
         if self.long {
             let rows = self.rows.len();
             return format!(
@@ -69,16 +73,21 @@ impl Table {
 
     /// As Markdown, its caption first; a long table is left to its file.
     #[must_use]
-    pub fn markdown(&self) -> String {
+    pub fn markdown(&self, number: usize) -> String {
         if self.long {
-            return format!("{} ({} rows in `{}.csv`)\n\n", self.caption, self.rows.len(), self.name);
+            return format!(
+                "**Table {number}.** {} ({} rows in `{}.csv`)\n\n",
+                self.caption,
+                self.rows.len(),
+                self.name
+            );
         }
         let head = |column: &Column| {
             let parts = [column.heading(), column.equation.clone()];
             parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
         };
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let mut text = format!("{}\n\n", self.caption);
+        let mut text = format!("**Table {number}.** {}\n\n", self.caption);
         text += &line(self.columns.iter().map(head).collect());
         text += &line(self.columns.iter().map(|_| "---".to_string()).collect());
         for row in &self.rows {
