@@ -1,14 +1,23 @@
 //! Closed-form elastodynamic fields, with their sources: what a simulation, or an estimate of its
 //! error, is measured against.
 //!
-//! [`BarImpact`] is the impact of a bar on a rigid plane; [`BarMode`] and [`BlockMode`] are
-//! standing waves of a bar and of a rectangle on rollers. All units are SI. The crate depends on
-//! nothing, so that no error of the simulation can hide in its own yardstick.
+//! [`BarImpact`] is the impact of a bar on a rigid plane, [`BouncingBar`] the same again and again under
+//! gravity, [`ClampedRod`] a rod that springs back against an obstacle; [`BarRamp`] is a bar under a traction that grows;
+//! [`BarMode`] and [`BlockMode`] are standing waves of a bar and of a rectangle on rollers; [`RigidSlide`] is a rigid block with dry friction.
+//! All units are SI. The crate depends on nothing, so that no error of the simulation can hide in its own yardstick.
 
 mod bar_impact;
 mod bar_mode;
+mod bar_ramp;
 mod block_mode;
+mod bouncing_bar;
+mod clamped_rod;
+mod rigid_slide;
 
 pub use bar_impact::BarImpact;
 pub use bar_mode::{BarEnds, BarMode};
+pub use bar_ramp::BarRamp;
 pub use block_mode::{BlockMode, Wave};
+pub use bouncing_bar::BouncingBar;
+pub use clamped_rod::ClampedRod;
+pub use rigid_slide::RigidSlide;

@@ -8,6 +8,7 @@ pub mod chart;
 mod effort;
 mod error;
 mod folder;
+pub mod pack;
 mod page;
 mod part;
 mod raster;

@@ -8,4 +8,4 @@ mod time_steps;
 use super::Part;
 
 /// All parts, in the order of the page.
-pub const PARTS: &[Part] = &[table1::PART, stress_maps::PART, time_steps::PART];
+pub const PARTS: &[Part] = &[table1::PART, stress_maps::PART, time_steps::PART, super::pack::PART];
