@@ -32,6 +32,8 @@ pub enum Command {
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
+    /// Compute the evidence again: the paper's tables and figures, exact solutions, how good the estimate is
+    Reproduce(ReproduceArguments),
 }
 
 /// Arguments of `percute new`.
@@ -133,6 +135,31 @@ pub struct InfoArguments {
 pub struct RecoverArguments {
     /// The history (.vtkhdf)
     pub history: PathBuf,
+}
+
+/// Arguments of `percute reproduce`.
+#[derive(Clone, Debug, Args)]
+pub struct ReproduceArguments {
+    /// Which parts, by the names that --list prints [default: all]
+    pub parts: Vec<String>,
+    /// The folder for page, figures and numbers
+    #[arg(long, value_name = "FOLDER", default_value = "percute-evidence")]
+    pub output: PathBuf,
+    /// Print the names of the parts and end
+    #[arg(long)]
+    pub list: bool,
+    /// Compute a small part of each only, in seconds; the numbers are the same
+    #[arg(long)]
+    pub small: bool,
+    /// Replace files that are there
+    #[arg(long, visible_alias = "overwrite")]
+    pub force: bool,
+    /// Number of threads [default: one for each core]; the result does not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// No progress on standard error
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// What an estimate file holds.

@@ -1,6 +1,7 @@
 //! Why a command failed, and with which exit code.
 
 use crate::case::{CaseError, Unsayable};
+use crate::reproduce::ReproduceError;
 use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
@@ -63,6 +64,9 @@ pub enum Failure {
     /// No room for the contact results.
     #[error(transparent)]
     Contact(#[from] ContactMemoryError),
+    /// The evidence.
+    #[error(transparent)]
+    Reproduce(#[from] ReproduceError),
     /// A file that cannot be written.
     #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
     Unwritable {
@@ -91,6 +95,7 @@ impl Failure {
             | Self::Unsayable(_) => BAD_INPUT,
             Self::File(error) if error.cause.is_of_the_system() => FAILED,
             Self::File(_) => BAD_INPUT,
+            Self::Reproduce(error) => error.exit_code(),
             Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => FAILED,
         }
     }

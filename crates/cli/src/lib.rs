@@ -16,6 +16,7 @@ pub mod picture;
 mod process;
 mod progress;
 pub mod report;
+pub mod reproduce;
 pub mod run;
 mod writable;
 

@@ -13,9 +13,18 @@ pub(crate) struct Watch<'a> {
 impl<'a> Watch<'a> {
     /// Watches, with a bar on standard error if `visible`.
     pub(crate) fn new(visible: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
+        Self::styled(visible, interrupted, "{msg} {bar:32} step {pos} of {len}, {eta} left")
+    }
+
+    /// Watches stages that are counted in fractions instead of steps.
+    pub(crate) fn parts(visible: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
+        Self::styled(visible, interrupted, "{msg} {bar:32} {percent} %, {eta} left")
+    }
+
+    fn styled(visible: bool, interrupted: &'a dyn Fn() -> bool, template: &str) -> Self {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:32} step {pos} of {len}, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
         Self { bar, interrupted }
@@ -31,6 +40,7 @@ impl Observer for Watch<'_> {
     fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
         if !self.bar.is_hidden() {
             if self.bar.message() != progress.stage {
+                self.bar.reset();
                 self.bar.set_message(progress.stage);
             }
             self.bar.set_length(progress.total as u64);

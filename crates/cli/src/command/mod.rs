@@ -5,6 +5,7 @@ mod info;
 mod new;
 mod outputs;
 mod recover;
+mod reproduce;
 mod result;
 mod run;
 mod simulate;
@@ -45,6 +46,7 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
+            Command::Reproduce(arguments) => reproduce::command(&arguments, console),
         },
         Err(error) => return clap_says(&error, console),
     };

@@ -11,7 +11,7 @@ use plotters::prelude::*;
 use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 
 /// The drawing library rounds to whole units: with eight to a pixel, small triangles keep their shape.
-pub(super) const UNITS: i32 = 8;
+pub(crate) const UNITS: i32 = 8;
 /// Room above the plot for two lines (pixels).
 pub(super) const HEAD: i32 = 62;
 /// Room left of and below the plot for the axes (pixels).
@@ -22,14 +22,14 @@ pub(super) const MARGIN: i32 = 16;
 /// Length of the marks at the axes, which also keeps the numbers off them (pixels).
 pub(super) const MARK: f64 = 5.0;
 
-pub(super) const INK: RGBColor = RGBColor(40, 40, 48);
-pub(super) const FAINT: RGBColor = RGBColor(110, 110, 120);
+pub(crate) const INK: RGBColor = RGBColor(40, 40, 48);
+pub(crate) const FAINT: RGBColor = RGBColor(110, 110, 120);
 
 /// Axes with a plot between them.
 pub(super) type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Pixels in units of the drawing.
-pub(super) fn px(pixels: f64) -> u32 {
+pub(crate) fn px(pixels: f64) -> u32 {
     (pixels * f64::from(UNITS)).round() as u32
 }
 
@@ -111,7 +111,7 @@ fn head(root: &DrawingArea<SVGBackend<'_>, Shift>, report: &Report) -> Result<()
 
 /// The document in pixels instead of the drawing's units, and without the hairlines that smoothing
 /// leaves between neighbouring triangles.
-fn document(svg: &str, units: (u32, u32), pixels: (i32, i32)) -> String {
+pub(crate) fn document(svg: &str, units: (u32, u32), pixels: (i32, i32)) -> String {
     let drawn = format!("<svg width=\"{}\" height=\"{}\"", units.0, units.1);
     let shown = format!("<svg width=\"{}\" height=\"{}\"", pixels.0, pixels.1);
     let sharp = "<style>polygon,rect{shape-rendering:crispEdges}</style>";

@@ -1,7 +1,7 @@
 //! Pictures of the error of each element.
 
 mod bar;
-mod canvas;
+pub(crate) mod canvas;
 mod file;
 mod frame;
 mod plane_body;
@@ -19,7 +19,7 @@ pub struct DrawError(String);
 
 impl DrawError {
     /// An error of the drawing library.
-    fn from_library(error: impl std::fmt::Display) -> Self {
+    pub(crate) fn from_library(error: impl std::fmt::Display) -> Self {
         Self(error.to_string())
     }
 }

@@ -19,7 +19,7 @@ fn dependencies_never_point_back() {
         ("core", vec![]),
         ("estimator", vec!["percute-core", "percute-exact"]),
         ("io", vec!["percute-core", "percute-estimator"]),
-        ("cli", vec!["percute-core", "percute-estimator", "percute-io"]),
+        ("cli", vec!["percute-core", "percute-estimator", "percute-exact", "percute-io"]),
         ("py", vec!["percute-core", "percute-estimator", "percute-exact", "percute-io", "percute"]),
         ("testkit", vec!["percute-core"]),
     ]);

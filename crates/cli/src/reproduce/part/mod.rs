@@ -1,0 +1,11 @@
+//! The parts, in the order of the page.
+
+mod block;
+mod stress_maps;
+mod table1;
+mod time_steps;
+
+use super::Part;
+
+/// All parts, in the order of the page.
+pub const PARTS: &[Part] = &[table1::PART, stress_maps::PART, time_steps::PART];
