@@ -1,9 +1,9 @@
 //! Impacts of plane bodies on meshes that are refined: the estimates beside errors against still finer meshes.
 
-use super::Failure;
 use super::body::Body;
+use super::touch::{Touch, Touching};
+use crate::reproduce::ReproduceError;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
-use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::material::{Elastic, Hypothesis};
 use percute_core::observer::Observer;
 use percute_core::obstacle::Plane;
@@ -13,69 +13,59 @@ use percute_estimator::reference::{Comparison, Motion, Recorder};
 use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
 
 /// Each run takes steps of exactly this times Δt_c and ends with the first at or past T.
-pub(crate) const STEP: f64 = 0.9;
+pub(super) const STEP: f64 = 0.9;
+/// Refinements of the meshes that are estimated, coarsest first.
+pub(super) const ESTIMATED: [usize; 4] = [0, 1, 2, 3];
 
 /// One impact of an aluminium body (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³, as in the paper's §7.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Case {
+pub(super) struct Case {
     /// What hits the plane.
-    pub(crate) body: Body,
+    pub(super) body: Body,
     /// Plane stress or strain.
-    pub(crate) hypothesis: Hypothesis,
+    pub(super) hypothesis: Hypothesis,
     /// μ.
-    pub(crate) friction: f64,
+    pub(super) friction: f64,
     /// By how much the plane is turned clockwise under the body (°).
-    pub(crate) tilt: f64,
+    pub(super) tilt: f64,
     /// v₀ along and across the plane (m/s).
-    pub(crate) velocity: [f64; 2],
+    pub(super) velocity: [f64; 2],
     /// Distance of the lowest node from the plane (m).
-    pub(crate) gap: f64,
+    pub(super) gap: f64,
     /// T (s).
-    pub(crate) end: f64,
-}
-
-/// On which meshes a case is run.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Meshes {
-    /// Refinements of the meshes that are estimated, coarsest first.
-    pub(crate) estimated: Vec<usize>,
+    pub(super) end: f64,
     /// Refinements of the references, coarsest first; the last one counts.
-    pub(crate) references: Vec<usize>,
+    pub(super) references: &'static [usize],
 }
 
 /// What was found on one mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Found {
+pub(super) struct Found {
     /// Number of elements.
-    pub(crate) elements: usize,
+    pub(super) elements: usize,
     /// Number of steps.
-    pub(crate) steps: usize,
+    pub(super) steps: usize,
     /// The estimate of each reading, in the order of `ContactForce::ALL`.
-    pub(crate) estimates: Vec<ErrorMeasures>,
+    pub(super) estimates: Vec<ErrorMeasures>,
+    /// Impulse that the admissible contact force of each reading keeps.
+    pub(super) kept_impulse: Vec<Option<f64>>,
     /// Sup and mean of e_ref (J^½) against each reference.
-    pub(crate) exact: Vec<[f64; 2]>,
+    pub(super) exact: Vec<[f64; 2]>,
+    /// When the body touches.
+    pub(super) touch: Touch,
 }
 
 impl Found {
     /// e/e_ref, sup and mean, of a reading, against the finest reference.
-    pub(crate) fn effectivity(&self, reading: usize) -> [f64; 2] {
+    pub(super) fn effectivity(&self, reading: usize) -> [f64; 2] {
         let [sup, mean] = self.exact.last().copied().unwrap_or([f64::NAN; 2]);
         [self.estimates[reading].sup / sup, self.estimates[reading].mean / mean]
     }
 }
 
-/// Several estimates beside one run.
-struct Estimators<'p>(Vec<Estimator<'p, 2, 3>>);
-
-impl StepSink<2> for Estimators<'_> {
-    fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
-        self.0.iter_mut().try_for_each(|estimator| estimator.push(step))
-    }
-}
-
 impl Case {
     /// The problem on one of the meshes.
-    pub(crate) fn problem(&self, refinements: usize) -> Result<TriangleProblem, Failure> {
+    pub(super) fn problem(&self, refinements: usize) -> Result<TriangleProblem, ReproduceError> {
         let (sin, cos) = self.tilt.to_radians().sin_cos();
         let (normal, tangent) = ([sin, cos], [cos, -sin]);
         let mesh = self.body.mesh(refinements)?;
@@ -95,16 +85,16 @@ impl Case {
 
     /// Estimates on each mesh, then compares with the references. A mesh on which the body starts too near to the plane
     /// is left out: `None`.
-    pub(crate) fn run(&self, meshes: &Meshes, observer: &mut dyn Observer) -> Result<Vec<Option<Found>>, Failure> {
+    pub(super) fn run(&self, observer: &mut dyn Observer) -> Result<Vec<Option<Found>>, ReproduceError> {
         let mut runs = Vec::new();
-        for &refinements in &meshes.estimated {
+        for refinements in ESTIMATED {
             let problem = self.problem(refinements)?;
             let times = steps_past(self.end, &problem)?;
             let run = estimate(&problem, &times, observer)?;
             runs.push((problem, times, run));
         }
         let end = runs.iter().map(|run| run.1.end()).fold(0.0, f64::max);
-        for &refinements in &meshes.references {
+        for &refinements in self.references {
             let fine = self.problem(refinements)?;
             let times = steps_past(end, &fine)?;
             let mut comparison = Comparison::new(&fine, &times);
@@ -123,7 +113,7 @@ impl Case {
 }
 
 /// Steps of exactly 0.9 Δt_c that reach an instant.
-fn steps_past(reach: f64, problem: &TriangleProblem) -> Result<TimeGrid, Failure> {
+fn steps_past(reach: f64, problem: &TriangleProblem) -> Result<TimeGrid, ReproduceError> {
     let step = STEP * critical_time_step(problem);
     let count = (reach / step).ceil();
     Ok(TimeGrid::uniform(count * step, count as usize)?)
@@ -134,19 +124,26 @@ fn estimate(
     problem: &TriangleProblem,
     times: &TimeGrid,
     observer: &mut dyn Observer,
-) -> Result<Option<(Motion<2>, Found)>, Failure> {
+) -> Result<Option<(Motion<2>, Found)>, ReproduceError> {
     let estimator = |&contact_force: &ContactForce| {
         Estimator::new(problem, times, Options { contact_force, threads: Some(1), ..Options::default() })
     };
-    let estimators = Estimators(ContactForce::ALL.iter().map(estimator).collect::<Result<_, _>>()?);
-    let mut sink = (Recorder::new(problem, times), estimators);
+    let estimators = ContactForce::ALL.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
+    let mut sink = (Recorder::new(problem, times), (Touching::default(), estimators));
     match simulate(problem, times, &mut sink, observer) {
         Ok(_) => {}
         Err(SimulationError::StartsTooNear { .. }) => return Ok(None),
         Err(other) => return Err(other.into()),
     }
-    let (recorder, estimators) = sink;
-    let estimates = estimators.0.into_iter().map(|e| Ok(e.finish()?.error)).collect::<Result<_, Failure>>()?;
-    let (elements, steps) = (problem.mesh().element_count(), times.step_count());
-    Ok(Some((recorder.finish(), Found { elements, steps, estimates, exact: Vec::new() })))
+    let (recorder, (touching, estimators)) = sink;
+    let estimates = estimators.into_iter().map(Estimator::finish).collect::<Result<Vec<_>, _>>()?;
+    let found = Found {
+        elements: problem.mesh().element_count(),
+        steps: times.step_count(),
+        estimates: estimates.iter().map(|estimate| estimate.error).collect(),
+        kept_impulse: estimates.iter().map(|estimate| estimate.kept_impulse).collect(),
+        exact: Vec::new(),
+        touch: touching.finish(),
+    };
+    Ok(Some((recorder.finish(), found)))
 }
