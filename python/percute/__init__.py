@@ -31,6 +31,7 @@ from percute.errors import (
     StorageError,
 )
 from percute.estimation import Estimate, estimate
+from percute.evidence import reproduce
 from percute.files import open, run
 from percute.history import Balance, History, simulate
 from percute.mesh import Mesh
@@ -71,6 +72,7 @@ __all__ = [
     "estimate",
     "exact",
     "open",
+    "reproduce",
     "run",
     "simulate",
 ]

@@ -24,6 +24,7 @@ __all__ = [
     "estimate",
     "is_estimate",
     "open_history",
+    "reproduce",
     "simulate",
     "simulate_case",
 ]
@@ -232,6 +233,14 @@ def simulate_case(
 ) -> HistoryData: ...
 def is_estimate(path: str | PathLike[str]) -> bool: ...
 def open_history(path: str | PathLike[str]) -> HistoryData: ...
+def reproduce(
+    folder: str | PathLike[str],
+    names: Sequence[str],
+    small: bool,
+    overwrite: bool,
+    threads: int | None,
+    progress: _Tell,
+) -> Path: ...
 def estimate(
     history: HistoryData,
     contact_force: str,

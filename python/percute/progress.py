@@ -17,6 +17,8 @@ __all__ = ["Progress", "shown"]
 ProgressOption = bool | Callable[[Progress], object] | None
 
 WIDTH = 32
+COUNTED = ("simulating", "estimating")
+"""What is done step by step; all else is told in per cent."""
 
 
 class _Display(Protocol):
@@ -49,7 +51,8 @@ class _Line:
         fraction = progress.done / progress.total if progress.total else 1.0
         spent = now - self.start
         left = f", {_seconds(spent * (1 - fraction) / fraction)} left" if 0 < fraction < 1 else ""
-        return f"step {progress.done} of {progress.total}{left}", fraction
+        counted = f"step {progress.done} of {progress.total}" if progress.stage in COUNTED else f"{100 * fraction:.0f} %"
+        return counted + left, fraction
 
 
 class _Terminal(_Line):

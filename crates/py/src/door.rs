@@ -22,7 +22,7 @@ const GRACE: Duration = Duration::from_millis(200);
 /// How far a computation is, as a progress callback gets it.
 #[pyclass(frozen, get_all, name = "Progress", module = "percute")]
 pub(crate) struct ProgressNow {
-    /// What is being done: "simulating" or "estimating".
+    /// What is being done: "simulating", "estimating", or the name of a part of the evidence.
     stage: &'static str,
     /// Steps done.
     done: usize,

@@ -11,6 +11,7 @@ mod exact;
 mod history;
 mod mesh;
 mod problem;
+mod reproduce;
 mod restore;
 mod run;
 mod simulate;
@@ -39,6 +40,8 @@ mod _percute {
     use super::mesh::MeshData;
     #[pymodule_export]
     use super::problem::ProblemData;
+    #[pymodule_export]
+    use super::reproduce::reproduce;
     #[pymodule_export]
     use super::simulate::{doubts, open_history, simulate, simulate_case};
     #[pymodule_export]

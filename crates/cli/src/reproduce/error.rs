@@ -21,7 +21,7 @@ pub enum ReproduceError {
     #[error("interrupted")]
     Interrupted,
     /// A part that does not exist.
-    #[error("there is no part \"{given}\"{hint}; the parts are {known}")]
+    #[error("there is no part \"{given}\"; the parts are {known}{hint}")]
     UnknownPart {
         /// The name given.
         given: String,

@@ -5,7 +5,7 @@ use crate::history::result;
 use std::process::{Child, Command, Output, Stdio};
 
 /// Starts a run that would take far longer than any test.
-fn start(bench: &Bench, arguments: &[&str]) -> Child {
+pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Child {
     let program = assert_cmd::cargo::cargo_bin!("percute");
     let mut command = Command::new(program);
     command.current_dir(bench.path("")).args(arguments);
@@ -34,7 +34,7 @@ fn interrupt(child: Child) -> Output {
     send_interrupt(child)
 }
 
-fn send_interrupt(child: Child) -> Output {
+pub(crate) fn send_interrupt(child: Child) -> Output {
     send("INT", child)
 }
 

@@ -13,5 +13,6 @@ mod interrupt;
 mod mesh_file;
 mod mistakes;
 mod picture;
+mod reproduce;
 mod run;
 mod statement;

@@ -3,7 +3,7 @@
 use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr};
 
 /// Checks that tags open and close in order and that attributes are quoted; returns the names.
-fn tags(xml: &str) -> Vec<String> {
+pub(crate) fn tags(xml: &str) -> Vec<String> {
     let (mut open, mut all) = (Vec::new(), Vec::new());
     for piece in xml.split('<').skip(1) {
         let (tag, text) = piece.split_once('>').expect("a tag without end");

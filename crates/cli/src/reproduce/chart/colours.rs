@@ -77,12 +77,7 @@ impl Colours {
         let scale = self.scale();
         for shade in 0..SHADES {
             let [low, high] = [0, 1].map(|end| (shade + end) as f64 / SHADES as f64);
-            let middle = 0.5 * (low + high);
-            let value = if self.low > 0.0 && (scale.place((self.low * self.high).sqrt()) - 0.5).abs() < 1e-9 {
-                self.low * (self.high / self.low).powf(middle)
-            } else {
-                self.low + middle * (self.high - self.low)
-            };
+            let value = scale.value(0.5 * (low + high));
             let at = |fraction: f64| top + height * (1.0 - fraction);
             sheet.rectangle([[left, at(high)], [left + BAR, at(low)]], self.of(value), 1.0)?;
         }

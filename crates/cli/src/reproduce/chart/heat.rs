@@ -100,3 +100,42 @@ impl HeatMaps {
         sheet.text(beside, &self.y.0, Lettering::new(NORMAL, INK).upwards())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn maps(columns: usize, count: usize) -> HeatMaps {
+        let map = |k: usize| HeatMap {
+            title: format!("map {k}"),
+            values: (0..12).map(|i| if i == 5 { f64::NAN } else { 0.3 * 1.2_f64.powi(i + k as i32) }).collect(),
+        };
+        HeatMaps {
+            x: ("elements".to_string(), ["10", "20", "50", "100"].map(String::from).to_vec()),
+            y: ("Δt/Δt_c".to_string(), ["0.5", "0.7", "0.9"].map(String::from).to_vec()),
+            maps: (0..count).map(map).collect(),
+            columns,
+            colours: Colours::around_one("effectivity", 4.0),
+        }
+    }
+
+    #[test]
+    fn each_cell_has_its_value_and_a_missing_one_none() {
+        let svg = maps(1, 1).svg().unwrap();
+        let values: Vec<&str> =
+            svg.split("</text>").filter_map(|piece| piece.rsplit(">\n").next()).map(str::trim).collect();
+        // 0.3 · 1.2⁴ = 0.622…, 0.3 · 1.2⁵ is left out, 0.3 · 1.2⁶ = 0.895….
+        assert!(values.contains(&"0.62") && !values.contains(&"0.75") && values.contains(&"0.90"), "{values:?}");
+        // Ground, grid behind the map, 11 cells, and the shades of the bar.
+        assert_eq!(svg.matches("<rect ").count(), 2 + 11 + 96);
+    }
+
+    #[test]
+    fn maps_stand_in_rows_and_columns() {
+        let width = |columns| {
+            let svg = maps(columns, 6).svg().unwrap();
+            svg.split("width=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap()
+        };
+        assert!(width(1) < width(2) && width(2) < 1000.0 && width(3) < 1000.0);
+    }
+}

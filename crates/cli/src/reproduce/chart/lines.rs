@@ -112,7 +112,7 @@ impl Hue {
         match self {
             Self::Own(index) => PALETTE[index % PALETTE.len()],
             // Neither so dark nor so light that a ground hides it.
-            Self::Ordered(place) => ViridisRGB.get_color(0.2 + 0.6 * place.clamp(0.0, 1.0)),
+            Self::Ordered(place) => ViridisRGB.get_color(0.28 + 0.54 * place.clamp(0.0, 1.0)),
             Self::Ink => INK,
         }
     }

@@ -98,7 +98,7 @@ fn text(table: &Table, runs: &[Run]) -> String {
 }
 
 fn caption() -> String {
-    "The largest error around the impact [15] (J^½) over Δt/Δt_c (logarithmic), for each reading of the contact force, one \
+    "The largest error around the impact [15] (J^½) over Δt/Δt_c (both logarithmic), for each reading of the contact force, one \
      curve for each fraction of a step at which the impact falls."
         .to_string()
 }
@@ -116,7 +116,7 @@ fn figure(table: &Table) -> Result<String, ReproduceError> {
     };
     let lines = Lines {
         x: Axis::log("Δt/Δt_c").marks(&RATIOS),
-        y: Axis::linear("largest error (J^½)").from(0.0),
+        y: Axis::log("largest error (J^½)"),
         panels: ContactForce::ALL.iter().map(panel).collect(),
         columns: 2,
         bands: vec![],
