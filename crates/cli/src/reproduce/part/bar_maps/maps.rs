@@ -1,10 +1,11 @@
 //! Figures 5 and 6: maps over number of elements and step.
 
-use super::grid::{ENDS, FRACTIONS, Grid, Value};
+use super::grid::{ENDS, FRACTIONS, Grid, MEASURES, Value};
 use super::study::Setting;
 use crate::report::number::short;
 use crate::reproduce::ReproduceError;
 use crate::reproduce::chart::{Colours, HeatMap, HeatMaps};
+use crate::reproduce::table::{Cell, Column, Table};
 use percute_estimator::Acceleration;
 
 /// Maps of all choices: a row for each reading, a column for each Γ_DA.
@@ -62,6 +63,24 @@ pub(super) fn worst(grid: &Grid) -> Result<String, ReproduceError> {
         values
     };
     maps(grid, colours(), |c| (String::new(), cells(grid, &values(c))))
+}
+
+/// Figure 6 in numbers: effectivities with the default Γ_DA, a row for each reading, measure and mesh.
+pub(super) fn table(grid: &Grid) -> Table {
+    let columns = ["contact force", "measure", "elements"].map(Column::new).into_iter();
+    let steps = grid.ratios.iter().map(|ratio| Column::new(format!("Δt/Δt_c = {}", short(*ratio, 1))).digits(3));
+    let caption = format!("The values of the two maps with Γ_DA `{}`.", Acceleration::default());
+    let mut table = Table::new("bar-maps-effectivity", caption, columns.chain(steps).collect());
+    for (c, (reading, _)) in grid.choices.iter().enumerate().filter(|(_, choice)| choice.1 == Acceleration::default()) {
+        for (m, measure) in MEASURES.into_iter().enumerate() {
+            let values: Vec<_> = grid.effectivities(c, m, middle).collect();
+            for &elements in grid.elements {
+                let row = values.iter().filter(|v| v.setting.elements == elements).map(|v| Cell::from(v.value));
+                table.push([reading.to_string().into(), Cell::from(measure), elements.into()].into_iter().chain(row));
+            }
+        }
+    }
+    table
 }
 
 fn colours() -> Colours {

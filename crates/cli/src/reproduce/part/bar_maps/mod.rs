@@ -27,7 +27,11 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
     introduce(&mut section);
     relative(&mut section, &grid)?;
     effectivity(&mut section, &grid)?;
-    section.table(summary::by_choice(&grid));
+    section.table(maps::table(&grid));
+    // What sums up needs all runs.
+    if !effort.small {
+        section.table(summary::by_choice(&grid));
+    }
     section.heading("The instant of impact inside a step");
     instants(&mut section, &grid)?;
     let readings = "one curve for each reading of the contact force";
@@ -42,7 +46,9 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
             Acceleration::default(),
         ),
     );
-    section.table(summary::by_fraction(&grid));
+    if !effort.small {
+        section.table(summary::by_fraction(&grid));
+    }
     section.table(sweep);
     section.table(grid.table());
     Ok(section)

@@ -36,8 +36,11 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
             GOOD[0], GOOD[1],
         ),
     );
-    section.table(tables::kinds(&results));
-    section.table(effectivities);
+    // Both need all cases, meshes and references.
+    if !effort.small {
+        section.table(tables::kinds(&results));
+        section.table(effectivities);
+    }
     section.heading("The cases, and whether the references are fine enough");
     section.table(tables::cases(&results));
     section.text(settled(&results));

@@ -65,7 +65,7 @@ pub(super) fn cases(results: &[Result]) -> Table {
     let caption = "The cases: what is estimated, and how the finest of the four meshes touches the plane.";
     let mut table = Table::new("effectivity-cases", caption, columns);
     for (case, found) in results {
-        let (coarse, fine) = (found.iter().flatten().next(), found.iter().rev().flatten().next());
+        let (coarse, fine) = (found.first().and_then(Option::as_ref), found.last().and_then(Option::as_ref));
         let during = fine.and_then(|found| found.touch.during);
         table.push([
             case.name().into(),
