@@ -24,8 +24,8 @@ pub(super) struct Grid {
     pub(super) elements: &'static [usize],
     pub(super) ratios: &'static [f64],
     pub(super) choices: Vec<Choice>,
-    settings: Vec<Setting>,
-    outcomes: Vec<Outcome>,
+    pub(super) settings: Vec<Setting>,
+    pub(super) outcomes: Vec<Outcome>,
 }
 
 /// A value of a map, and where it is.

@@ -111,3 +111,30 @@ pub(super) fn by_fraction(grid: &Grid) -> Table {
     }
     table
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::Outcome;
+    use super::*;
+    use percute_estimator::ErrorMeasures;
+
+    /// Effectivities of 0.5, 1, 2 and 0.7: from 0.5 to 2, half of them within 0.7 to 1.8.
+    #[test]
+    fn a_summary_of_four_runs() {
+        let setting = |elements| Setting { elements, ratio: 0.5, fraction: 0.1, after_impact: 2.0 };
+        let outcome =
+            |sup| Outcome { exact: [2.0, 1.0], estimates: vec![ErrorMeasures { sup, ..ErrorMeasures::default() }] };
+        let grid = Grid {
+            elements: &[1, 2, 3, 4],
+            ratios: &[0.5],
+            choices: vec![(ContactForce::default(), Acceleration::default())],
+            settings: [1, 2, 3, 4].map(setting).to_vec(),
+            outcomes: [1.0, 2.0, 4.0, 1.4].map(outcome).to_vec(),
+        };
+        let summary = Summary::of(&grid, 0, 0, |_| true).unwrap();
+        assert_eq!((summary.low.value, summary.low.setting.elements), (0.5, 1));
+        assert_eq!((summary.high.value, summary.high.setting.elements), (2.0, 3));
+        assert_eq!((summary.within, summary.ratio()), (0.5, 4.0));
+        assert_eq!(Summary::of(&grid, 0, 0, |setting| setting.elements > 4), None);
+    }
+}

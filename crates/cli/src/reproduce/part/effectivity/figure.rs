@@ -12,7 +12,7 @@ use percute_estimator::ContactForce;
 /// Where a good estimate lies.
 pub(super) const GOOD: [f64; 2] = [0.9, 1.5];
 /// Marks of the effectivity.
-const MARKS: [f64; 9] = [0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0];
+const MARKS: [f64; 10] = [0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0];
 
 /// The family of a case: its colour and its name in the legend.
 fn family(case: &Case) -> (usize, String) {

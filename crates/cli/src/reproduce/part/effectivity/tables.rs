@@ -99,14 +99,13 @@ pub(super) fn references(results: &[Result]) -> Table {
     table
 }
 
-/// By how much the last reference moves the true error on the finest mesh, relative: the largest of all cases of a kind.
-pub(super) fn moves(results: &[Result], kind: Kind) -> f64 {
-    let of = |found: &Found| match found.exact.as_slice() {
-        [.., before, last] => (0..2).map(|m| (last[m] / before[m] - 1.0).abs()).fold(0.0, f64::max),
-        _ => 0.0,
-    };
-    let results = results.iter().filter(|(case, _)| case.kind() == kind);
-    results.filter_map(|(_, found)| found.last()?.as_ref().map(of)).fold(0.0, f64::max)
+/// By how much a reference moves the true error on mesh 4 from that of the reference before it, relative: the larger of
+/// sup and mean, for each reference but the first.
+pub(super) fn moves(found: &[Option<Found>]) -> Vec<f64> {
+    let exact = found.last().and_then(Option::as_ref).map_or(&[][..], |found| &found.exact);
+    let one =
+        |pair: &[[f64; 2]]| (0..MEASURES.len()).map(|m| (pair[1][m] / pair[0][m] - 1.0).abs()).fold(0.0, f64::max);
+    exact.windows(2).map(one).collect()
 }
 
 /// The range of each kind with each reading, and how it moves under refinement.
