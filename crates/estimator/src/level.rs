@@ -34,7 +34,10 @@ pub(crate) struct Level<const D: usize> {
     pub(crate) acceleration_before: Vec<[f64; D]>,
     pub(crate) density_before: Densities<D>,
     pub(crate) density_after: Densities<D>,
-    /// Contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
+    /// Where they may act off contact: the normal part of the densities (Pa) on each candidate facet, at its beginning and
+    /// its end, of each step since the sampled level before.
+    pub(crate) pressures: Vec<Vec<[[f64; D]; 2]>>,
+    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
     pub(crate) contact: Vec<[f64; 2]>,
     /// σ_h of each element (Pa).
     pub(crate) stress: Vec<[[f64; D]; D]>,
@@ -63,6 +66,7 @@ impl<const D: usize> Level<D> {
             acceleration_before: Vec::new(),
             density_before: none.clone(),
             density_after: none,
+            pressures: Vec::new(),
             contact: vec![[0.0; 2]; contact_facets],
             stress: Vec::new(),
             force_scale: 0.0,

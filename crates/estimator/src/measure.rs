@@ -7,7 +7,7 @@ use crate::level::{Level, Side};
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node};
-use crate::traction::Equilibration;
+use crate::traction::{Equilibration, Form, MOMENTS};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::problem::Problem;
@@ -122,7 +122,6 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         contact: &[Option<usize>; N],
         side: Side,
     ) -> Balanced<D, N> {
-        let extent = self.law.extent();
         // Outward moments of each facet at its nodes: entering moments with the other sign.
         let mut moments = [[[0.0; D]; D]; N];
         let mut acceleration = self.element.gather(&level.acceleration);
@@ -138,15 +137,6 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 acceleration[i] = level.acceleration_before[at];
             }
         }
-        let mut traction = [[[0.0; D]; D]; N];
-        for k in 0..N {
-            for c in 0..D {
-                let sum: f64 = moments[k].iter().map(|b| b[c]).sum();
-                for p in 0..D {
-                    traction[k][p][c] = D as f64 / extent * ((D + 1) as f64 * moments[k][p][c] - sum);
-                }
-            }
-        }
         let body = level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
         let terms = acceleration.iter().flatten().fold(0.0_f64, |m, a| m.max(self.law.density() * a.abs()));
         let terms = body.iter().fold(terms, |m, f| m.max(f.abs()));
@@ -154,7 +144,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         for value in &mut volume {
             (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
         }
-        let loading = Loading { traction, volume };
+        let loading = Loading { traction: self.tractions(&moments), volume };
         Balanced { forces: self.nodal_forces(&loading), terms, loading }
     }
 
@@ -179,17 +169,69 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         // σ_DA − σ_CA balances the loading less the tractions of the constant σ_CA.
         let stress = self.law.stress(&self.element.gradient(motion.displacement()));
         let mut difference = balanced.loading;
-        for k in 0..N {
-            let pull = self.element.internal_force(k, &stress);
-            for c in 0..D {
-                let traction = -(D as f64) * pull[c] / self.law.extent();
-                (0..D).for_each(|p| difference.traction[k][p][c] -= traction);
-            }
-        }
+        self.subtract_tractions(&stress, &mut difference);
         let elastic = self.law.extent() * self.stress.energy(&difference);
         // |a + b|² = |a − b|² + 4 a·b.
         let products = mass_product(mass, &dynamic, motion.velocity()) + self.work(balanced, motion.displacement());
         ElementError { kinetic, elastic, reference: 2.0 * (kinetic + elastic) + 4.0 * products }
+    }
+
+    /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
+    /// the stress of the displacement that is equilibrated.
+    pub(crate) fn moment_slope(&self, equilibration: &Equilibration<'_, D, N>, level: &Level<D>) -> [f64; MOMENTS] {
+        let mut loading = self.balanced(equilibration, level, &[None; N], Side::After).loading;
+        self.subtract_tractions(&level.stress[self.id.index()], &mut loading);
+        self.slope_of(&loading)
+    }
+
+    /// Its derivative.
+    pub(crate) fn moment_form(&self) -> Form {
+        std::array::from_fn(|i| {
+            let mut moments = [[[0.0; D]; D]; N];
+            moments[i / 4][i / 2 % 2][i % 2] = 1.0;
+            let loading = Loading { traction: self.tractions(&moments), volume: [[0.0; D]; N] };
+            self.slope_of(&loading)
+        })
+    }
+
+    fn slope_of(&self, loading: &Loading<D, N>) -> [f64; MOMENTS] {
+        let slope = self.stress.traction_slope(loading);
+        let mut moments = [0.0; MOMENTS];
+        // Tractions are D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
+        for (k, slope) in slope.iter().enumerate() {
+            for c in 0..D {
+                let sum: f64 = slope.iter().map(|s| s[c]).sum();
+                for p in 0..D {
+                    moments[4 * k + 2 * p + c] = D as f64 * ((D + 1) as f64 * slope[p][c] - sum);
+                }
+            }
+        }
+        moments
+    }
+
+    /// |e|F̂ at the nodes of each facet, from its outward moments there.
+    fn tractions(&self, moments: &[[[f64; D]; D]; N]) -> [[[f64; D]; D]; N] {
+        let mut traction = [[[0.0; D]; D]; N];
+        for k in 0..N {
+            for c in 0..D {
+                let sum: f64 = moments[k].iter().map(|b| b[c]).sum();
+                for p in 0..D {
+                    traction[k][p][c] = D as f64 / self.law.extent() * ((D + 1) as f64 * moments[k][p][c] - sum);
+                }
+            }
+        }
+        traction
+    }
+
+    /// Takes the tractions of a constant stress off a loading.
+    fn subtract_tractions(&self, stress: &[[f64; D]; D], loading: &mut Loading<D, N>) {
+        for k in 0..N {
+            let pull = self.element.internal_force(k, stress);
+            for c in 0..D {
+                let traction = -(D as f64) * pull[c] / self.law.extent();
+                (0..D).for_each(|p| loading.traction[k][p][c] -= traction);
+            }
+        }
     }
 
     /// Means of σ_DA and of Γ_DA/ρ over the element, on the side `After`.

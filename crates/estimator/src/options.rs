@@ -7,12 +7,16 @@ use thiserror::Error;
 /// The most threads that an estimate may use: more than any machine has cores for are a slip.
 pub const MOST_THREADS: usize = 1024;
 
-/// How contact reactions become admissible densities.
+/// The reading of the contact force, and what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactForce {
+    /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
+    /// normal contact law measured where they act off contact; the balance of a companion solution with less
+    /// dispersion; tractions of least energy.
+    #[default]
+    Whole,
     /// On each interval, on the edges that touch throughout it, statically equivalent to the
     /// reactions: force starts with contact.
-    #[default]
     Sharp,
     /// The paper's: reaction over tributary length, from one step after impact to one step before
     /// release and away from the border of the contact zone (eq. \[45\]–\[50\]).
@@ -31,6 +35,26 @@ pub enum Acceleration {
     Weak,
 }
 
+/// What the reading [`ContactForce::Whole`] is without one of its parts, or with another: no choice for an estimate, but
+/// the evidence of what each part is for. The other readings have none of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ablation {
+    /// All parts.
+    #[default]
+    None,
+    /// The balance of the simulation's own displacements, with accelerations that take up what the nodal forces of the
+    /// density and the reactions differ by.
+    Companion,
+    /// A companion with the dispersion of the simulation.
+    Correction,
+    /// The tractions of the star problems.
+    LeastEnergy,
+    /// No work of normal forces, only their energy off contact.
+    NormalWork,
+    /// Twice the work of normal forces, as \[14\] has twice that of friction.
+    DoubledWork,
+}
+
 /// Options of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -38,6 +62,8 @@ pub struct Options {
     pub contact_force: ContactForce,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
+    /// For evidence only.
+    pub ablation: Ablation,
     /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, … and at the end, so that the
     /// mean covers the whole run.
     pub every: usize,
@@ -53,6 +79,7 @@ impl Default for Options {
         Self {
             contact_force: ContactForce::default(),
             acceleration: Acceleration::default(),
+            ablation: Ablation::default(),
             every: 1,
             window: None,
             threads: None,
@@ -99,7 +126,9 @@ macro_rules! named {
     };
 }
 
-named!(ContactForce: Sharp = "sharp", Paper = "paper");
+named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
+named!(Ablation: None = "none", Companion = "companion", Correction = "correction", LeastEnergy = "least energy",
+    NormalWork = "normal work", DoubledWork = "doubled work");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]
@@ -114,6 +143,6 @@ mod tests {
         for &choice in ContactForce::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["sharp", "paper"]);
+        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["whole", "sharp", "paper"]);
     }
 }

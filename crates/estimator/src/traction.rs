@@ -6,12 +6,14 @@
 //! chosen so that the moments are nearest to those of the averaged finite-element traction. That is
 //! the pseudo-inverse of the star matrix, in as many operations as the star has facets.
 
+mod least_energy;
 mod walk;
 
 use crate::contact_force::Densities;
 use crate::element::Element;
 use crate::level::{Level, Side};
 use crate::loaded::LoadedFacets;
+pub(crate) use least_energy::{Form, LeastEnergy, MOMENTS};
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::mesh::Star;
 use percute_core::problem::Problem;

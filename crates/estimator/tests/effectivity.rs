@@ -7,11 +7,16 @@ mod common;
 
 use common::{MESHES, assert_close, block};
 use percute_core::dynamics::{critical_time_step, simulate};
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
+use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder};
 use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
+use percute_testkit::refined;
 
 /// Gap (m) and the least T (s): a run takes steps of exactly 0.9 Δt_c and ends with the first at or
 /// past it. (13 µs in equal, slightly shorter steps would give 1.74 instead of 1.80 for the first.)
@@ -95,4 +100,108 @@ fn a_run_against_itself() {
     comparison.add(&problem, &motion).unwrap();
     simulate(&problem, &short, &mut comparison, &mut Unobserved).unwrap();
     assert!(comparison.finish().is_err());
+}
+
+/// An impact on which the default is held to what docs/verification.md says of it.
+struct Impact {
+    name: &'static str,
+    /// Angle by which the plane is turned clockwise under the block (°).
+    tilt: f64,
+    /// v₀ (m/s), gap (m) and the least T (s).
+    velocity: [f64; 2],
+    gap: f64,
+    end: f64,
+    friction: f64,
+    plane_strain: bool,
+    /// A disc of radius 20 mm on a polygon instead of the block.
+    disc: bool,
+    /// What e/e_ref must lie between.
+    range: [f64; 2],
+}
+
+impl Impact {
+    fn problem(&self, level: usize) -> TriangleProblem {
+        let mesh = if self.disc {
+            (0..level).fold(TriangleMesh::disc(0.02, 5).unwrap(), |mesh, _| refined(&mesh).unwrap())
+        } else {
+            TriangleMesh::rectangle(0.05, 0.04, 5 << level, 4 << level).unwrap()
+        };
+        let (sin, cos) = self.tilt.to_radians().sin_cos();
+        let lowest = mesh.points().iter().map(|p| p[0] * sin + p[1] * cos).fold(f64::INFINITY, f64::min) - self.gap;
+        let plane = Plane::new([sin * lowest, cos * lowest], [sin, cos], self.friction, None).unwrap();
+        let law = if self.plane_strain { Elastic::plane_strain } else { Elastic::plane_stress };
+        Problem::builder(mesh)
+            .material(law(70e9, 0.3, 2700.0, 1.0).unwrap())
+            .initial_velocity(Initial::Uniform(self.velocity))
+            .obstacle(plane)
+            .build()
+            .unwrap()
+    }
+
+    /// e_sup/e_ref and e_mean/e_ref on a mesh, against that of which each cell is cut into 16.
+    fn effectivities(&self, level: usize) -> [f64; 2] {
+        let (problem, fine) = (self.problem(level), self.problem(level + 2));
+        let times = grid(&problem, self.end);
+        let estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+        let mut sink = (Recorder::new(&problem, &times), estimator);
+        simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
+        let (motion, estimate) = (sink.0.finish(), sink.1.finish().unwrap().error);
+        let times = grid(&fine, times.end());
+        let mut comparison = Comparison::new(&fine, &times);
+        comparison.add(&problem, &motion).unwrap();
+        simulate(&fine, &times, &mut comparison, &mut Unobserved).unwrap();
+        let exact = comparison.finish().unwrap().remove(0);
+        [estimate.sup / exact.sup, estimate.mean / exact.mean]
+    }
+}
+
+const FLAT: Impact = Impact {
+    name: "flat",
+    tilt: 0.0,
+    velocity: [400.0, -400.0],
+    gap: GAP,
+    end: END,
+    friction: 0.2,
+    plane_strain: false,
+    disc: false,
+    range: [0.9, 1.5],
+};
+
+/// The ranges that the default was built to meet: 0.9 to 1.5 on flat impacts, to 2 on tilted and curved bodies, to 3 where
+/// a corner touches first; measured are 1.0 to 1.2, 1.1 to 1.5 and 2.2 to 2.3. It must not grow with the
+/// refinement either; 2 % are left to the instants of impact, which lie elsewhere in the steps.
+#[test]
+fn the_default_is_near_the_true_error() {
+    let impacts = [
+        FLAT,
+        Impact { name: "flat, normal", velocity: [0.0, -400.0], friction: 0.0, ..FLAT },
+        Impact { name: "flat, plane strain, sticking", friction: 0.5, plane_strain: true, ..FLAT },
+        Impact { name: "tilted by 3°", tilt: 3.0, end: 16e-6, range: [0.9, 2.0], ..FLAT },
+        Impact {
+            name: "tilted by 10°",
+            tilt: 10.0,
+            velocity: [0.0, -400.0],
+            gap: 0.12e-3,
+            end: 16e-6,
+            range: [0.9, 3.0],
+            ..FLAT
+        },
+        Impact {
+            name: "disc",
+            velocity: [0.0, -100.0],
+            gap: 0.1e-3,
+            end: 16e-6,
+            disc: true,
+            range: [0.9, 2.0],
+            ..FLAT
+        },
+    ];
+    for impact in impacts {
+        let [coarse, fine] = [1, 2].map(|level| impact.effectivities(level));
+        for (coarse, fine) in coarse.into_iter().zip(fine) {
+            let told = format!("{}: {coarse} and {fine}", impact.name);
+            assert!([coarse, fine].iter().all(|x| (impact.range[0]..=impact.range[1]).contains(x)), "{told}");
+            assert!(fine <= 1.02 * coarse, "{told}");
+        }
+    }
 }

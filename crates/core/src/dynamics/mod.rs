@@ -38,6 +38,13 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass }
     }
 
+    /// The stiffness K.
+    #[inline]
+    #[must_use]
+    pub fn stiffness(&self) -> &Stiffness<D, N> {
+        &self.stiffness
+    }
+
     /// 1/m of each node (1/kg).
     #[inline]
     #[must_use]

@@ -1,4 +1,4 @@
-//! Admissible contact forces F_DA (§6.2.1), in two readings.
+//! Admissible contact forces F_DA (§6.2.1), in three readings.
 //!
 //! A density lives on the candidate facets, linear on each and linear in time inside each step.
 //! An [`Interval`] holds it at both ends of a step; at an instant where the touching facets change,
@@ -6,11 +6,13 @@
 
 mod paper;
 mod sharp;
+mod whole;
 
 use crate::options::ContactForce;
 use crate::residual::{Residuals, worse};
 use paper::Paper;
 use percute_core::problem::{ContactFacet, Problem};
+use whole::Whole;
 
 /// Nodal values of a density on each candidate facet (Pa).
 pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
@@ -34,6 +36,7 @@ pub(crate) struct Interval<const D: usize> {
 pub(crate) enum Reading<const D: usize> {
     Paper(Paper),
     Sharp,
+    Whole(Whole),
 }
 
 impl<const D: usize> Reading<D> {
@@ -41,7 +44,13 @@ impl<const D: usize> Reading<D> {
         match choice {
             ContactForce::Paper => Self::Paper(Paper::new(problem)),
             ContactForce::Sharp => Self::Sharp,
+            ContactForce::Whole => Self::Whole(Whole::new(problem)),
         }
+    }
+
+    /// Whether forces may act where a node does not touch.
+    pub(crate) fn acts_off_contact(&self) -> bool {
+        matches!(self, Self::Whole(_))
     }
 
     /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
@@ -63,6 +72,10 @@ impl<const D: usize> Reading<D> {
                 end: paper.densities(problem, &now.touching, next, after.map(|a| a.touching.as_slice())),
             },
             Self::Sharp => sharp::interval(problem, now, next),
+            Self::Whole(whole) => Interval {
+                start: whole.densities(problem, &now.reaction),
+                end: whole.densities(problem, &next.reaction),
+            },
         }
     }
 }
@@ -88,8 +101,8 @@ pub(crate) fn nodal_forces<const D: usize, const N: usize>(
 }
 
 /// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes, for F
-/// is zero unless both nodes stay on the plane. In 2D both are linear along the edge, so that two
-/// Gauss points are exact on each piece on which w_t keeps its sign.
+/// is zero unless both nodes stay on the plane, or is told by [`normal_power`]. In 2D both are linear along the
+/// edge, so that two Gauss points are exact on each piece on which w_t keeps its sign.
 pub(crate) fn misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     facet: &ContactFacet<D>,
@@ -108,29 +121,51 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
     let force = density.map(|f| (plane.split(&f).0, along(&f)));
     let sliding = velocity.map(|v| along(&v));
 
-    let (w0, w1) = (sliding[0], sliding[1]);
-    let turn = if w0 * w1 < 0.0 { w0 / (w0 - w1) } else { 1.0 };
-    let gauss = 0.5 / 3.0_f64.sqrt();
-    let mut power = 0.0;
-    for (from, to) in [(0.0, turn), (turn, 1.0)] {
-        for at in [0.5 - gauss, 0.5 + gauss] {
-            let s = from + at * (to - from);
+    facet.area
+        * over_signs([sliding[0], sliding[1]], |s| {
             let line = |a: f64, b: f64| (1.0 - s) * a + s * b;
-            let w = line(w0, w1);
+            let w = line(sliding[0], sliding[1]);
             let (normal, tangential) = (line(force[0].0, force[1].0), line(force[0].1, force[1].1));
-            power += 0.5 * (to - from) * (plane.friction() * normal * w.abs() + w * tangential);
-        }
-    }
-    facet.area * power
+            plane.friction() * normal * w.abs() + w * tangential
+        })
 }
 
-/// Checks that a step's densities are in the cone and act only where both nodes of a facet touch
-/// throughout the step.
+/// Mean over an edge of a quantity that is quadratic on each piece on which a linear velocity keeps its sign.
+fn over_signs([w0, w1]: [f64; 2], quantity: impl Fn(f64) -> f64) -> f64 {
+    let turn = if w0 * w1 < 0.0 { w0 / (w0 - w1) } else { 1.0 };
+    let gauss = 0.5 / 3.0_f64.sqrt();
+    let mut mean = 0.0;
+    for (from, to) in [(0.0, turn), (turn, 1.0)] {
+        for at in [0.5 - gauss, 0.5 + gauss] {
+            mean += 0.5 * (to - from) * quantity(from + at * (to - from));
+        }
+    }
+    mean
+}
+
+/// ∫F_n gap over a facet (J), both linear, the force in Pa.
+pub(crate) fn gap_energy<const D: usize>(area: f64, force: &[f64; D], gap: &[f64; D]) -> f64 {
+    let products: f64 = force.iter().zip(gap).map(|(f, g)| f * g).sum();
+    area * (products + force.iter().sum::<f64>() * gap.iter().sum::<f64>()) / (D * (D + 1)) as f64
+}
+
+/// ∫F_n|w_n| over a facet (W), both linear, the force in Pa.
+pub(crate) fn normal_power<const D: usize>(area: f64, force: &[f64; D], speed: &[f64; D]) -> f64 {
+    if D == 1 {
+        return area * force[0] * speed[0].abs();
+    }
+    let line = |values: &[f64; D], s: f64| (1.0 - s) * values[0] + s * values[D - 1];
+    area * over_signs([speed[0], speed[D - 1]], |s| line(force, s) * line(speed, s).abs())
+}
+
+/// Checks that a step's densities are in the cone and, unless they may act `off_contact`, act only where both nodes
+/// of a facet touch throughout the step.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     now: &SurfaceStep<D>,
     next: &SurfaceStep<D>,
     interval: &Interval<D>,
+    off_contact: bool,
     residuals: &mut Residuals,
 ) {
     for densities in [&interval.start, &interval.end] {
@@ -147,7 +182,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
                 let (normal, tangential) = plane.split(f);
                 let outside = worse(size(&tangential) - plane.friction() * normal, -normal);
                 residuals.cone = worse(residuals.cone, outside / scale);
-                let off = if touches { 0.0 } else { size(f) / scale };
+                let off = if touches || off_contact { 0.0 } else { size(f) / scale };
                 residuals.force_off_contact = worse(residuals.force_off_contact, off);
             }
         }

@@ -23,7 +23,7 @@ fn surface() -> SurfaceStep<2> {
 
 fn residuals(interval: &Interval<2>) -> Residuals {
     let mut residuals = Residuals::default();
-    check(&problem(), &surface(), &surface(), interval, &mut residuals);
+    check(&problem(), &surface(), &surface(), interval, false, &mut residuals);
     residuals
 }
 
@@ -80,7 +80,7 @@ fn forces_beside_a_release_show() {
     let mut released = surface();
     released.touching[3] = false;
     let mut found = Residuals::default();
-    check(&problem(), &surface(), &released, &sharp, &mut found);
+    check(&problem(), &surface(), &released, &sharp, false, &mut found);
     assert!(found.force_off_contact > 1e-6);
 }
 
@@ -245,4 +245,46 @@ fn edges_that_meet_at_a_corner_are_not() {
             assert!((made - wanted).abs() <= 1e-14 * wanted, "{made} instead of {wanted}");
         }
     }
+}
+
+/// `whole` drops nothing: its resultant is that of the reactions, off contact too, and one instant has one value.
+#[test]
+fn the_whole_reaction_is_kept() {
+    let problem = problem();
+    let mut step = surface();
+    // The last node brakes: it has a reaction before it touches.
+    step.reaction[4] = [1.0, 50.0];
+    let reading = Reading::new(ContactForce::Whole, &problem);
+    let first = reading.interval(&problem, None, &surface(), &step, None);
+    let second = reading.interval(&problem, None, &step, &surface(), None);
+    assert_eq!(first.end, second.start);
+    let kept = nodal_forces(&problem, &first.end);
+    for c in 0..2 {
+        let sum = |forces: &[[f64; 2]]| forces.iter().map(|f| f[c]).sum::<f64>();
+        // Rounding of a dozen terms.
+        assert!((sum(&kept) - sum(&step.reaction)).abs() < 1e-12 * 600.0);
+    }
+    assert!(residuals(&first).cone < 1e-14 && first.end[3][1][1] > 0.0);
+    // A reaction out of the cone, as a foreign history may have, is projected.
+    step.reaction[0] = [0.0, -10.0];
+    let cut = reading.interval(&problem, None, &step, &step, None);
+    assert_eq!(cut.start[0][0], [0.0; 2]);
+}
+
+/// The misfits of the normal law against the midpoint rule, which converges with the square of the interval.
+#[test]
+fn normal_law_on_an_edge() {
+    let (area, force, gap) = (0.3, [2.0, 5.0], [1e-3, 4e-3]);
+    let count = 20_000;
+    let mean =
+        |f: &dyn Fn(f64) -> f64| (0..count).map(|k| f((k as f64 + 0.5) / count as f64)).sum::<f64>() / count as f64;
+    let line = |[a, b]: [f64; 2], s: f64| (1.0 - s) * a + s * b;
+    for speed in [[3.0, 1.0], [-3.0, 1.0], [0.5, -4.0], [0.0, 0.0]] {
+        let expected = area * mean(&|s| line(force, s) * line(speed, s).abs());
+        assert!((normal_power(area, &force, &speed) - expected).abs() < 1e-8, "{speed:?}");
+    }
+    let expected = area * mean(&|s| line(force, s) * line(gap, s));
+    assert!((gap_energy(area, &force, &gap) - expected).abs() < 1e-11);
+    // On a bar both are products.
+    assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(2.0, &[3.0], &[-0.5])), (3.0, 3.0));
 }

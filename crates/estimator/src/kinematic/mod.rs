@@ -11,7 +11,7 @@ mod shape;
 mod window;
 
 pub(crate) use contact_track::{ContactTrack, NormalStep};
-pub(crate) use free_motion::{FreeMotion, Knot};
+pub(crate) use free_motion::{FreeMotion, Knot, Motion};
 
 use percute_core::ids::NodeId;
 use percute_core::obstacle::Plane;

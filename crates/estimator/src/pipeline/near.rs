@@ -1,6 +1,8 @@
 //! Elements with a candidate node of contact: their tractions may have two values at an instant,
 //! and their motion is known only when their nodes' next contact is.
 
+mod normal_law;
+
 use super::maps::{Contribution, Maps};
 use super::totals::trapezoid;
 use crate::element::Element;
@@ -10,6 +12,7 @@ use crate::measure::{Balanced, ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
 use crate::traction::Equilibration;
+use normal_law::{NormalMisfit, Pressed};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -37,7 +40,7 @@ struct Provisional<const D: usize, const N: usize> {
 }
 
 /// An interval that waits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Waiting<const D: usize, const N: usize> {
     start: Balanced<D, N>,
     end: Balanced<D, N>,
@@ -45,6 +48,8 @@ struct Waiting<const D: usize, const N: usize> {
     stop: Provisional<D, N>,
     /// Which nodes touch at the beginning and at the end.
     touching: [[bool; N]; 2],
+    /// What presses on its candidate facets, where that may be off contact.
+    pressed: Vec<Pressed<D>>,
 }
 
 /// One such element.
@@ -58,6 +63,8 @@ pub(crate) struct NearElement<const D: usize, const N: usize> {
     /// Where the next interval begins.
     start: Option<Provisional<D, N>>,
     queue: VecDeque<Waiting<D, N>>,
+    /// ∫∫F_n|w_n| so far (J).
+    normal_work: f64,
     pub(crate) intervals: Vec<NearInterval>,
     /// ∫η_E dt over them (J s).
     pub(crate) integral: f64,
@@ -85,6 +92,7 @@ pub(crate) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             facets,
             start: None,
             queue: VecDeque::new(),
+            normal_work: 0.0,
             intervals: Vec::new(),
             integral: 0.0,
             kept: Vec::new(),
@@ -101,6 +109,8 @@ pub(crate) struct Context<'a, 'p, const D: usize, const N: usize> {
     pub(crate) times: &'p TimeGrid,
     pub(crate) equilibration: &'a Equilibration<'p, D, N>,
     pub(crate) choice: Acceleration,
+    /// Weight of the work of normal forces off contact.
+    pub(crate) normal_work: f64,
     pub(crate) tracks: &'a [ContactTrack],
     pub(crate) maps: &'a Maps<D>,
 }
@@ -145,7 +155,12 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let mid = mid.map(|knot| self.provisional(element, knot, 2 * to.index - 1, contact(0)));
         let stop = self.provisional(element, &to.knot, 2 * to.index, contact(1));
         let touching = [from, to].map(|l| self.contact.map(|at| at.is_some_and(|at| l.surface.touching[at])));
-        self.queue.push_back(Waiting { start, end, mid, stop, touching });
+        let pressed = |&facet: &usize| {
+            let steps: Vec<_> = to.pressures.iter().map(|step| step[facet]).collect();
+            Pressed { facet, first: from.index, steps }
+        };
+        let pressed = self.facets.iter().map(pressed).collect();
+        self.queue.push_back(Waiting { start, end, mid, stop, touching, pressed });
     }
 
     fn provisional(&self, element: &Element<D, N>, knot: &Knot<D>, index: usize, contact: f64) -> Provisional<D, N> {
@@ -179,20 +194,29 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             let (Some(mut waiting), Some(start)) = (self.queue.pop_front(), self.start.take()) else { break };
             let error =
                 |balanced: &Balanced<D, N>, at: &Provisional<D, N>| measure.error(balanced, &at.increment, &at.motion);
+            let mut normal = NormalMisfit::default();
+            for pressed in &waiting.pressed {
+                normal.add(&pressed.misfit(context.problem, context.times, context.tracks));
+            }
+            normal.work.iter_mut().for_each(|work| *work *= context.normal_work);
+            let so_far = self.normal_work;
+            let contact = |k: usize, friction: f64| friction + (so_far + normal.work[k]) + normal.energy[k];
             let mut interval = NearInterval::default();
             interval.errors[0] = error(&waiting.start, &start);
-            interval.contact[0] = start.contact;
+            interval.contact[0] = contact(0, start.contact);
             if let Some(mid) = &mut waiting.mid {
                 self.settle(context, mid);
-                let [before, after] = waiting.touching;
-                self.check_contact(context, mid, &std::array::from_fn(|i| before[i] && after[i]));
                 interval.errors[1] = error(&Balanced::middle(&waiting.start, &waiting.end), mid);
-                interval.contact[1] = mid.contact;
+                interval.contact[1] = contact(1, mid.contact);
+                let [before, after] = waiting.touching;
+                let touching = std::array::from_fn(|i| before[i] && after[i]);
+                self.check_contact(context, mid, &touching);
             }
             self.settle(context, &mut waiting.stop);
-            self.check_contact(context, &waiting.stop, &waiting.touching[1]);
             interval.errors[2] = error(&waiting.end, &waiting.stop);
-            interval.contact[2] = waiting.stop.contact;
+            interval.contact[2] = contact(2, waiting.stop.contact);
+            self.normal_work += normal.work[2];
+            self.check_contact(context, &waiting.stop, &waiting.touching[1]);
             self.take(context, [start.knot / 2, waiting.stop.knot / 2], waiting.mid.is_some(), interval);
             self.start = Some(waiting.stop);
         }

@@ -4,13 +4,14 @@ mod impulse;
 mod interval;
 mod supports;
 
+use crate::companion::Companion;
 use crate::contact_force::{Reading, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
-use crate::kinematic::{ContactTrack, FreeMotion, Knot, NormalStep};
+use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
 use crate::level::Level;
 use crate::loaded::LoadedFacets;
-use crate::options::Options;
+use crate::options::{Ablation, Options};
 use crate::residual::{Residuals, worse};
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
@@ -28,6 +29,8 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,
     loaded: LoadedFacets<'p, D, N>,
     reading: Reading<D>,
+    /// What the balance of the reading `whole` is built on.
+    companion: Option<Companion<D>>,
     every: usize,
     motion: FreeMotion<D>,
     tracks: Vec<ContactTrack>,
@@ -44,12 +47,15 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+        let reading = Reading::new(options.contact_force, problem);
         Self {
             problem,
             times,
             dynamics: Dynamics::new(problem, times),
             loaded: LoadedFacets::new(problem),
-            reading: Reading::new(options.contact_force, problem),
+            companion: (matches!(reading, Reading::Whole(_)) && options.ablation != Ablation::Companion)
+                .then(|| Companion::new(problem, options.ablation != Ablation::Correction)),
+            reading,
             every: options.every,
             motion: FreeMotion::new(problem),
             tracks: Vec::new(),
@@ -150,8 +156,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let miss = self.supports.advance(self.problem, self.times, n, &knot);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
+        let (displacement, force) = self.source_of_balance(step, force);
         self.levels.push_back(Level {
-            displacement: step.displacement.to_vec(),
+            displacement,
             force,
             body_force: self.problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
@@ -187,6 +194,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             if level.index % self.every == 0 || end {
                 return Some(level);
             }
+            if let Some(next) = self.levels.front_mut() {
+                next.pressures.splice(0..0, level.pressures);
+            }
         }
         None
     }
@@ -205,6 +215,26 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         for (f, inverse) in force.iter_mut().zip(self.dynamics.inverse_mass()) {
             (0..D).for_each(|c| f[c] *= inverse);
         }
+    }
+
+    /// The displacement whose stress is equilibrated, and its forces but contact: those of the simulation, or the
+    /// companion's, which then goes on to the next step.
+    fn source_of_balance(&mut self, step: &Step<'_, D>, mut force: Vec<[f64; D]>) -> Motion<D> {
+        let (Some(companion), Reading::Whole(whole)) = (&mut self.companion, &self.reading) else {
+            return (step.displacement.to_vec(), force);
+        };
+        let displacement = companion.displacement().to_vec();
+        self.dynamics.forces_without_contact(step.index, &displacement, &mut force);
+        let densities = whole.densities(self.problem, step.reaction);
+        let mut acceleration = force.clone();
+        for (contact, pull) in self.problem.surface().nodes().iter().zip(interval::pull(self.problem, &densities)) {
+            (0..D).for_each(|c| acceleration[contact.node.index()][c] += pull[c]);
+        }
+        for (f, inverse) in acceleration.iter_mut().zip(self.dynamics.inverse_mass()) {
+            (0..D).for_each(|c| f[c] *= inverse);
+        }
+        companion.advance(self.problem, &self.dynamics, self.times, step.index, &acceleration);
+        (displacement, force)
     }
 
     /// Hands the normal motion of the candidate nodes to their tracks.

@@ -13,9 +13,9 @@ use crate::estimate::{Estimate, Sample};
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
 use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
-use crate::options::{Acceleration, Options};
+use crate::options::{Ablation, Acceleration, ContactForce, Options};
 use crate::residual::{Residuals, worse};
-use crate::traction::Equilibration;
+use crate::traction::{Equilibration, LeastEnergy};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -67,12 +67,16 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     equilibration: Equilibration<'p, D, N>,
+    /// What improves the tractions of the reading `whole`.
+    least_energy: Option<LeastEnergy<D>>,
     choice: Acceleration,
     /// Number of intervals worked on at once.
     size: usize,
     levels: Vec<Level<D>>,
     /// Whether the first level was the last of the window before.
     carried: bool,
+    /// Weight of the work of normal forces off contact.
+    normal_work: f64,
     near: Vec<NearElement<D, N>>,
     is_near: Vec<bool>,
     far: FarSums,
@@ -87,14 +91,22 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         let near = near_elements(problem);
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
+        let equilibration = Equilibration::new(problem);
+        let least_energy = options.contact_force == ContactForce::Whole && options.ablation != Ablation::LeastEnergy;
         Self {
             problem,
             times,
-            equilibration: Equilibration::new(problem),
+            least_energy: if least_energy { LeastEnergy::new(problem, &equilibration.elements) } else { None },
+            equilibration,
             choice: options.acceleration,
             size: size(problem, options),
             levels: Vec::new(),
             carried: false,
+            normal_work: match options.ablation {
+                Ablation::NormalWork => 0.0,
+                Ablation::DoubledWork => 2.0,
+                _ => 1.0,
+            },
             near,
             is_near,
             far: FarSums::default(),
@@ -130,11 +142,14 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         pool.install(|| {
             self.stresses(first);
             self.stars(first);
+            if let Some(least_energy) = &self.least_energy {
+                least_energy.improve(self.problem, &self.equilibration, self.choice, &mut self.levels[first..]);
+            }
             let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
             self.maps.begin(problem, times.instants(), equilibration, choice, &self.levels[first..]);
             self.far_elements(first);
-            let (equilibration, maps) = (&self.equilibration, &self.maps);
-            let context = Context { problem, times, equilibration, choice, tracks, maps };
+            let (equilibration, maps, normal_work) = (&self.equilibration, &self.maps, self.normal_work);
+            let context = Context { problem, times, equilibration, choice, normal_work, tracks, maps };
             self.near.par_iter_mut().for_each(|near| near.advance(&context, &self.levels));
         });
         let last = self.levels.len() - 1;

@@ -64,6 +64,14 @@ impl StressMap {
         }
     }
 
+    /// The slope of [`StressMap::energy`] in the tractions; in 1D, where nothing is to be chosen, zero.
+    pub(crate) fn traction_slope<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
+        match self {
+            Self::Bar(_) => [[[0.0; D]; D]; N],
+            Self::Triangle(map) => map.traction_slope(loading),
+        }
+    }
+
     /// Mean over the element of the stress that balances a loading (Pa).
     pub(crate) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[f64; D]; D] {
         let [xx, yy, xy] = match self {

@@ -74,6 +74,27 @@ impl TriangleStress {
         product.iter().zip(&loads).map(|(a, b)| a * b).sum()
     }
 
+    /// 2Q l for the tractions among the loads l, taken back to the real triangle.
+    pub(super) fn traction_slope<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
+        let loads = self.pull_back(loading);
+        let mut product = [0.0; LOADS];
+        for (column, load) in self.energy.iter().zip(&loads) {
+            for (sum, entry) in product.iter_mut().zip(column) {
+                *sum += 2.0 * entry * load;
+            }
+        }
+        let mut slope = [[[0.0; D]; D]; N];
+        for (k, slope) in slope.iter_mut().enumerate() {
+            for (p, slope) in slope.iter_mut().enumerate() {
+                let at = 4 * k + 2 * p;
+                for (c, slope) in [0, D - 1].into_iter().zip(slope) {
+                    *slope = self.inverse[0][c] * product[at] + self.inverse[1][c] * product[at + 1];
+                }
+            }
+        }
+        slope
+    }
+
     /// Stress (11, 22, 12) at the nodes of the sub-triangles, on the real triangle.
     fn stress<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; COEFFICIENTS] {
         let loads = self.pull_back(loading);

@@ -100,6 +100,63 @@ impl Bar {
         history
     }
 
+    /// N of the elements, and the acceleration that they alone give, which the balance is built on: the simulation's,
+    /// or for `whole` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
+    /// acceleration a: on a uniform bar that is what is left of (h²/12c² − Δt²/12).
+    fn sources(&self, history: &[Instant], reading: ContactForce) -> Vec<(Vec<f64>, Vec<f64>)> {
+        if reading != ContactForce::Whole {
+            return history.iter().map(|i| (i.force.clone(), i.free.clone())).collect();
+        }
+        let (n, dt) = (self.elements, self.step());
+        let over_mass = |force: &[f64]| -> Vec<f64> {
+            let pull = |i: usize| if i < n { force[i] } else { 0.0 } - if i > 0 { force[i - 1] } else { 0.0 };
+            (0..=n).map(|i| pull(i) / self.mass(i)).collect()
+        };
+        let left = (1.0 / (self.courant * self.courant) - 1.0) * dt * dt / 12.0;
+        let (mut u, mut v) = (vec![0.0; n + 1], vec![-self.speed; n + 1]);
+        let mut made = Vec::new();
+        for (k, instant) in history.iter().enumerate() {
+            let force = self.forces(&u);
+            let free = over_mass(&force);
+            let mut a = free.clone();
+            a[0] += instant.reaction.max(0.0) / self.mass(0);
+            let correction = over_mass(&self.forces(&a));
+            for i in 0..=n {
+                v[i] += if k == 0 { 0.5 * dt } else { dt } * (a[i] - left * correction[i]);
+                u[i] += dt * v[i];
+            }
+            made.push((force, free));
+        }
+        made
+    }
+
+    /// What `whole` adds at each knot: Q·gap, and ∫Q|w| up to there by the trapezoidal rule.
+    fn normal_law(&self, history: &[Instant], knots: &[Knot], reading: ContactForce) -> Vec<f64> {
+        let push = |k: usize| {
+            let ends = self.contact_force(history, (k / 2).min(self.steps - 1), reading);
+            if k == 2 * self.steps {
+                ends[1]
+            } else if k.is_multiple_of(2) {
+                ends[0]
+            } else {
+                0.5 * (ends[0] + ends[1])
+            }
+        };
+        let mut work = 0.0;
+        let mut made = Vec::new();
+        for (k, (u, v)) in knots.iter().enumerate() {
+            if reading != ContactForce::Whole {
+                made.push(0.0);
+                continue;
+            }
+            if k > 0 {
+                work += 0.25 * self.step() * (push(k - 1) * knots[k - 1].1[0].abs() + push(k) * v[0].abs());
+            }
+            made.push(push(k) * (self.gap + u[0]).max(0.0) + work);
+        }
+        made
+    }
+
     /// Problem P_CA at node 0: each window before a contact phase is shifted so that the integral of
     /// the velocity closes the gap; in contact the velocity is zero.
     fn contact_velocity(&self, history: &[Instant]) -> Vec<f64> {
@@ -151,6 +208,7 @@ impl Bar {
         [n, n + 1].map(|k| match reading {
             ContactForce::Paper if keeps(k) => pushes(k),
             ContactForce::Sharp if touches(n) && touches(n + 1) => pushes(k),
+            ContactForce::Whole => pushes(k),
             _ => 0.0,
         })
     }
@@ -192,30 +250,35 @@ impl Bar {
         let (n, dt) = (self.elements, self.step());
         let history = self.simulate();
         let knots = self.kinematic(&history);
+        let sources = self.sources(&history, reading);
+        let normal_law = self.normal_law(&history, &knots, reading);
         let mut gained = vec![0.0; n + 1];
         let mut totals = Totals::new(n);
         let mut opened = vec![[0.0; 2]; n];
         for k in 0..self.steps {
-            let (from, to) = (&history[k], &history[k + 1]);
+            let ((from_force, from_free), (to_force, to_free)) = (&sources[k], &sources[k + 1]);
             let [start_push, end_push] = self.contact_force(&history, k, reading);
-            let (mut start, mut end) = (from.free.clone(), to.free.clone());
+            let (mut start, mut end) = (from_free.clone(), to_free.clone());
             start[0] += start_push / self.mass(0);
             end[0] += end_push / self.mass(0);
             let elements = |knot: usize, acceleration: &[f64], gained: &[f64], force: &[f64], push: f64| {
                 let state = State { acceleration, gained, force, push, knot: &knots[knot] };
-                (0..n).map(|e| self.measure(e, &state, choice)).collect::<Vec<_>>()
+                let mut all: Vec<_> = (0..n).map(|e| self.measure(e, &state, choice)).collect();
+                // The contact part belongs to the element at the plane, and to d as well.
+                all[0].iter_mut().for_each(|x| *x += normal_law[knot]);
+                all
             };
             if k % every == 0 {
-                opened = elements(2 * k, &start, &gained, &from.force, start_push);
+                opened = elements(2 * k, &start, &gained, from_force, start_push);
             }
             let halfway = mix(&gained, &mix(&start, &end, 0.375 * dt, 0.125 * dt), 1.0, 1.0);
             gained = mix(&gained, &mix(&start, &end, 0.5 * dt, 0.5 * dt), 1.0, 1.0);
             let (first, last) = (k - k % every, (k + 1) % every == 0 || k + 1 == self.steps);
             if last {
-                let closed = elements(2 * k + 2, &end, &gained, &to.force, end_push);
+                let closed = elements(2 * k + 2, &end, &gained, to_force, end_push);
                 let middle = (first == k).then(|| {
                     let acceleration = mix(&start, &end, 0.5, 0.5);
-                    let force = mix(&from.force, &to.force, 0.5, 0.5);
+                    let force = mix(from_force, to_force, 0.5, 0.5);
                     elements(2 * k + 1, &acceleration, &halfway, &force, 0.5 * (start_push + end_push))
                 });
                 totals.add((k + 1 - first) as f64 * dt, &opened, middle.as_deref(), &closed);

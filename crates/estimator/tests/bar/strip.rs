@@ -9,7 +9,7 @@ use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::PI;
 
@@ -49,7 +49,12 @@ fn run<const D: usize, const N: usize>(
 ) -> (History<D>, Estimate<D>) {
     let times = TimeGrid::with_step(4.0 * PI / MODE.angular_frequency(), 0.05 * MODE.length / elements as f64 / 2.0);
     let times = times.unwrap();
-    let estimator = Estimator::new(problem, &times, Options { acceleration, ..Options::default() }).unwrap();
+    let estimator = Estimator::new(
+        problem,
+        &times,
+        Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() },
+    )
+    .unwrap();
     let mut sink = (History::new(&times), estimator);
     simulate(problem, &times, &mut sink, &mut Unobserved).unwrap();
     (sink.0, sink.1.finish().unwrap())

@@ -57,7 +57,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
         percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Discard, &mut Unobserved)
             .unwrap();
     assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
-    for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
+    for &contact_force in ContactForce::ALL {
         for every in [1, 3] {
             let options =
                 Options { contact_force, every, window: Some(1_000_000), threads: Some(1), ..Options::default() };

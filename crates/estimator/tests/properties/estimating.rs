@@ -7,11 +7,10 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options, Request};
 
-/// Both readings of the contact force under each of the three Γ_DA.
+/// All readings of the contact force under each of the Γ_DA.
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
-    let readings = [ContactForce::Sharp, ContactForce::Paper];
-    readings.into_iter().flat_map(|contact_force| {
-        [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak].into_iter().map(move |acceleration| Options {
+    ContactForce::ALL.iter().flat_map(|&contact_force| {
+        Acceleration::ALL.iter().map(move |&acceleration| Options {
             contact_force,
             acceleration,
             threads: Some(1),

@@ -9,7 +9,7 @@ use percute_core::dynamics::simulate;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::PI;
 
@@ -27,12 +27,15 @@ const MODE: BarMode = BarMode {
 const PERIODS: f64 = 3.0;
 
 fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>, Estimate<1>, f64) {
+    run_with(elements, courant, Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() })
+}
+
+fn run_with(elements: usize, courant: f64, options: Options) -> (Motion<1>, Estimate<1>, f64) {
     let problem = bar_in_mode(&MODE, elements, &["start"]);
     let end = PERIODS * 2.0 * PI / MODE.angular_frequency();
     // Δt_c = h/c on a uniform bar, eq. [33].
     let times = TimeGrid::with_step(end, courant * MODE.length / elements as f64 / 2.0).unwrap();
-    let estimator = Estimator::new(&problem, &times, Options { acceleration, ..Options::default() }).unwrap();
-    let mut sink = (Recorder::new(&problem, &times), estimator);
+    let mut sink = (Recorder::new(&problem, &times), Estimator::new(&problem, &times, options).unwrap());
     simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
     (sink.0.finish(), sink.1.finish().unwrap(), times.step(0))
 }
@@ -167,5 +170,27 @@ fn order_two_in_time() {
         let close = |a: f64, b: f64| (a / b - 1.0).abs() < 0.25 * (k * h).powi(2);
         assert!(close(measured, sup), "true time error at {courant}: {measured} instead of {sup}");
         assert!(close(kinetic, x * x / 8.0), "kinetic part at {courant}: {kinetic} instead of {}", x * x / 8.0);
+    }
+}
+
+/// What the companion of `whole` is for: the phase that the simulation loses, which the balance of its own
+/// displacements loses too, and never tells, is seen.
+#[test]
+fn the_drift_of_the_phase_is_seen() {
+    for (elements, courant) in [(20, 0.3), (40, 0.3), (40, 0.8)] {
+        let of = |contact_force| {
+            let (motion, estimate, _) = run_with(elements, courant, Options { contact_force, ..Options::default() });
+            estimate.error.mean / distance(&motion, exact).1
+        };
+        let kh = MODE.wave_number() * MODE.length / elements as f64;
+        let (whole, sharp) = (of(ContactForce::Whole), of(ContactForce::Sharp));
+        let told = format!("{elements}, {courant}: {whole} and {sharp}");
+        // The companion's own phase error, of relative order (kh)², is what is left of the drift.
+        assert!((whole - 1.0).abs() < 0.6 * kh * kh, "{told}");
+        // Its plateau over the true error, as above.
+        let drift = kh * kh * (1.0 - courant * courant) * 2.0 * PI * PERIODS / 24.0;
+        let plateau = kh / 24.0_f64.sqrt();
+        let lost = plateau / (plateau * plateau + drift * drift / 3.0).sqrt();
+        assert!((sharp - lost).abs() < 0.6 * kh * kh, "{told}, {lost}");
     }
 }

@@ -9,7 +9,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
 use percute_exact::{BlockMode, Wave};
 use std::f64::consts::PI;
 
@@ -82,8 +82,14 @@ fn square(problem: &TriangleProblem, mode: &BlockMode, t: f64, u: &[[f64; 2]], v
 fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>, [Estimate<2>; 3]) {
     let step = courant * critical_time_step(problem);
     let times = TimeGrid::with_step(2.0 * PI / mode.angular_frequency(), step).unwrap();
-    let estimator =
-        |acceleration| Estimator::new(problem, &times, Options { acceleration, ..Options::default() }).unwrap();
+    let estimator = |acceleration| {
+        Estimator::new(
+            problem,
+            &times,
+            Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() },
+        )
+        .unwrap()
+    };
     let mut sink = (
         Recorder::new(problem, &times),
         (estimator(Acceleration::Closest), (estimator(Acceleration::Rigid), estimator(Acceleration::Weak))),

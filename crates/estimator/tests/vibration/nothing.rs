@@ -16,7 +16,7 @@ use percute_estimator::{Acceleration, ContactForce, Options, Request};
 fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, energy: f64) {
     let times = TimeGrid::uniform(40.0 * 0.9 * critical_time_step(problem), 40).unwrap();
     for acceleration in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
-        for contact_force in [ContactForce::Sharp, ContactForce::Paper] {
+        for &contact_force in ContactForce::ALL {
             let options = Options { acceleration, contact_force, ..Options::default() };
             let (_, estimate) =
                 percute_estimator::run(problem, &times, options, &Request::default(), &mut Unobserved).unwrap();

@@ -16,6 +16,7 @@ fn checked(track: &ContactTrack) -> Residuals {
         times: &times,
         equilibration: &equilibration,
         choice: Acceleration::Closest,
+        normal_work: 1.0,
         tracks: &tracks,
         maps: &Maps::new(Request::default(), &problem).unwrap(),
     };

@@ -1,9 +1,10 @@
 //! What becomes known over a step: F_DA, then ã, ∫ã dt and the contact part of η.
 
 use super::Preparation;
-use crate::contact_force::{self, Interval};
+use crate::contact_force::{self, Densities, Interval};
 use crate::kinematic::Knot;
 use crate::level::Level;
+use percute_core::problem::Problem;
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     /// Finds F_DA over the earliest step that lacks it; then ã and ∫ã are known up to its end.
@@ -14,7 +15,9 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let after = level(2).map(|l| &l.surface);
         let before = self.before.as_ref();
         let interval = self.reading.interval(self.problem, before, &now.surface, &next.surface, after);
-        contact_force::check(self.problem, &now.surface, &next.surface, &interval, &mut self.residuals);
+        let off_contact = self.reading.acts_off_contact();
+        let residuals = &mut self.residuals;
+        contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
         self.before = Some(self.levels[first].surface.clone());
         self.set_accelerations(first, interval);
@@ -28,12 +31,8 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let surface = self.problem.surface().nodes();
         let inverse_mass = self.dynamics.inverse_mass();
         let corrected = |level: &Level<D>, densities| -> Vec<[f64; D]> {
-            let forces = contact_force::nodal_forces(self.problem, densities);
-            let each = surface.iter().zip(forces).map(|(contact, force)| {
+            let each = surface.iter().zip(pull(self.problem, densities)).map(|(contact, force)| {
                 let i = contact.node.index();
-                let plane = &self.problem.obstacles()[contact.obstacle];
-                // A guided node's tangential motion is prescribed, whatever pulls at it.
-                let force = if contact.guided { plane.normal().map(|n| n * plane.split(&force).0) } else { force };
                 std::array::from_fn(|c| (level.force[i][c] + force[c]) * inverse_mass[i])
             });
             each.collect()
@@ -97,6 +96,23 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             // 2∫[…], twice over half a step each.
             contact.push([so_far + 0.5 * dt * (a + m), so_far + 0.5 * dt * (a + 2.0 * m + b)]);
         }
+        let pressures = |facet: usize| {
+            let plane = &problem.obstacles()[problem.surface().facets()[facet].obstacle];
+            [&now.density_after[facet], &next.density_before[facet]].map(|density| density.map(|f| plane.split(&f).0))
+        };
+        let pressures = self.reading.acts_off_contact().then(|| (0..contact.len()).map(pressures).collect());
         self.levels[first + 1].contact = contact;
+        self.levels[first + 1].pressures = pressures.into_iter().collect();
     }
+}
+
+/// What moves each node of the contact surface under a density: its nodal force (N), but for the tangential
+/// part at a guided node, whose tangential motion is prescribed, whatever pulls at it.
+pub(super) fn pull<const D: usize, const N: usize>(problem: &Problem<D, N>, densities: &Densities<D>) -> Vec<[f64; D]> {
+    let mut forces = contact_force::nodal_forces(problem, densities);
+    for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
+        let plane = &problem.obstacles()[contact.obstacle];
+        *force = plane.normal().map(|n| n * plane.split(force).0);
+    }
+    forces
 }

@@ -62,7 +62,7 @@ fn a_missed_support_shows() {
 #[test]
 fn both_readings_are_checked_at_every_step() {
     let (problem, times) = impact();
-    for reading in [ContactForce::Sharp, ContactForce::Paper] {
+    for &reading in ContactForce::ALL {
         let preparation = prepared(&problem, &times, reading);
         assert!(preparation.residuals.largest() < 1e-13);
         assert!(preparation.impulse.kept > 0.0);
@@ -87,7 +87,7 @@ fn power(length: f64, friction: f64, force: [[f64; 2]; 2], sliding: [f64; 2]) ->
 #[test]
 fn the_contact_part_step_by_step() {
     let (problem, times) = sticking();
-    for reading in [ContactForce::Sharp, ContactForce::Paper] {
+    for &reading in ContactForce::ALL {
         let preparation = prepared(&problem, &times, reading);
         let levels = &preparation.levels;
         let (mut turning, mut inside) = (0, 0);
@@ -124,7 +124,7 @@ fn the_contact_part_step_by_step() {
 #[test]
 fn a_guided_node_keeps_its_tangential_motion() {
     let (problem, times) = guided();
-    for reading in [ContactForce::Sharp, ContactForce::Paper] {
+    for &reading in ContactForce::ALL {
         let preparation = prepared(&problem, &times, reading);
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();

@@ -24,6 +24,7 @@ fn residuals(window: &mut Window<'_, 2, 3>, preparation: &Preparation<'_, 2, 3>)
         times: window.times,
         equilibration: &window.equilibration,
         choice: window.choice,
+        normal_work: 1.0,
         tracks: preparation.tracks(),
         maps: &window.maps,
     };

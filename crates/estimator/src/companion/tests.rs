@@ -1,0 +1,134 @@
+use super::*;
+use percute_core::dynamics::{critical_time_step, simulate};
+use percute_core::history::History;
+use percute_core::load::Support;
+use percute_core::material::Elastic;
+use percute_core::mesh::BarMesh;
+use percute_core::observer::Unobserved;
+use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_testkit::{Random, random_rectangle};
+use std::f64::consts::PI;
+
+/// All displacements of a companion under no contact.
+fn motion<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    corrected: bool,
+) -> Vec<Vec<[f64; D]>> {
+    let dynamics = Dynamics::new(problem, times);
+    let mut companion = Companion::new(problem, corrected);
+    let mut motion = Vec::new();
+    for n in 0..=times.step_count() {
+        motion.push(companion.displacement().to_vec());
+        let mut acceleration = companion.displacement().to_vec();
+        dynamics.forces_without_contact(n, companion.displacement(), &mut acceleration);
+        for (a, inverse) in acceleration.iter_mut().zip(dynamics.inverse_mass()) {
+            (0..D).for_each(|c| a[c] *= inverse);
+        }
+        companion.advance(problem, &dynamics, times, n, &acceleration);
+    }
+    motion
+}
+
+const ELEMENTS: usize = 12;
+
+/// A bar with E = ρ = S = L = 1, held at its ends, in its second mode.
+fn held_bar() -> BarProblem {
+    let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
+    let shape = mesh.points().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
+    let mut builder = Problem::builder(mesh)
+        .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
+        .initial_displacement(Initial::Nodal(shape));
+    for group in ["start", "end"] {
+        builder = builder.support(Support { group: group.into(), components: [true], velocity: None });
+    }
+    builder.build().unwrap()
+}
+
+/// The mode swings at the frequency of the corrected scheme, sin²(ωΔt/2) = (Δt²/4)λ(1 + (Δt_c² − Δt²)λ/12) with
+/// λ = (4/h²) sin²(kh/2): near that of the bar, k, to the fourth order, where the simulation is to the second.
+#[test]
+fn dispersion_is_of_fourth_order() {
+    let (problem, h, k) = (held_bar(), 1.0 / ELEMENTS as f64, 2.0 * PI);
+    for courant in [0.3, 0.8] {
+        let dt = courant * h;
+        let times = TimeGrid::uniform(400.0 * dt, 400).unwrap();
+        let lambda = 4.0 / (h * h) * (0.5 * k * h).sin().powi(2);
+        for (corrected, most) in [(true, (k * h).powi(4) / 100.0), (false, (k * h).powi(2) / 20.0)] {
+            let left = if corrected { (h * h - dt * dt) / 12.0 } else { 0.0 };
+            let omega = 2.0 / dt * (0.5 * dt * (lambda * (1.0 + left * lambda)).sqrt()).asin();
+            // Of Taylor's series the next terms: (kh)⁴/480 and (kh)²/24 at most.
+            assert!((omega / k - 1.0).abs() < most, "{courant}, {corrected}: {omega} for {k}");
+            for (n, u) in motion(&problem, &times, corrected).iter().enumerate() {
+                let found = u[3][0] / problem.initial_displacement()[3][0];
+                // Rounding of 1e-16 grows with the square of the steps.
+                assert!((found - (omega * dt * n as f64).cos()).abs() < 1e-10, "{courant}, step {n}: {found}");
+            }
+        }
+    }
+}
+
+/// At the critical step of a uniform bar both errors cancel, and nothing is changed.
+#[test]
+fn at_the_critical_step_of_a_bar_it_is_the_simulation() {
+    let problem = held_bar();
+    let times = TimeGrid::uniform(5.0, 60).unwrap();
+    let mut history = History::new(&times);
+    simulate(&problem, &times, &mut history, &mut Unobserved).unwrap();
+    for (n, u) in motion(&problem, &times, true).iter().enumerate() {
+        for (a, b) in u.iter().zip(history.step(n).unwrap().displacement) {
+            // Rounding, as above.
+            assert!((a[0] - b[0]).abs() < 1e-11, "step {n}: {} for {}", a[0], b[0]);
+        }
+    }
+}
+
+fn rough_block() -> TriangleProblem {
+    let mesh = random_rectangle(1.0, 0.8, 6, 3).unwrap();
+    let mut random = Random::new(7);
+    let rough = mesh.points().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
+    let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
+    Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap()
+}
+
+/// Without its damping the shortest waves would grow from 0.97 of the critical step on.
+#[test]
+fn stable_up_to_the_critical_step() {
+    let problem = rough_block();
+    for courant in [0.5, 0.98, 0.999] {
+        // The critical step is known to 1e-3 from below.
+        let times = TimeGrid::uniform(3000.0 * courant * critical_time_step(&problem), 3000).unwrap();
+        let all = motion(&problem, &times, true);
+        let largest = |u: &Vec<[f64; 2]>| u.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let late = all[2900..].iter().map(largest).fold(0.0, f64::max);
+        // All modes together, each at its largest, and the slow growth near the limit; unstable it would be 1e20.
+        assert!(late < 1e3, "{courant}: {late}");
+    }
+}
+
+/// What moves without strain keeps moving so, whatever the mesh.
+#[test]
+fn a_translation_is_not_touched() {
+    let mesh = random_rectangle(1.0, 0.8, 5, 1).unwrap();
+    let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
+    let velocity = [3.0, -2.0];
+    let problem = Problem::builder(mesh).material(law).initial_velocity(Initial::Uniform(velocity)).build().unwrap();
+    let times = TimeGrid::uniform(1.0, 50).unwrap();
+    let end = motion(&problem, &times, true).pop().unwrap();
+    for u in &end {
+        // All nodes have the same displacement to the last bit: no strain at all.
+        assert_eq!(u, &end[0]);
+        assert!((u[0] - 3.0).abs() < 1e-14 && (u[1] + 2.0).abs() < 1e-14, "{u:?}");
+    }
+}
+
+/// Supports keep their motion: the companion moves as prescribed, like the simulation.
+#[test]
+fn supports_move_as_prescribed() {
+    let problem = held_bar();
+    let times = TimeGrid::uniform(2.0, 40).unwrap();
+    for u in motion(&problem, &times, true) {
+        let first = problem.initial_displacement();
+        assert_eq!((u[0], u[ELEMENTS]), (first[0], first[ELEMENTS]));
+    }
+}

@@ -1,0 +1,99 @@
+//! Tractions of least energy: from those of the star problems to better ones that balance as well.
+//!
+//! The star problems fix most of the tractions by what the finite-element stress does on each shape function,
+//! element by element. Where that stress jumps, at a corner or where contact begins, such tractions can cost
+//! three times the energy of the true error. But equilibrium asks for less: any change of the tractions
+//! that gives no element a resultant or a moment is allowed. All of them are spanned by the modes of
+//! [`basis`], and a few conjugate gradients over these, for each instant alone, bring down
+//! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. However many steps are
+//! taken and however coarse the numbers that steer them, the fields stay exactly admissible.
+
+mod basis;
+mod descent;
+
+use crate::element::Element;
+use crate::level::Level;
+use crate::measure::ElementMeasure;
+use crate::options::Acceleration;
+use crate::traction::Equilibration;
+use basis::Basis;
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use rayon::prelude::*;
+
+/// Conjugate gradients from the star problems' tractions on. More change the measure by less than its own doubt:
+/// see the table in docs/verification.md.
+const STEPS: usize = 5;
+
+/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
+pub(crate) const MOMENTS: usize = 12;
+
+/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
+pub(crate) type Form = [[f64; MOMENTS]; MOMENTS];
+
+/// Instants worked on together: each form is read once for all of them, and their numbers lie side by side.
+/// None of them depends on which others it is with.
+pub(super) const LANES: usize = 4;
+
+/// A number at each of these instants.
+pub(super) type Lanes = [f64; LANES];
+
+/// What is fixed in time.
+#[derive(Debug)]
+pub(crate) struct LeastEnergy<const D: usize> {
+    basis: Basis<D>,
+    forms: Vec<Form>,
+}
+
+impl<const D: usize> LeastEnergy<D> {
+    /// Prepares all elements. In 1D there is nothing to choose.
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, elements: &[Element<D, N>]) -> Option<Self> {
+        if D == 1 {
+            return None;
+        }
+        let form = |(e, element): (usize, &Element<D, N>)| {
+            // Energy does not depend on Γ_DA here: any choice will do.
+            ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::default()).moment_form()
+        };
+        let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
+        Some(Self { basis: Basis::new(problem, &forms), forms })
+    }
+
+    /// Improves the moments of all levels.
+    pub(crate) fn improve<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        equilibration: &Equilibration<'_, D, N>,
+        choice: Acceleration,
+        levels: &mut [Level<D>],
+    ) {
+        let count = levels.len();
+        let mut slopes = vec![[0.0; MOMENTS]; count * equilibration.elements.len()];
+        slopes.par_chunks_mut(count).zip(&equilibration.elements).enumerate().for_each(|(e, (slopes, element))| {
+            let measure = ElementMeasure::new(problem, element, ElementId::new(e), choice);
+            for (slope, level) in slopes.iter_mut().zip(levels.iter()) {
+                *slope = measure.moment_slope(equilibration, level);
+            }
+        });
+        levels.par_chunks_mut(LANES).enumerate().for_each(|(chunk, levels)| {
+            let first = chunk * LANES;
+            let slope = |e: usize| -> [Lanes; MOMENTS] {
+                let of = |lane: usize| levels.get(lane).map(|_| &slopes[e * count + first + lane]);
+                std::array::from_fn(|m| std::array::from_fn(|lane| of(lane).map_or(0.0, |slope| slope[m])))
+            };
+            let change = descent::descend(&self.basis, &self.forms, slope, STEPS);
+            for (lane, level) in levels.iter_mut().enumerate() {
+                self.basis.add(&change, lane, &mut level.flux);
+                // The density is continuous in time: both sides of the instant are one.
+                for (at, contact) in problem.surface().nodes().iter().enumerate() {
+                    let links = problem.mesh().stars().link_range(contact.node);
+                    let before = equilibration.contact_links[at]..equilibration.contact_links[at + 1];
+                    level.flux_before[before].copy_from_slice(&level.flux[links]);
+                }
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests;
