@@ -15,8 +15,7 @@ pub(super) fn command(arguments: &ReproduceArguments, console: &mut Console<'_>)
     }
     let parts = parts(&arguments.parts)?;
     let effort = Effort { small: arguments.small, threads: arguments.threads };
-    let mut reproduction =
-        Reproduction::begin(&arguments.output, effort, arguments.force).map_err(|error| refused(error))?;
+    let mut reproduction = Reproduction::begin(&arguments.output, effort, arguments.force).map_err(refused)?;
     let watch = &mut Watch::parts(console.progress && !arguments.quiet, console.interrupted);
     let mut code = DONE;
     for (k, part) in parts.iter().enumerate() {

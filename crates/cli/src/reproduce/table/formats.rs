@@ -6,6 +6,8 @@ use crate::reproduce::page::{escape, rich};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
+/// Longer tables are not on the page at all: their files have them.
+const MOST_ROWS: usize = 1000;
 /// What stands for nothing.
 const NOTHING: &str = "–";
 
@@ -60,8 +62,11 @@ impl Table {
             rich(&self.caption),
             self.name
         );
+        let rows = self.rows.len();
+        if self.long && rows > MOST_ROWS {
+            return format!("<p class=\"table\">{caption} ({rows} rows)</p>\n");
+        }
         if self.long {
-            let rows = self.rows.len();
             return format!(
                 "<details class=\"table\"><summary>{caption} ({rows} rows)</summary>\n{body}\n</details>\n"
             );

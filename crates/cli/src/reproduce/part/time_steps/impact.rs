@@ -118,7 +118,7 @@ fn figure(table: &Table) -> Result<String, ReproduceError> {
         x: Axis::log("Δt/Δt_c").marks(&RATIOS),
         y: Axis::log("largest error (J^½)"),
         panels: ContactForce::ALL.iter().map(panel).collect(),
-        columns: 2,
+        columns: ContactForce::ALL.len().min(3),
         bands: vec![],
     };
     Ok(lines.svg()?)

@@ -131,7 +131,7 @@ fn over_time_figure(table: &Table, runs: &[Run]) -> Result<String, ReproduceErro
         x: Axis::linear("t − t_impact (µs)"),
         y: Axis::linear("√η (J^½)").from(0.0),
         panels: ContactForce::ALL.iter().map(panel).collect(),
-        columns: 2,
+        columns: ContactForce::ALL.len().min(3),
         bands: vec![],
     };
     Ok(lines.svg()?)
