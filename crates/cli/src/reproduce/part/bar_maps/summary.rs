@@ -37,12 +37,15 @@ impl Summary {
 
     fn cells(&self) -> [Cell; 6] {
         let (low, high) = (self.low, self.high);
-        [low.value.into(), at(&low.setting).into(), high.value.into(), at(&high.setting).into()]
-            .into_iter()
-            .chain([Cell::from(100.0 * self.within), self.ratio().into()])
-            .collect::<Vec<_>>()
-            .try_into()
-            .unwrap_or_else(|_| [const { Cell::None }; 6])
+        let share = 100.0 * self.within;
+        [
+            low.value.into(),
+            at(&low.setting).into(),
+            high.value.into(),
+            at(&high.setting).into(),
+            share.into(),
+            self.ratio().into(),
+        ]
     }
 }
 
