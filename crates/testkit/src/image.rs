@@ -4,15 +4,15 @@ use crate::Random;
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 
 /// What [`Mesh::new`] takes.
-pub(crate) struct Parts<const D: usize, const N: usize> {
-    pub(crate) points: Vec<[f64; D]>,
-    pub(crate) cells: Vec<[usize; N]>,
-    pub(crate) facet_groups: FacetGroups<D>,
-    pub(crate) element_groups: ElementGroups,
+struct Parts<const D: usize, const N: usize> {
+    points: Vec<[f64; D]>,
+    cells: Vec<[usize; N]>,
+    facet_groups: FacetGroups<D>,
+    element_groups: ElementGroups,
 }
 
 impl<const D: usize, const N: usize> Parts<D, N> {
-    pub(crate) fn of(mesh: &Mesh<D, N>) -> Self {
+    fn of(mesh: &Mesh<D, N>) -> Self {
         let facet_groups = mesh.facet_groups().iter().map(|(name, facets)| {
             (name.clone(), facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index())).collect())
         });
@@ -28,7 +28,7 @@ impl<const D: usize, const N: usize> Parts<D, N> {
         }
     }
 
-    pub(crate) fn mesh(self) -> Result<Mesh<D, N>, MeshError> {
+    fn mesh(self) -> Result<Mesh<D, N>, MeshError> {
         Mesh::new(self.points, &self.cells, &self.facet_groups, &self.element_groups)
     }
 }

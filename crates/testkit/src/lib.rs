@@ -7,14 +7,12 @@
 mod delaunay;
 mod image;
 mod random;
-mod refine;
 mod shape;
 pub mod strategy;
 
 pub use delaunay::{disc, random_rectangle};
 pub use image::{Renumbering, mirrored, renumbered, rotated, translated};
 pub use random::Random;
-pub use refine::refined;
 pub use shape::smallest_angle;
 
 use percute_core::mesh::MeshError;

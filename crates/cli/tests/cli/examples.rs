@@ -10,7 +10,6 @@ use percute_core::time::TimeGrid;
 use percute_estimator::Estimator;
 use percute_estimator::reference::{Comparison, Motion, Recorder, bar_impact_error};
 use percute_exact::BarImpact;
-use percute_testkit::refined;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -97,7 +96,7 @@ fn run<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> (Motion<D>, f64) 
 
 /// The true error (sup) from a run of the case on a finer mesh.
 fn true_error(case: &CaseOf<2, 3>, motion: &Motion<2>) -> f64 {
-    let mesh = refined(&refined(case.problem.mesh()).unwrap()).unwrap();
+    let mesh = case.problem.mesh().refined().unwrap().refined().unwrap();
     let nodes = mesh.node_count();
     let stated = Source::new("the example", statement(&case.problem, None).unwrap());
     // Initial fields of examples are uniform.

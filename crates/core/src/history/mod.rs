@@ -73,6 +73,13 @@ impl<const D: usize, A: StepSink<D>, B: StepSink<D>> StepSink<D> for (A, B) {
     }
 }
 
+/// Any number of sinks side by side.
+impl<const D: usize, S: StepSink<D>> StepSink<D> for Vec<S> {
+    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        self.iter_mut().try_for_each(|sink| sink.push(step))
+    }
+}
+
 /// A sink that may be left out.
 impl<const D: usize, S: StepSink<D>> StepSink<D> for Option<S> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {

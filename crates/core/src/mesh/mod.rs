@@ -8,6 +8,7 @@ mod generator;
 mod geometry;
 mod notice;
 mod parts;
+mod refine;
 mod star;
 mod topology;
 

@@ -1,0 +1,162 @@
+//! The paper's figures 5 and 6: the error of an impacting bar and the effectivity, over mesh and step.
+
+mod grid;
+mod maps;
+mod study;
+mod summary;
+mod sweep;
+
+use crate::report::number::{percent, short};
+use crate::reproduce::{Effort, Part, ReproduceError, Section};
+use grid::{ENDS, FRACTIONS, Grid, MEASURES};
+use percute_core::observer::Observer;
+use percute_estimator::{Acceleration, ContactForce};
+use study::{BAR, Setting, WHOLE};
+use summary::Summary;
+
+pub(super) const PART: Part =
+    Part { key: "bar-maps", title: "The paper's figures 5 and 6: the bar over mesh and step", make };
+
+/// The range of the effectivity that the paper states (§7.1.6).
+const PAPER: [f64; 2] = [0.7, 1.8];
+
+fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, ReproduceError> {
+    let grid = Grid::run(PART.key, effort, observer)?;
+    let sweep = sweep::table(PART.key, effort, observer)?;
+    let mut section = Section::new(PART.key, PART.title);
+    introduce(&mut section);
+    relative(&mut section, &grid)?;
+    effectivity(&mut section, &grid)?;
+    section.table(maps::table(&grid));
+    // What sums up needs all runs.
+    if !effort.small {
+        section.table(summary::by_choice(&grid));
+    }
+    section.heading("The instant of impact inside a step");
+    instants(&mut section, &grid)?;
+    let readings = "one curve for each reading of the contact force";
+    section.figure(
+        "figure-6-instants",
+        sweep::figure(&sweep)?,
+        format!(
+            "Effectivity e/e_Ex of the largest error (`sup`, [15]) and of the mean ([16]) on {} elements over the fraction of a step at which \
+             the impact falls, at two lengths of the step, with Γ_DA `{}`: {readings}. At a fraction of 1 the bar arrives at an instant of the \
+             scheme. The band is the range that the paper states.",
+            sweep::ELEMENTS,
+            Acceleration::default(),
+        ),
+    );
+    if !effort.small {
+        section.table(summary::by_fraction(&grid));
+    }
+    section.table(sweep);
+    section.table(grid.table());
+    Ok(section)
+}
+
+fn introduce(section: &mut Section) {
+    section.text(format!(
+        "An aluminium bar (E = {} GPa, L = {} m, S = {} m², ρ = {} kg/m³) flies at {} m/s against a rigid plane. The exact solution is known: \
+         contact lasts 2L/c, and then the bar flies back. The true error e_Ex [60] is measured in it, at the instants t_n, and the effectivity \
+         is the estimate over it, of the largest values over time (`sup`) or of the means (`mean`). Lengths of the step are \
+         fractions of the critical one, Δt_c = h/c [33].",
+        short(1e-9 * BAR.young, 3),
+        BAR.length,
+        BAR.section,
+        BAR.density,
+        BAR.speed,
+    ));
+    section.text(format!(
+        "The paper tells neither the gap nor when its runs end. Here the impact falls {} + f steps after the start, for several fractions f, and runs \
+         end {} L/c after the impact t_c, when contact does, or {} L/c after it, well into the flight back; up to a step is added so that steps are whole.",
+        WHOLE, ENDS[0], ENDS[1],
+    ));
+}
+
+/// Figure 5.
+fn relative(section: &mut Section, grid: &Grid) -> Result<(), ReproduceError> {
+    section.figure(
+        "figure-5",
+        maps::relative(grid)?,
+        format!(
+            "The paper's figure 5: relative error ε of the largest values [22] (%, colours logarithmic) over the number of elements and \
+             Δt/Δt_c, for each reading of the contact force (rows) and each Γ_DA (columns); impact at {} of a step, T = t_c + {} L/c. \
+             As the paper says, smaller steps do not make the solution much better: the mesh does.",
+            middle(),
+            ENDS[1],
+        ),
+    );
+    Ok(())
+}
+
+/// Figure 6, for both measures.
+fn effectivity(section: &mut Section, grid: &Grid) -> Result<(), ReproduceError> {
+    section.text(ranges(grid));
+    for (m, measure) in MEASURES.iter().enumerate() {
+        let (what, equation) = [("largest error", "[15]"), ("mean error", "[16]")][m];
+        section.figure(
+            format!("figure-6-{measure}"),
+            maps::effectivity(grid, m)?,
+            format!(
+                "The paper's figure 6: effectivity e/e_Ex of the {what} {equation} [60] over the number of elements and Δt/Δt_c, for each reading of \
+                 the contact force (rows) and each Γ_DA (columns); impact at {} of a step, T = t_c + {} L/c. Pale is 1, blue too small, red \
+                 too large; colours are in equal ratios from 1/4 to 4.",
+                middle(),
+                ENDS[1],
+            ),
+        );
+    }
+    Ok(())
+}
+
+/// The fraction of the maps.
+fn middle() -> f64 {
+    FRACTIONS[FRACTIONS.len() / 2]
+}
+
+/// Where effectivities lie with each reading, default Γ_DA, over all ends and measures.
+fn ranges(grid: &Grid) -> String {
+    let one = |reading: &ContactForce| {
+        let choice = grid.choices.iter().position(|c| *c == (*reading, Acceleration::default())).unwrap_or(0);
+        let parts = MEASURES.iter().enumerate().flat_map(|(m, measure)| {
+            ENDS.iter().filter_map(move |&end| {
+                let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end)?;
+                let range = format!("{} to {}", short(summary.low.value, 2), short(summary.high.value, 3));
+                let share = percent(summary.within);
+                Some(format!(
+                    "{range} (`{measure}`, T = t_c + {end} L/c; {share} of the values within the paper's range)"
+                ))
+            })
+        });
+        format!("with `{reading}` {}", parts.collect::<Vec<_>>().join(", "))
+    };
+    format!(
+        "The paper finds effectivities from {} to {} and does not say of which measure. Over all runs and with Γ_DA `{}` they are: {}. The high \
+         ends come from means of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
+         The low ends come from fine meshes and small steps, where dispersion adds up behind the front and a local measure does not see what \
+         has accumulated.",
+        PAPER[0],
+        PAPER[1],
+        Acceleration::default(),
+        ContactForce::ALL.iter().map(one).collect::<Vec<_>>().join("; "),
+    )
+}
+
+/// The worst of the fractions.
+fn instants(section: &mut Section, grid: &Grid) -> Result<(), ReproduceError> {
+    section.text(
+        "The scheme stops the node that touches at the end of a step, wherever inside the step the bar arrives. How much that costs, and \
+         how much of it the estimate sees, depends on the fraction of the step that is left.",
+    );
+    section.figure(
+        "figure-6-worst",
+        maps::worst(grid)?,
+        format!(
+            "The same maps as figure 6 for the largest error [15], T = t_c + {} L/c, but each value is the one farthest from 1 (as a ratio) over \
+             the fractions {} of a step at which the impact falls.",
+            ENDS[1],
+            FRACTIONS.map(|fraction| short(fraction, 1)).join(", "),
+        ),
+    );
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! Impacts of plane bodies on meshes that are refined: the estimates beside errors against still finer meshes.
+
+use super::body::Body;
+use super::touch::{Touch, Touching};
+use crate::reproduce::ReproduceError;
+use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
+use percute_core::material::{Elastic, Hypothesis};
+use percute_core::observer::Observer;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
+use percute_estimator::reference::{Comparison, Motion, Recorder};
+use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
+
+/// Each run takes steps of exactly this times Δt_c and ends with the first at or past T.
+pub(super) const STEP: f64 = 0.9;
+/// Refinements of the meshes that are estimated, coarsest first.
+pub(super) const ESTIMATED: [usize; 4] = [0, 1, 2, 3];
+
+/// One impact of an aluminium body (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³, as in the paper's §7.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Case {
+    /// What hits the plane.
+    pub(super) body: Body,
+    /// Plane stress or strain.
+    pub(super) hypothesis: Hypothesis,
+    /// μ.
+    pub(super) friction: f64,
+    /// By how much the plane is turned clockwise under the body (°).
+    pub(super) tilt: f64,
+    /// v₀ along and across the plane (m/s).
+    pub(super) velocity: [f64; 2],
+    /// Distance of the lowest node from the plane (m).
+    pub(super) gap: f64,
+    /// T (s).
+    pub(super) end: f64,
+    /// How many of the meshes are estimated.
+    pub(super) meshes: usize,
+    /// Refinements of the references, coarsest first; the last one counts.
+    pub(super) references: &'static [usize],
+}
+
+/// What was found on one mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Found {
+    /// Number of elements.
+    pub(super) elements: usize,
+    /// Number of steps.
+    pub(super) steps: usize,
+    /// The estimate of each reading, in the order of `ContactForce::ALL`.
+    pub(super) estimates: Vec<ErrorMeasures>,
+    /// Impulse that the admissible contact force of each reading keeps.
+    pub(super) kept_impulse: Vec<Option<f64>>,
+    /// Sup and mean of e_ref (J^½) against each reference.
+    pub(super) exact: Vec<[f64; 2]>,
+    /// When the body touches.
+    pub(super) touch: Touch,
+}
+
+impl Found {
+    /// e/e_ref, sup and mean, of a reading, against the finest reference.
+    pub(super) fn effectivity(&self, reading: usize) -> [f64; 2] {
+        let [sup, mean] = self.exact.last().copied().unwrap_or([f64::NAN; 2]);
+        [self.estimates[reading].sup / sup, self.estimates[reading].mean / mean]
+    }
+}
+
+impl Case {
+    /// The problem on one of the meshes.
+    pub(super) fn problem(&self, refinements: usize) -> Result<TriangleProblem, ReproduceError> {
+        let (sin, cos) = self.tilt.to_radians().sin_cos();
+        let (normal, tangent) = ([sin, cos], [cos, -sin]);
+        let mesh = self.body.mesh(refinements)?;
+        let height = |p: &[f64; 2]| p[0] * normal[0] + p[1] * normal[1];
+        let lowest = mesh.points().iter().map(height).fold(f64::INFINITY, f64::min) - self.gap;
+        let [along, across] = self.velocity;
+        let material = match self.hypothesis {
+            Hypothesis::PlaneStrain => Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0)?,
+            _ => Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0)?,
+        };
+        Ok(Problem::builder(mesh)
+            .material(material)
+            .initial_velocity(Initial::Uniform([0, 1].map(|c| along * tangent[c] + across * normal[c])))
+            .obstacle(Plane::new(normal.map(|n| n * lowest), normal, self.friction, None)?)
+            .build()?)
+    }
+
+    /// Estimates on each mesh, then compares with the references. A mesh that is not wanted, or on which the body starts
+    /// too near to the plane, is left out: `None`.
+    pub(super) fn run(&self, observer: &mut dyn Observer) -> Result<Vec<Option<Found>>, ReproduceError> {
+        let mut runs = Vec::new();
+        for &refinements in ESTIMATED.iter().take(self.meshes) {
+            let problem = self.problem(refinements)?;
+            let times = steps_past(self.end, &problem)?;
+            let run = estimate(&problem, &times, observer)?;
+            runs.push((problem, times, run));
+        }
+        let end = runs.iter().map(|run| run.1.end()).fold(0.0, f64::max);
+        for &refinements in self.references {
+            let fine = self.problem(refinements)?;
+            let times = steps_past(end, &fine)?;
+            let mut comparison = Comparison::new(&fine, &times);
+            for (problem, _, run) in &runs {
+                if let Some((motion, _)) = run {
+                    comparison.add(problem, motion)?;
+                }
+            }
+            simulate(&fine, &times, &mut comparison, observer)?;
+            let errors = comparison.finish()?;
+            let found = runs.iter_mut().filter_map(|run| run.2.as_mut().map(|run| &mut run.1));
+            found.zip(errors).for_each(|(found, error)| found.exact.push([error.sup, error.mean]));
+        }
+        let mut found: Vec<_> = runs.into_iter().map(|(_, _, run)| run.map(|run| run.1)).collect();
+        found.resize_with(ESTIMATED.len(), || None);
+        Ok(found)
+    }
+}
+
+/// Steps of exactly 0.9 Δt_c that reach an instant.
+fn steps_past(reach: f64, problem: &TriangleProblem) -> Result<TimeGrid, ReproduceError> {
+    let step = STEP * critical_time_step(problem);
+    let count = (reach / step).ceil();
+    Ok(TimeGrid::uniform(count * step, count as usize)?)
+}
+
+/// Simulates and estimates with each reading; nothing if the body starts too near to the plane.
+fn estimate(
+    problem: &TriangleProblem,
+    times: &TimeGrid,
+    observer: &mut dyn Observer,
+) -> Result<Option<(Motion<2>, Found)>, ReproduceError> {
+    let estimator = |&contact_force: &ContactForce| {
+        Estimator::new(problem, times, Options { contact_force, threads: Some(1), ..Options::default() })
+    };
+    let estimators = ContactForce::ALL.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
+    let mut sink = (Recorder::new(problem, times), (Touching::default(), estimators));
+    match simulate(problem, times, &mut sink, observer) {
+        Ok(_) => {}
+        Err(SimulationError::StartsTooNear { .. }) => return Ok(None),
+        Err(other) => return Err(other.into()),
+    }
+    let (recorder, (touching, estimators)) = sink;
+    let estimates = estimators.into_iter().map(Estimator::finish).collect::<Result<Vec<_>, _>>()?;
+    let found = Found {
+        elements: problem.mesh().element_count(),
+        steps: times.step_count(),
+        estimates: estimates.iter().map(|estimate| estimate.error).collect(),
+        kept_impulse: estimates.iter().map(|estimate| estimate.kept_impulse).collect(),
+        exact: Vec::new(),
+        touch: touching.finish(),
+    };
+    Ok(Some((recorder.finish(), found)))
+}
