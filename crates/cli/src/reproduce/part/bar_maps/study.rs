@@ -20,15 +20,15 @@ pub(super) const WHOLE: f64 = 1.0;
 
 /// One run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Setting {
+pub(in super::super) struct Setting {
     /// Number of elements N_s.
-    pub(super) elements: usize,
+    pub(in super::super) elements: usize,
     /// α = Δt/Δt_c.
-    pub(super) ratio: f64,
+    pub(in super::super) ratio: f64,
     /// The fraction of a step at which the impact falls: the gap is 1 + this times v₀Δt.
-    pub(super) fraction: f64,
+    pub(in super::super) fraction: f64,
     /// (T − t_c)/(L/c), rounded up to whole steps. Contact lasts 2.
-    pub(super) after_impact: f64,
+    pub(in super::super) after_impact: f64,
 }
 
 /// A reading of the contact force with a choice of Γ_DA.
@@ -44,7 +44,7 @@ pub(super) fn choices() -> Vec<Choice> {
 
 /// What a run gave.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Outcome {
+pub(in super::super) struct Outcome {
     /// Sup and mean of the true error over time (J^½), eq. \[60\].
     pub(super) exact: [f64; 2],
     /// The estimates, in the order of the choices.
@@ -53,7 +53,7 @@ pub(super) struct Outcome {
 
 impl Outcome {
     /// e_RdC/e_Ex, sup and mean, of a choice.
-    pub(super) fn effectivity(&self, choice: usize) -> [f64; 2] {
+    pub(in super::super) fn effectivity(&self, choice: usize) -> [f64; 2] {
         let error = &self.estimates[choice];
         [error.sup / self.exact[0], error.mean / self.exact[1]]
     }
@@ -79,16 +79,28 @@ impl Setting {
 
     /// Simulates, estimates with each choice on the thread that calls, and compares.
     pub(super) fn run(&self, choices: &[Choice], observer: &mut dyn Observer) -> Result<Outcome, ReproduceError> {
+        let options = |&(contact_force, acceleration): &Choice| Options {
+            contact_force,
+            acceleration,
+            threads: Some(1),
+            ..Options::default()
+        };
+        self.run_with(&choices.iter().map(options).collect::<Vec<_>>(), observer)
+    }
+
+    /// The same with options of any kind.
+    pub(in super::super) fn run_with(
+        &self,
+        options: &[Options],
+        observer: &mut dyn Observer,
+    ) -> Result<Outcome, ReproduceError> {
         let (problem, exact) = (self.problem()?, self.exact());
         let after = self.after_impact * self.elements as f64 / self.ratio;
         // Where a whole number of steps is due, rounding must not add one.
         let count = (WHOLE + self.fraction + after - 1e-6).ceil();
         let times = TimeGrid::uniform(count * self.step(), count as usize)?;
-        let estimator = |&(contact_force, acceleration): &Choice| {
-            let options = Options { contact_force, acceleration, threads: Some(1), ..Options::default() };
-            Estimator::new(&problem, &times, options)
-        };
-        let estimators = choices.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
+        let estimator = |options: &Options| Estimator::new(&problem, &times, *options);
+        let estimators = options.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
         let mut sink = (Recorder::new(&problem, &times), estimators);
         simulate(&problem, &times, &mut sink, observer)?;
         let (recorder, estimators) = sink;

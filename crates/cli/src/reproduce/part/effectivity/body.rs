@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// A body; the blocks are 50 × 40 mm, as in the paper's §7.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Body {
+pub(in super::super) enum Body {
     /// A block in 5×4 cells, each cut in two.
     Structured,
     /// A block in unstructured triangles of 10 mm.

@@ -18,7 +18,7 @@ const FEW: usize = 2;
 
 /// Cases that are judged together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in super::super) enum Kind {
     /// A side arrives at once.
     Flat,
     /// A side arrives from one end to the other.
@@ -31,7 +31,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// All of them.
-    pub(super) const ALL: [Self; 4] = [Self::Flat, Self::Tilted, Self::Curved, Self::Corner];
+    pub(in super::super) const ALL: [Self; 4] = [Self::Flat, Self::Tilted, Self::Curved, Self::Corner];
 
     /// Its name.
     pub(super) fn name(self) -> &'static str {
@@ -46,7 +46,7 @@ impl Kind {
 
 impl Case {
     /// With which others it is judged.
-    pub(super) fn kind(&self) -> Kind {
+    pub(in super::super) fn kind(&self) -> Kind {
         match self.body {
             Body::Disc | Body::Rounded => Kind::Curved,
             _ if self.tilt == 0.0 => Kind::Flat,
@@ -57,7 +57,7 @@ impl Case {
     }
 
     /// Its name in tables.
-    pub(super) fn name(&self) -> String {
+    pub(in super::super) fn name(&self) -> String {
         let body = match self.body {
             Body::Structured => "block",
             Body::Unstructured => "unstructured block",
@@ -73,7 +73,7 @@ impl Case {
 }
 
 /// The cases, the longest last; those of the small effort are some of them, on fewer meshes.
-pub(super) fn cases(effort: &Effort) -> Vec<Case> {
+pub(in super::super) fn cases(effort: &Effort) -> Vec<Case> {
     let block = Case {
         body: Body::Structured,
         hypothesis: PlaneStress,
@@ -134,7 +134,8 @@ mod tests {
     #[test]
     fn the_known_case_has_the_known_effectivities() {
         let case = cases(&Effort::SMALL)[0];
-        let found: Vec<Found> = case.run(&mut Unobserved).unwrap().into_iter().flatten().collect();
+        let found: Vec<Found> =
+            case.run(&super::super::study::readings(), &mut Unobserved).unwrap().into_iter().flatten().collect();
         let known =
             [(ContactForce::Sharp, [[1.50, 1.51], [1.26, 1.26]]), (ContactForce::Paper, [[1.80, 1.83], [1.78, 1.65]])];
         for (reading, meshes) in known {

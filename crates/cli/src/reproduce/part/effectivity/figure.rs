@@ -42,7 +42,7 @@ pub(super) fn draw(table: &Table, results: &[Result]) -> std::result::Result<Str
     let panels =
         MEASURES.iter().flat_map(|measure| ContactForce::ALL.iter().map(move |reading| panel(measure, reading)));
     let lines = Lines {
-        x: Axis::log("elements along a side, relative to the coarsest mesh").marks(&[1.0, 2.0, 4.0, 8.0]),
+        x: Axis::log("times finer than mesh 1").marks(&[1.0, 2.0, 4.0, 8.0]),
         y: Axis::log("e/e_ref").marks(&MARKS),
         panels: panels.collect(),
         columns: ContactForce::ALL.len().min(3),

@@ -1,9 +1,9 @@
 //! How good the estimate is in 2D: the estimated over the true error of impacts, against finer meshes.
 
-mod body;
-mod cases;
+pub(super) mod body;
+pub(super) mod cases;
 mod figure;
-mod study;
+pub(super) mod study;
 mod tables;
 mod touch;
 
@@ -13,7 +13,7 @@ use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use cases::{Kind, cases};
 use figure::GOOD;
 use percute_core::observer::Observer;
-use percute_estimator::Acceleration;
+use percute_estimator::{Acceleration, ContactForce};
 use study::STEP;
 
 pub(super) const PART: Part =
@@ -21,8 +21,14 @@ pub(super) const PART: Part =
 
 fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, ReproduceError> {
     let cases = cases(effort);
-    let found = in_order(PART.key, threads(effort.threads), &cases, observer, |case, stop| case.run(stop))?;
-    let results: Vec<tables::Result> = cases.into_iter().zip(found).collect();
+    // The longest are begun first.
+    let mut order: Vec<usize> = (0..cases.len()).collect();
+    order.sort_by_key(|&k| cases[k].cost());
+    let run = |&k: &usize, stop: &mut dyn Observer| cases[k].run(&study::readings(), stop);
+    let mut found: Vec<_> =
+        order.iter().zip(in_order(PART.key, threads(effort.threads), &order, observer, run)?).collect();
+    found.sort_by_key(|(k, _)| **k);
+    let results: Vec<tables::Result> = cases.iter().copied().zip(found.into_iter().map(|(_, found)| found)).collect();
     let effectivities = tables::effectivities(&results);
     let mut section = Section::new(PART.key, PART.title);
     introduce(&mut section);
@@ -40,6 +46,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
     // Both need all cases, meshes and references.
     if !effort.small {
         section.table(tables::kinds(&results));
+        section.text(outside(&results));
         section.table(effectivities);
     }
     section.heading("The cases, and whether the references are fine enough");
@@ -66,6 +73,19 @@ fn introduce(section: &mut Section) {
          rounded block has lower corners with a radius of 15 mm, and the disc one of 25 mm; on all meshes they are the same polygons, with edges \
          of 22.5° and 15°, so that edge after edge comes to touch: the contact zone of the disc grows and shrinks again before T.",
     );
+}
+
+/// Why a corner that touches alone is told too large.
+fn outside(results: &[tables::Result]) -> String {
+    let r = ContactForce::ALL.iter().position(|reading| *reading == ContactForce::default()).unwrap_or(0);
+    let corner = results.iter().filter(|(case, _)| case.kind() == Kind::Corner);
+    let shares = corner.filter_map(|(_, found)| Some(found.last()?.as_ref()?.contact[r]));
+    let least = shares.fold(f64::INFINITY, f64::min);
+    format!(
+        "Where a corner touches alone, the estimate of `{}` stays about twice too large. Its force is a density, linear along the edges beside the          corner, and those are off the plane: on mesh 4 at least {} of η, where it is largest, is the energy gap·F_n of this and the work of          what arrives. A point force would have no gap, but no stress of finite energy balances it. With the curved bodies each edge that comes          to touch is such a corner for some steps. Growth above 1 is no more than what the references still lack (below).",
+        ContactForce::default(),
+        percent(least),
+    )
 }
 
 /// How far references agree, kind by kind.

@@ -17,57 +17,65 @@ pub(super) const STEP: f64 = 0.9;
 /// Refinements of the meshes that are estimated, coarsest first.
 pub(super) const ESTIMATED: [usize; 4] = [0, 1, 2, 3];
 
+/// The readings of the contact force, each on the thread that calls.
+pub(super) fn readings() -> Vec<Options> {
+    let options = |&contact_force| Options { contact_force, threads: Some(1), ..Options::default() };
+    ContactForce::ALL.iter().map(options).collect()
+}
+
 /// One impact of an aluminium body (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³, as in the paper's §7.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Case {
+pub(in super::super) struct Case {
     /// What hits the plane.
-    pub(super) body: Body,
+    pub(in super::super) body: Body,
     /// Plane stress or strain.
-    pub(super) hypothesis: Hypothesis,
+    pub(in super::super) hypothesis: Hypothesis,
     /// μ.
-    pub(super) friction: f64,
+    pub(in super::super) friction: f64,
     /// By how much the plane is turned clockwise under the body (°).
-    pub(super) tilt: f64,
+    pub(in super::super) tilt: f64,
     /// v₀ along and across the plane (m/s).
-    pub(super) velocity: [f64; 2],
+    pub(in super::super) velocity: [f64; 2],
     /// Distance of the lowest node from the plane (m).
-    pub(super) gap: f64,
+    pub(in super::super) gap: f64,
     /// T (s).
-    pub(super) end: f64,
+    pub(in super::super) end: f64,
     /// How many of the meshes are estimated.
-    pub(super) meshes: usize,
+    pub(in super::super) meshes: usize,
     /// Refinements of the references, coarsest first; the last one counts.
-    pub(super) references: &'static [usize],
+    pub(in super::super) references: &'static [usize],
 }
 
 /// What was found on one mesh.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found {
+pub(in super::super) struct Found {
     /// Number of elements.
-    pub(super) elements: usize,
+    pub(in super::super) elements: usize,
     /// Number of steps.
-    pub(super) steps: usize,
-    /// The estimate of each reading, in the order of `ContactForce::ALL`.
-    pub(super) estimates: Vec<ErrorMeasures>,
-    /// Impulse that the admissible contact force of each reading keeps.
-    pub(super) kept_impulse: Vec<Option<f64>>,
+    pub(in super::super) steps: usize,
+    /// The estimate of each choice.
+    pub(in super::super) estimates: Vec<ErrorMeasures>,
+    /// Impulse that the admissible contact force of each keeps.
+    pub(in super::super) kept_impulse: Vec<Option<f64>>,
+    /// The contact part of η where it is largest, of each.
+    pub(in super::super) contact: Vec<f64>,
     /// Sup and mean of e_ref (J^½) against each reference.
-    pub(super) exact: Vec<[f64; 2]>,
+    pub(in super::super) exact: Vec<[f64; 2]>,
     /// When the body touches.
     pub(super) touch: Touch,
 }
 
 impl Found {
-    /// e/e_ref, sup and mean, of a reading, against the finest reference.
-    pub(super) fn effectivity(&self, reading: usize) -> [f64; 2] {
+    /// e/e_ref, sup and mean, of a choice, against the finest reference.
+    pub(in super::super) fn effectivity(&self, choice: usize) -> [f64; 2] {
         let [sup, mean] = self.exact.last().copied().unwrap_or([f64::NAN; 2]);
-        [self.estimates[reading].sup / sup, self.estimates[reading].mean / mean]
+        [self.estimates[choice].sup / sup, self.estimates[choice].mean / mean]
     }
 }
 
 impl Case {
     /// The problem on one of the meshes.
-    pub(super) fn problem(&self, refinements: usize) -> Result<TriangleProblem, ReproduceError> {
+    pub(in super::super) fn problem(&self, refinements: usize) -> Result<TriangleProblem, ReproduceError> {
         let (sin, cos) = self.tilt.to_radians().sin_cos();
         let (normal, tangent) = ([sin, cos], [cos, -sin]);
         let mesh = self.body.mesh(refinements)?;
@@ -85,14 +93,25 @@ impl Case {
             .build()?)
     }
 
+    /// About how long it takes, in any unit: its finest reference decides.
+    pub(super) fn cost(&self) -> u64 {
+        let finest = self.references.last().map_or(0, |&refinements| 1 << (3 * refinements));
+        // Time in ns.
+        finest * (1e9 * self.end) as u64
+    }
+
     /// Estimates on each mesh, then compares with the references. A mesh that is not wanted, or on which the body starts
     /// too near to the plane, is left out: `None`.
-    pub(super) fn run(&self, observer: &mut dyn Observer) -> Result<Vec<Option<Found>>, ReproduceError> {
+    pub(in super::super) fn run(
+        &self,
+        choices: &[Options],
+        observer: &mut dyn Observer,
+    ) -> Result<Vec<Option<Found>>, ReproduceError> {
         let mut runs = Vec::new();
         for &refinements in ESTIMATED.iter().take(self.meshes) {
             let problem = self.problem(refinements)?;
             let times = steps_past(self.end, &problem)?;
-            let run = estimate(&problem, &times, observer)?;
+            let run = estimate(&problem, &times, choices, observer)?;
             runs.push((problem, times, run));
         }
         let end = runs.iter().map(|run| run.1.end()).fold(0.0, f64::max);
@@ -123,16 +142,15 @@ fn steps_past(reach: f64, problem: &TriangleProblem) -> Result<TimeGrid, Reprodu
     Ok(TimeGrid::uniform(count * step, count as usize)?)
 }
 
-/// Simulates and estimates with each reading; nothing if the body starts too near to the plane.
+/// Simulates and estimates with each choice; nothing if the body starts too near to the plane.
 fn estimate(
     problem: &TriangleProblem,
     times: &TimeGrid,
+    choices: &[Options],
     observer: &mut dyn Observer,
 ) -> Result<Option<(Motion<2>, Found)>, ReproduceError> {
-    let estimator = |&contact_force: &ContactForce| {
-        Estimator::new(problem, times, Options { contact_force, threads: Some(1), ..Options::default() })
-    };
-    let estimators = ContactForce::ALL.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
+    let estimator = |options: &Options| Estimator::new(problem, times, *options);
+    let estimators = choices.iter().map(estimator).collect::<Result<Vec<_>, _>>()?;
     let mut sink = (Recorder::new(problem, times), (Touching::default(), estimators));
     match simulate(problem, times, &mut sink, observer) {
         Ok(_) => {}
@@ -146,6 +164,7 @@ fn estimate(
         steps: times.step_count(),
         estimates: estimates.iter().map(|estimate| estimate.error).collect(),
         kept_impulse: estimates.iter().map(|estimate| estimate.kept_impulse).collect(),
+        contact: estimates.iter().map(|estimate| estimate.parts.contact / estimate.parts.total()).collect(),
         exact: Vec::new(),
         touch: touching.finish(),
     };

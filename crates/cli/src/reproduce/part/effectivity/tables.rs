@@ -163,6 +163,7 @@ pub(super) fn runs(results: &[Result]) -> Table {
         Column::new("ε sup").equation("[22]"),
         Column::new("ε mean").equation("[22]"),
         Column::new("impulse kept"),
+        Column::new("contact part at the sup").unit("%").digits(3),
         joule("e_ref sup", ""),
         joule("e_ref mean", ""),
     ];
@@ -176,7 +177,8 @@ pub(super) fn runs(results: &[Result]) -> Table {
                 let words =
                     [case.name().into(), reading.to_string().into(), found.elements.into(), Cell::from(found.steps)];
                 let errors = [e.sup, e.mean, e.relative_sup, e.relative_mean].map(Cell::from);
-                let rest = [Cell::from(found.kept_impulse[r]), sup.into(), mean.into()];
+                let rest =
+                    [Cell::from(found.kept_impulse[r]), (100.0 * found.contact[r]).into(), sup.into(), mean.into()];
                 table.push(words.into_iter().chain(errors).chain(rest));
             }
         }
