@@ -23,6 +23,7 @@ __all__ = [
     "doubts",
     "estimate",
     "is_estimate",
+    "meaning",
     "open_history",
     "reproduce",
     "simulate",
@@ -216,6 +217,7 @@ class BarImpactData:
     def error(self, history: HistoryData) -> tuple[float, float, dict[str, _Floats]]: ...
 
 def command(arguments: Sequence[str]) -> int: ...
+def meaning(contact_force: str) -> str: ...
 def doubts(
     problem: ProblemData,
     times: tuple[float | None, float | None, float | None, Sequence[float] | None],

@@ -2,10 +2,11 @@
 
 import json
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import percute as pc
 import pytest
@@ -13,6 +14,8 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "examples"
 # What may differ: how it was asked for, by whom, and how long it took.
 ASKED = ("case", "seconds", "versions", "held")
+# Of the contact force, by name, the default first; None is the last of what the argument may be.
+READINGS: tuple[str, ...] = get_args(get_args(get_type_hints(pc.estimate)["contact_force"])[0])
 
 
 def command(*arguments: str | Path) -> dict[str, Any]:
@@ -94,18 +97,30 @@ def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> 
     assert [each.element for each in estimate.worst_elements()] == [each["element"] for each in worst]
     assert estimate.parts.total == pytest.approx(estimate.sup**2, rel=1e-14)
     assert document["case"] == ""
+    assert estimate.meaning == document["meaning"]
+    figures, meaning = str(estimate).split("\n")
+    assert f"<{figures}>" == repr(estimate) and meaning == estimate.meaning
 
 
-def test_the_options_of_the_case_go_with_its_history(tmp_path: Path) -> None:
+def test_all_readings_are_named_in_the_signature(block_history: pc.History) -> None:
+    with pytest.raises(pc.InputError, match=re.escape(f"choose one of {', '.join(READINGS)}")):
+        pc.estimate(block_history, contact_force="blunt")  # type: ignore[arg-type]
+    assert pc.estimate(block_history).options["contact_force"] == READINGS[0]
+
+
+@pytest.mark.parametrize("reading", READINGS)
+def test_the_options_of_the_case_go_with_its_history(reading: str, tmp_path: Path) -> None:
     text = (EXAMPLES / "block.toml").read_text().replace('"closest"', '"weak"').replace("every = 1", "every = 3")
+    text = text.replace('contact_force = "whole"', f'contact_force = "{reading}"')
     text += f'\n[output]\nestimate = "{tmp_path / "error.vtkhdf"}"\ninstants = 4\n'
     estimate = pc.run(text, store=tmp_path / "history.vtkhdf")
-    stated = {"contact_force": "sharp", "acceleration": "weak", "every": 3}
+    stated = {"contact_force": reading, "acceleration": "weak", "every": 3}
     assert estimate.options == stated and estimate.history is not None
     for history in (pc.open(tmp_path / "history.vtkhdf"), pickle.loads(pickle.dumps(pc.run(text, overwrite=True).history))):
         assert pc.estimate(history).options == stated
         assert pc.estimate(history, every=1, acceleration="rigid").options == stated | {"every": 1, "acceleration": "rigid"}
     written = pc.open(tmp_path / "error.vtkhdf")
     assert isinstance(written, pc.Estimate) and len(written.maps) == 4 and written.sup == estimate.sup
+    assert written.options == stated and written.meaning == estimate.meaning
     with pytest.raises(pc.ExistingFileError, match=r"error\.vtkhdf"):
         pc.run(text)

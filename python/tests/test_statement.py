@@ -156,7 +156,7 @@ def test_mistakes_in_time(arguments: dict[str, Any], message: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"contact_force": "blunt"}, '`contact_force`: "blunt" is not known; choose one of sharp, paper'),
+        ({"contact_force": "blunt"}, '`contact_force`: "blunt" is not known; choose one of whole, sharp, paper'),
         ({"acceleration": "none"}, "`acceleration`"),
         ({"every": 0}, "`every` is 0; it must be at least 1"),
         ({"threads": 1.5}, "`threads` is 1.5"),

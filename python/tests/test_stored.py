@@ -142,6 +142,23 @@ def test_a_number_that_json_cannot_have(good: Path, tmp_path: Path) -> None:
     assert math.isnan(pc.open(changed(good, tmp_path, replaced(REPORT, report))).relative_sup)  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize(
+    ("reading", "says"), [("whole", "In tests"), ("sharp", "With `sharp` it may lie far off"), ("of tomorrow", "contact together.")]
+)
+def test_a_report_of_another_version(reading: str, says: str, good: Path, tmp_path: Path) -> None:
+    """Older ones do not say what their number means, newer ones may have a reading of which nothing is known here."""
+
+    def report(text: bytes) -> np.bytes_:
+        document = json.loads(text)
+        document["options"]["contact_force"] = reading
+        del document["meaning"]
+        return np.bytes_(json.dumps(document).encode())
+
+    estimate = pc.open(changed(good, tmp_path, replaced(REPORT, report)))
+    assert isinstance(estimate, pc.Estimate) and estimate.options["contact_force"] == reading
+    assert says in estimate.meaning and estimate.meaning.endswith(".")
+
+
 @pytest.mark.parametrize("name", ["percute/over_time", CELLS, STEPS, "VTKHDF/PointData", "percute/problem", REPORT])
 def test_a_part_that_is_missing(name: str, good: Path, tmp_path: Path) -> None:
     refused(changed(good, tmp_path, removed(name)), name)

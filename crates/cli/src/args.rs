@@ -3,6 +3,7 @@
 use crate::case::{Instants, hint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, ContactForce, MOST_THREADS, UnknownName};
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -100,11 +101,11 @@ pub struct EstimateArguments {
     /// Store the estimate, element by element, in this file (.vtkhdf)
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// How contact reactions are read: sharp or paper [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<ContactForce>)]
+    /// How contact reactions are read [default: as stored in the history]
+    #[arg(long, value_name = "NAME", value_parser = choice::<ContactForce>, help = named("How contact reactions are read", ContactForce::ALL))]
     pub contact_force: Option<ContactForce>,
-    /// Choice of the admissible acceleration: closest, rigid or weak [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>)]
+    /// Choice of the admissible acceleration [default: as stored in the history]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>, help = named("Choice of the admissible acceleration", Acceleration::ALL))]
     pub acceleration: Option<Acceleration>,
     /// Sample the error at every k-th step [default: as stored in the history]
     #[arg(long, value_name = "K", value_parser = steps)]
@@ -200,6 +201,12 @@ pub struct WorkArguments {
     /// No progress and no warnings on standard error; warnings stay in summary and JSON
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// What an option of the estimator is, and its names.
+fn named<T: Display>(what: &str, all: &[T]) -> String {
+    let names = all.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    format!("{what}: one of {names} [default: as stored in the history]")
 }
 
 /// A name that the estimator knows.

@@ -104,6 +104,12 @@ pub(crate) fn estimate(
     })
 }
 
+/// What the error means with a reading, by its name; a file may have one that this version does not know.
+#[pyfunction]
+pub(crate) fn meaning(contact_force: &str) -> String {
+    percute::report::meaning(contact_force.parse().ok())
+}
+
 /// Options of an estimate by their names.
 pub(crate) fn options(py: Python<'_>, contact_force: &str, acceleration: &str, every: usize) -> PyResult<Options> {
     let unknown = |name: &str, error: UnknownName| {

@@ -31,7 +31,7 @@ mod _percute {
     #[pymodule_export]
     use super::door::ProgressNow;
     #[pymodule_export]
-    use super::estimate::{EstimateData, estimate};
+    use super::estimate::{EstimateData, estimate, meaning};
     #[pymodule_export]
     use super::exact::BarImpactData;
     #[pymodule_export]

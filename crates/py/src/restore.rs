@@ -85,8 +85,7 @@ pub(crate) fn restore<const D: usize, const N: usize>(
         contact_force: contact_force.parse().map_err(unknown)?,
         acceleration: acceleration.parse().map_err(unknown)?,
         every: *every,
-        threads: None,
-        window: None,
+        ..Options::default()
     };
     let m = &state.measures;
     let error = ErrorMeasures {

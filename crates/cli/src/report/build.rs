@@ -3,7 +3,7 @@
 use super::warnings::{Facts, Warning, few_samples, noticed, warnings};
 use super::{
     ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
-    ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement,
+    ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement, meaning,
 };
 use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
@@ -33,7 +33,9 @@ impl Report {
         doubts.retain(|doubt| doubt.name != "never_touches" || estimate.kept_impulse.is_none());
         let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
-        let facts = Facts { problem: &problem, doubts: &doubts, drift, interrupted, kept_impulse, residual };
+        let contact_force = options.contact_force;
+        let facts =
+            Facts { problem: &problem, doubts: &doubts, drift, interrupted, contact_force, kept_impulse, residual };
         let mut warnings = warnings(&facts);
         warnings.extend(
             few_samples(options.every, planned).map(|few| Warning { message: format!("every {}", few.message), ..few }),
@@ -55,6 +57,7 @@ impl Report {
             given: given(estimate),
             held,
             error: measures(&estimate.error),
+            meaning: meaning(Some(options.contact_force)),
             parts: parts(&estimate.parts),
             time_of_sup: estimate.time_of_sup,
             worst_elements: worst(subject.problem.mesh(), estimate),

@@ -3,11 +3,13 @@
 
 pub(crate) mod build;
 mod contact;
+mod meaning;
 pub(crate) mod number;
 pub(crate) mod summary;
 mod warnings;
 
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
+pub use meaning::meaning;
 pub use summary::summary;
 pub use warnings::Warning;
 pub(crate) use warnings::{few_samples, noticed};
@@ -56,6 +58,7 @@ pub struct Report {
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: Measures,
+    pub meaning: String,
     pub parts: Parts,
     pub time_of_sup: f64,
     pub worst_elements: Vec<WorstElement>,

@@ -1,18 +1,12 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
 use super::number::{percent, short, trimmed};
-use super::{ADMISSIBLE, BalanceSummary, ProblemSummary, Report};
-
-/// What the number means, and what it does not.
-const MEANING: &str = "\
-The error is the energy misfit between admissible fields. It holds the errors of
-space, time, lumped mass and contact together: a measure, not a strict bound.
-";
+use super::{ADMISSIBLE, BalanceSummary, ProblemSummary, Report, meaning};
 
 /// The summary of a run.
 #[must_use]
 pub fn summary(report: &Report) -> String {
-    layout(&lines(report)) + MEANING + &layout(&[("result", result(report))])
+    layout(&lines(report)) + &meaning::lines(&report.meaning) + &layout(&[("result", result(report))])
 }
 
 /// Names and values in two columns.
@@ -32,7 +26,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(worst_elements(report));
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
-    lines.push(("impulse", kept_impulse(report)));
+    lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
     lines.extend(warnings(report));
     lines
@@ -153,11 +147,10 @@ fn residual(report: &Report) -> String {
     format!("largest {} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", short(worst.value, 2), worst.name)
 }
 
-fn kept_impulse(report: &Report) -> String {
-    match report.kept_impulse {
-        Some(kept) => format!("{} of the contact impulse kept by the admissible force", percent(kept)),
-        None => "no contact".to_string(),
-    }
+/// Nothing where all is kept.
+fn kept_impulse(report: &Report) -> Option<String> {
+    let Some(kept) = report.kept_impulse.map(percent) else { return Some("no contact".to_string()) };
+    (kept != percent(1.0)).then(|| format!("{kept} of the contact impulse kept by the admissible force"))
 }
 
 /// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said already.

@@ -4,6 +4,7 @@ use super::number::percent;
 use super::{LargestResidual, ProblemSummary};
 use percute_core::mesh::{Mesh, Notice};
 use percute_core::problem::Doubt;
+use percute_estimator::ContactForce;
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
@@ -31,6 +32,7 @@ pub(super) struct Facts<'a> {
     pub(super) doubts: &'a [Doubt],
     pub(super) drift: f64,
     pub(super) interrupted: bool,
+    pub(super) contact_force: ContactForce,
     pub(super) kept_impulse: Option<f64>,
     pub(super) residual: &'a LargestResidual,
 }
@@ -88,7 +90,17 @@ fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
 fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
     let [least, most] = KEPT;
     let kept = facts.kept_impulse.filter(|kept| !(least..=most).contains(kept))?;
-    let (shown, advice) = (percent(kept), "refine the mesh or the steps where contact begins");
+    let shown = percent(kept);
+    let advice = match facts.contact_force {
+        // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
+        ContactForce::Whole if kept < 1.0 => "the run ends while contact begins: let it last longer",
+        ContactForce::Whole => {
+            "reactions of the history pull, or are outside Coulomb's cone: is `friction` what it was made with?"
+        }
+        ContactForce::Sharp | ContactForce::Paper => {
+            "refine the mesh or the steps where contact begins, or take `contact_force = \"whole\"`"
+        }
+    };
     if kept > most {
         let message = format!(
             "the admissible contact force has {shown} of the simulated impulse; above 110 % it is not the force of the \

@@ -55,7 +55,7 @@ fn without_a_file_the_result_is_the_same() {
 #[test]
 fn options_come_from_the_history_unless_the_command_line_has_them() {
     let estimate = "contact_force = \"paper\"\nacceleration = \"weak\"\nevery = 3\n";
-    let case = BLOCK.replace("contact_force = \"sharp\"\nevery = 1\n", estimate);
+    let case = BLOCK.replace("contact_force = \"whole\"\nevery = 1\n", estimate);
     assert_ne!(case, BLOCK);
     let (chosen, plain) = (Bench::new(&case), Bench::new(BLOCK));
     let beside = result(&done(&chosen, &["run", "case.toml", "--json"]));
@@ -68,7 +68,7 @@ fn options_come_from_the_history_unless_the_command_line_has_them() {
     assert_ne!(result(&done(&plain, &arguments)), beside);
     let output = plain.percute(&["estimate", "case.vtkhdf", "--contact-force", "blunt"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("choose one of sharp, paper"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("choose one of whole, sharp, paper"), "{}", stderr(&output));
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn the_json_document_has_its_keys() {
     assert_eq!(at(&document, "by_element").as_array().unwrap().len(), 40);
     assert_eq!(at(&document, "problem.elements"), 40);
     assert_eq!(at(&document, "problem.nodes"), 30);
-    assert_eq!(at(&document, "options.contact_force"), "sharp");
+    assert_eq!(at(&document, "options.contact_force"), "whole");
     assert_eq!(at(&document, "interrupted"), false);
     assert_eq!(at(&document, "versions.percute"), env!("CARGO_PKG_VERSION"));
     let worst = at(&document, "worst_elements").as_array().unwrap();

@@ -148,8 +148,8 @@ fn anything<const D: usize, const N: usize>(
 }
 
 fn options(random: &mut Random) -> Options {
-    let contact_force = [ContactForce::Sharp, ContactForce::Paper][random.bits() as usize % 2];
-    let acceleration = [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak][random.bits() as usize % 3];
+    let contact_force = ContactForce::ALL[random.bits() as usize % ContactForce::ALL.len()];
+    let acceleration = Acceleration::ALL[random.bits() as usize % Acceleration::ALL.len()];
     Options { contact_force, acceleration, every: 1 + random.bits() as usize % 1000, ..Options::default() }
 }
 

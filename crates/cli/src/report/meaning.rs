@@ -1,0 +1,83 @@
+//! What the error means and what it does not, in words: for the summary, the document and Python.
+
+use percute_estimator::ContactForce;
+
+/// What it is, whatever the reading.
+const MEASURE: &str =
+    "A measure of admissible misfit, not a strict bound: the errors of space, time, lumped mass and contact together.";
+
+/// Where the evidence is.
+const EVIDENCE: &str = "(`percute reproduce`, docs/verification.md)";
+
+/// Smallest and largest estimate over true error of the reading `whole` in docs/verification.md: bars, and bodies that
+/// touch with an edge or along a curve.
+const WHOLE: [f64; 2] = [0.85, 1.5];
+/// The largest where a corner touches first: the block tilted by 10°, all meshes.
+const WHOLE_AT_A_CORNER: f64 = 2.3;
+/// The same of `sharp` and of `paper` on the finest bars with the smallest steps, and what either passes at a corner or at a
+/// point; how far depends on the mesh.
+const OTHERS: [f64; 2] = [0.24, 3.0];
+
+/// What the error means, and how far from the truth it was where that is known: nothing of the latter for a reading of
+/// which this version does not know.
+#[must_use]
+pub fn meaning(reading: Option<ContactForce>) -> String {
+    let evidence = match reading {
+        Some(ContactForce::Whole) => {
+            let [least, most] = WHOLE;
+            format!(
+                "In tests {least} to {most} times the true error, to {WHOLE_AT_A_CORNER} where a corner touches first"
+            )
+        }
+        Some(reading @ (ContactForce::Sharp | ContactForce::Paper)) => {
+            let [least, most] = OTHERS;
+            format!("With `{reading}` it may lie far off: in tests {least} to over {most} times the true error")
+        }
+        None => return MEASURE.to_string(),
+    };
+    format!("{MEASURE} {evidence} {EVIDENCE}.")
+}
+
+/// A text in lines of at most 80 columns.
+pub(super) fn lines(text: &str) -> String {
+    let (mut lines, mut width) = (String::new(), 0);
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        let fits = width > 0 && width + 1 + length <= 80;
+        if width > 0 {
+            lines.push(if fits { ' ' } else { '\n' });
+        }
+        lines.push_str(word);
+        width = if fits { width + 1 + length } else { length };
+    }
+    lines + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_short_lines_say_all_of_it() {
+        for &reading in ContactForce::ALL {
+            let text = meaning(Some(reading));
+            let lines = lines(&text);
+            assert!((1..=3).contains(&lines.lines().count()), "{lines}");
+            assert!(lines.lines().all(|line| line.chars().count() <= 80), "{lines}");
+            assert_eq!(lines.trim_end().replace('\n', " "), text);
+            assert!(lines.ends_with(&format!("{EVIDENCE}.\n")), "{lines}");
+            // None looks like another line of the summary.
+            assert!(
+                ["contact ", "error ", "time ", "work "].iter().all(|label| !lines.contains(&format!("\n{label}")))
+            );
+        }
+    }
+
+    #[test]
+    fn only_readings_that_drop_forces_are_called_far_off() {
+        let far_off = |reading| meaning(Some(reading)).contains("far off");
+        assert!(!far_off(ContactForce::default()));
+        assert!(far_off(ContactForce::Sharp) && far_off(ContactForce::Paper));
+        assert_eq!(meaning(None), MEASURE);
+    }
+}
