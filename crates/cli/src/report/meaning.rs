@@ -9,9 +9,9 @@ const MEASURE: &str =
 /// Where the evidence is.
 const EVIDENCE: &str = "(`percute reproduce`, docs/verification.md)";
 
-/// Smallest and largest estimate over true error of the reading `whole` in docs/verification.md: bars, and bodies that
-/// touch with an edge or along a curve.
-const WHOLE: [f64; 2] = [0.85, 1.5];
+/// Smallest and largest estimate over true error of the reading `whole` in docs/verification.md: bars up to the end of
+/// contact, and bodies that touch with an edge or along a curve, on all meshes. A test holds them to that page.
+const WHOLE: [f64; 2] = [0.85, 1.8];
 /// The largest where a corner touches first: the block tilted by 10°, all meshes.
 const WHOLE_AT_A_CORNER: f64 = 2.3;
 /// The same of `sharp` and of `paper` on the finest bars with the smallest steps, and what either passes at a corner or at a

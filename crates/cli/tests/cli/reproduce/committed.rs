@@ -46,3 +46,32 @@ fn the_committed_page_says_what_is_computed() {
     }
     assert!(small.len() >= 5 && rows > 50, "{} tables, {rows} rows", small.len());
 }
+
+/// What every estimate says of the default is what the page has: the smallest and largest effectivity of bars up to the end
+/// of contact and of plane bodies, and the largest where a corner touches first.
+#[test]
+fn every_estimate_says_what_the_page_has() {
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/verification.md")).unwrap();
+    let tables = tables(&page);
+    let (mut least, mut most, mut corner) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+    for row in tables.values().flatten() {
+        let number = |at: usize| row[at].parse::<f64>().unwrap();
+        match row[..] {
+            ["whole", "closest", _, "2.0", ..] if row.len() == 11 => {
+                (least, most) = (least.min(number(5)), most.max(number(7)));
+            }
+            ["corner first", "whole", "sup" | "mean", ..] => corner = corner.max(number(4)),
+            [_, "whole", "sup" | "mean", ..] if row.len() == 8 => {
+                (least, most) = (least.min(number(3)), most.max(number(4)));
+            }
+            _ => {}
+        }
+    }
+    let said = percute::report::meaning(Some(percute_estimator::ContactForce::Whole));
+    // Rounded outward to what can be said.
+    let down = |x: f64| (20.0 * x).floor() / 20.0;
+    let up = |x: f64| (10.0 * x).ceil() / 10.0;
+    let told = format!("In tests {} to {} times the true error, to {} where", down(least), up(most), up(corner));
+    assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
+}

@@ -21,8 +21,8 @@ use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use rayon::prelude::*;
 
-/// Conjugate gradients from the star problems' tractions on. More change the measure by less than its own doubt:
-/// see the table in docs/verification.md.
+/// Conjugate gradients from the star problems' tractions on: they bring 95 % of what can be gained (a test holds them to
+/// that). On the plane impacts of docs/verification.md, 20 steps instead lower the largest error by 1 to 2 %.
 const STEPS: usize = 5;
 
 /// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.

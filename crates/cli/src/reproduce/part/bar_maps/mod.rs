@@ -135,7 +135,9 @@ fn ranges(grid: &Grid) -> String {
          ends come from means of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
          The low ends of `sharp` and `paper` come from fine meshes and small steps, where dispersion adds up behind the front: a measure \
          whose balance is that of the simulation's own displacements does not see what has accumulated. `whole` balances a companion solution \
-         with less dispersion instead, and its values come near 1 just there.",
+         with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c in the runs that go \
+         on beyond the contact: there the simulation is at its limit of stability, and its shortest wave, once the release has \
+         excited it, grows with time; the companion is then the simulation itself and grows with it.",
         PAPER[0],
         PAPER[1],
         Acceleration::default(),
