@@ -16,7 +16,6 @@ use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder};
 use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
-use percute_testkit::refined;
 
 /// Gap (m) and the least T (s): a run takes steps of exactly 0.9 Δt_c and ends with the first at or
 /// past it. (13 µs in equal, slightly shorter steps would give 1.74 instead of 1.80 for the first.)
@@ -122,7 +121,7 @@ struct Impact {
 impl Impact {
     fn problem(&self, level: usize) -> TriangleProblem {
         let mesh = if self.disc {
-            (0..level).fold(TriangleMesh::disc(0.02, 5).unwrap(), |mesh, _| refined(&mesh).unwrap())
+            (0..level).fold(TriangleMesh::disc(0.02, 5).unwrap(), |mesh, _| mesh.refined().unwrap())
         } else {
             TriangleMesh::rectangle(0.05, 0.04, 5 << level, 4 << level).unwrap()
         };

@@ -130,11 +130,12 @@ fn bodies(effort: &Effort) -> Vec<Case> {
     let mut chosen: Vec<Case> = Vec::new();
     for kind in Kind::ALL {
         let wanted = |case: &&Case| case.kind() == kind && !matches!(case.body, Body::Unstructured | Body::Rounded);
-        let of_kind = all.iter().filter(wanted);
+        let mut of_kind = all.iter().filter(wanted).copied();
         // In the order of the table the first flat case is without friction, the last one sticks most.
-        let flat = kind == Kind::Flat;
-        chosen.extend(of_kind.clone().next());
-        chosen.extend(of_kind.last().filter(|_| flat));
+        chosen.extend(of_kind.next());
+        if kind == Kind::Flat {
+            chosen.extend(of_kind.next_back());
+        }
     }
     let few = |case: Case| Case { meshes, references: REFERENCE, ..case };
     chosen.truncate(effort.either(2, chosen.len()));
