@@ -42,6 +42,11 @@ impl<const D: usize> Companion<D> {
         &self.displacement
     }
 
+    /// ½ v·M v at the last half step (J).
+    pub(crate) fn kinetic_energy(&self, mass: &[f64]) -> f64 {
+        kinetic_energy(&self.half_step, mass)
+    }
+
     /// Goes on from t_n to t_{n+1} with ã_n; after the last step there is nowhere to go.
     pub(crate) fn advance<const N: usize>(
         &mut self,
@@ -103,6 +108,11 @@ impl<const D: usize> Companion<D> {
             self.correction[p.node.index()][p.component] = 0.0;
         }
     }
+}
+
+/// ½ v·M v (J).
+pub(crate) fn kinetic_energy<const D: usize>(velocity: &[[f64; D]], mass: &[f64]) -> f64 {
+    velocity.iter().zip(mass).map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
 }
 
 /// M⁻¹(M − M_c) of a nodal field: an element gives m/(D+2) times the distance to the mean of its nodes.

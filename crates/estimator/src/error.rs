@@ -81,6 +81,20 @@ pub enum EstimateError {
         /// The smallest gap that will do (m).
         smallest_gap: f64,
     },
+    /// The companion of the reading `whole` moves ever faster than the simulation.
+    #[error(
+        "the companion solution of the reading `whole` became unstable at step {step}, t = {time:.6e} s: it takes the history's steps \
+         by central differences, and they are too long for that or jump from one to the next (the longest is {longest_step:.4e} s); \
+         estimate this history with contact_force = \"sharp\", or store shorter steps"
+    )]
+    Companion {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        time: f64,
+        /// Longest step of the history (s).
+        longest_step: f64,
+    },
 }
 
 /// Why a simulation with its estimate, or the estimate of a history, failed.

@@ -4,7 +4,7 @@ mod impulse;
 mod interval;
 mod supports;
 
-use crate::companion::Companion;
+use crate::companion::{Companion, kinetic_energy};
 use crate::contact_force::{Reading, Stopping, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
@@ -21,6 +21,9 @@ use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
 use supports::SupportCheck;
 
+/// A companion with so many times the largest kinetic energy of the simulation is unstable.
+const UNSTABLE: f64 = 1e3;
+
 /// Turns steps into levels whose fields are known on both sides.
 #[derive(Debug)]
 pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
@@ -32,6 +35,8 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     /// What the balance of the reading `whole` is built on.
     companion: Option<Companion<D>>,
     stopping: Option<Stopping<D>>,
+    /// Largest kinetic energy of the simulation so far (J).
+    liveliest: f64,
     every: usize,
     motion: FreeMotion<D>,
     tracks: Vec<ContactTrack>,
@@ -58,6 +63,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 .then(|| Companion::new(problem, options.ablation != Ablation::Correction)),
             stopping: (reading.acts_off_contact() && options.ablation != Ablation::Stopping)
                 .then(|| Stopping::new(problem)),
+            liveliest: 0.0,
             reading,
             every: options.every,
             motion: FreeMotion::new(problem),
@@ -98,7 +104,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
-            _ => Ok(()),
+            _ => self.check_companion(step),
         }
     }
 
@@ -164,6 +170,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             None => step.reaction.to_vec(),
         };
         let (displacement, force) = self.source_of_balance(n, step.displacement, &pressing, force);
+        self.liveliest = self.liveliest.max(kinetic_energy(&knot.velocity, self.problem.mass()));
         self.levels.push_back(Level {
             displacement,
             force,
@@ -177,6 +184,19 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         } else if n >= 2 {
             self.complete_interval();
         }
+    }
+
+    /// Refuses to go on with a companion that has become unstable, as it does where a history of another scheme takes
+    /// steps above the critical one: a stable one has about the energy of the simulation, an unstable one soon any.
+    fn check_companion(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+        let Some(companion) = &self.companion else { return Ok(()) };
+        let energy = companion.kinetic_energy(self.problem.mass());
+        // Before the first steps nothing may move yet.
+        if step.index > 2 && self.liveliest > 0.0 && energy > UNSTABLE * self.liveliest {
+            let longest_step = self.times.longest_step();
+            return Err(EstimateError::Companion { step: step.index, time: step.time, longest_step });
+        }
+        Ok(())
     }
 
     /// Takes in that no more steps come.

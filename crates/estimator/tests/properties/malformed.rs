@@ -5,7 +5,7 @@ use crate::estimating::history;
 use percute_core::history::{SinkError, Step, StepError, StepSink};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Estimator, MOST_THREADS, Options};
+use percute_estimator::{ContactForce, EstimateError, Estimator, MOST_THREADS, Options};
 use percute_testkit::random_rectangle;
 
 /// A step that can be spoilt.
@@ -192,4 +192,42 @@ fn steps_of_another_problem() {
         matches!(found, EstimateError::StartsTouching { node: n, gap, .. } if n == node && gap > 1e-4),
         "{found:?}"
     );
+}
+
+/// A history of which only every third instant was kept, as another scheme might take them: too long for the companion
+/// of `whole`, which says so, and no hindrance to `sharp`.
+#[test]
+fn steps_too_long_for_the_companion() {
+    let problem = impact();
+    let times = steps(&problem, 0.9, 240);
+    let history = history(&problem, &times);
+    let instants: Vec<f64> = times.instants().iter().copied().step_by(3).collect();
+    let longest = instants[1];
+    let thinned = TimeGrid::from_instants(instants).unwrap();
+    for reading in [ContactForce::Whole, ContactForce::Sharp] {
+        let options = Options { contact_force: reading, ..Options::default() };
+        let mut estimator = Estimator::new(&problem, &thinned, options).unwrap();
+        let mut refused = None;
+        for n in 0..=thinned.step_count() {
+            let mut raw = Raw::of(&history.step(3 * n).unwrap());
+            (raw.index, raw.time) = (n, thinned.instants()[n]);
+            if let Err(error) = estimator.push(&raw.step()) {
+                refused = Some(cause(error));
+                break;
+            }
+        }
+        let told = refused.as_ref().map(ToString::to_string).unwrap_or_default();
+        match refused {
+            Some(EstimateError::Companion { longest_step, .. }) => {
+                assert_eq!(reading, ContactForce::Whole);
+                assert!(
+                    (longest_step / longest - 1.0).abs() < 1e-9 && told.contains("contact_force = \"sharp\""),
+                    "{told}"
+                );
+            }
+            other => assert!(other.is_none() && reading == ContactForce::Sharp, "{other:?}"),
+        }
+        // What was right before can still be summed up.
+        assert!(estimator.finish().is_ok());
+    }
 }
