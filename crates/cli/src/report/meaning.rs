@@ -27,7 +27,7 @@ pub fn meaning(reading: Option<ContactForce>) -> String {
         Some(ContactForce::Whole) => {
             let [least, most] = WHOLE;
             format!(
-                "In tests at 0.5 to 0.9 Δt_c {least} to {most} times the true error, to {WHOLE_AT_A_CORNER} where a corner touches first"
+                "In tests at 0.5 to 0.9 Δt_c {least} to {most} times the true error, to {WHOLE_AT_A_CORNER} if a corner is first"
             )
         }
         Some(reading @ (ContactForce::Sharp | ContactForce::Paper)) => {

@@ -72,7 +72,11 @@ fn every_estimate_says_what_the_page_has() {
     // Rounded outward to what can be said.
     let down = |x: f64| (20.0 * x).floor() / 20.0;
     let up = |x: f64| (10.0 * x).ceil() / 10.0;
-    let told =
-        format!("In tests at 0.5 to 0.9 Δt_c {} to {} times the true error, to {} where", down(least), up(most), up(corner));
+    let told = format!(
+        "In tests at 0.5 to 0.9 Δt_c {} to {} times the true error, to {} if",
+        down(least),
+        up(most),
+        up(corner)
+    );
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
 }
