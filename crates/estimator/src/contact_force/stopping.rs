@@ -19,8 +19,16 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub(crate) struct Stopping<const D: usize> {
     /// τ (s).
     time: Vec<f64>,
-    /// Forces (N) at this step and those after it.
-    pending: Vec<VecDeque<[f64; D]>>,
+    pending: Vec<VecDeque<Pending<D>>>,
+}
+
+/// An impulse on its way.
+#[derive(Clone, Copy, Debug)]
+struct Pending<const D: usize> {
+    /// When it began (s).
+    start: f64,
+    /// What is left of it (N s).
+    impulse: [f64; D],
 }
 
 impl<const D: usize> Stopping<D> {
@@ -38,7 +46,7 @@ impl<const D: usize> Stopping<D> {
     }
 
     /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but for
-    /// what is to come after the last step.
+    /// what is to come after the last step; nothing depends on how long later steps are.
     pub(crate) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -47,45 +55,46 @@ impl<const D: usize> Stopping<D> {
         reaction: &[[f64; D]],
         acceleration: &[[f64; D]],
     ) -> Vec<[f64; D]> {
+        let (now, step) = (times.instants()[n], times.step(n.max(1) - 1));
+        // The reaction at t_0 acts for half a step.
+        let length = if n == 0 { times.velocity_step(0) } else { step };
         let mut forces = reaction.to_vec();
         for (k, (contact, force)) in problem.surface().nodes().iter().zip(&mut forces).enumerate() {
             let plane = &problem.obstacles()[contact.obstacle];
-            let pending = &mut self.pending[k];
+            let (pending, time) = (&mut self.pending[k], self.time[k]);
             let (pressing, _) = plane.split(force);
-            if pressing > 0.0 && times.step(n) < self.time[k] {
+            if pressing > 0.0 && step < time {
                 let i = contact.node.index();
                 let stopping = problem.mass()[i] * plane.split(&acceleration[i]).0;
                 let share = (stopping / pressing).min(1.0);
                 if share > NEGLIGIBLE {
-                    spread(times, n, self.time[k], &force.map(|f| share * f), pending);
+                    pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
                 }
             }
-            if let Some(due) = pending.pop_front() {
-                (0..D).for_each(|c| force[c] += due[c]);
+            for one in pending.iter_mut() {
+                let part = part(1.0 - (now - one.start) / time, step / time);
+                for c in 0..D {
+                    force[c] += part * one.impulse[c] / length;
+                    one.impulse[c] -= part * one.impulse[c];
+                }
+            }
+            while pending.front().is_some_and(|one| one.start + time <= now + step) {
+                pending.pop_front();
             }
         }
         forces
     }
 }
 
-/// Adds a force at t_n to what is to come: linearly weaker until a time later, with the same impulse.
-fn spread<const D: usize>(times: &TimeGrid, n: usize, time: f64, force: &[f64; D], pending: &mut VecDeque<[f64; D]>) {
-    let instants = times.instants();
-    let weight = |k: usize| 1.0 - (instants[k] - instants[n]) / time;
-    let steps = || (n..=times.step_count()).take_while(|&k| weight(k) > 0.0);
-    let within: f64 = steps().map(|k| weight(k) * times.velocity_step(k)).sum();
-    // Beyond the end steps would go on like the last one: an arithmetic series.
-    let (end, last) = (weight(times.step_count()).max(0.0), times.step(times.step_count() - 1));
-    let count = (end * time / last).floor();
-    let sum = within + count * last * (end - 0.5 * (count + 1.0) * last / time);
-    for (at, k) in steps().enumerate() {
-        if pending.len() == at {
-            pending.push_back([0.0; D]);
-        }
-        let part = weight(k) * times.velocity_step(n) / sum;
-        (0..D).for_each(|c| pending[at][c] += part * force[c]);
+/// Which part of what is left of an impulse is due, where its weight has come down to `weight` and comes down by `fall`
+/// in each step: what this weight is among those that follow, an arithmetic series.
+fn part(weight: f64, fall: f64) -> f64 {
+    let count = (weight / fall).ceil() - 1.0;
+    if count < 1.0 {
+        return 1.0;
     }
+    weight / ((count + 1.0) * (weight - 0.5 * count * fall))
 }
 
 #[cfg(test)]
