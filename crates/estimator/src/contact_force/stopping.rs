@@ -73,7 +73,7 @@ impl<const D: usize> Stopping<D> {
                 }
             }
             for one in pending.iter_mut() {
-                let part = part(1.0 - (now - one.start) / time, step / time);
+                let part = part(1.0 - (now - one.start) / time, step / time, length / step);
                 for c in 0..D {
                     force[c] += part * one.impulse[c] / length;
                     one.impulse[c] -= part * one.impulse[c];
@@ -88,13 +88,14 @@ impl<const D: usize> Stopping<D> {
 }
 
 /// Which part of what is left of an impulse is due, where its weight has come down to `weight` and comes down by `fall`
-/// in each step: what this weight is among those that follow, an arithmetic series.
-fn part(weight: f64, fall: f64) -> f64 {
+/// in each step, this one counting for a `share` of a step: what this weight is among those that follow, an arithmetic series.
+fn part(weight: f64, fall: f64, share: f64) -> f64 {
     let count = (weight / fall).ceil() - 1.0;
     if count < 1.0 {
         return 1.0;
     }
-    weight / ((count + 1.0) * (weight - 0.5 * count * fall))
+    let later = count * weight - 0.5 * count * (count + 1.0) * fall;
+    share * weight / (share * weight + later)
 }
 
 #[cfg(test)]
