@@ -129,8 +129,6 @@ macro_rules! named {
 }
 
 named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
-named!(Ablation: None = "none", Companion = "companion", Correction = "correction", Stopping = "stopping", LeastEnergy = "least energy",
-    NormalWork = "normal work", DoubledWork = "doubled work");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]

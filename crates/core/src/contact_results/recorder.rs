@@ -140,16 +140,12 @@ impl<const D: usize, const N: usize> StepSink<D> for ContactRecorder<'_, D, N> {
 
 /// The nodes of the contact surface with their shares of the candidate facets.
 fn places<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Place<D>> {
-    let place = |c: &crate::problem::ContactNode| Place {
+    let place = |(c, area): (&crate::problem::ContactNode, f64)| Place {
         node: c.node,
         obstacle: c.obstacle,
         point: problem.mesh().points()[c.node.index()],
         normal: *problem.obstacles()[c.obstacle].normal(),
-        area: 0.0,
+        area,
     };
-    let mut places: Vec<Place<D>> = problem.surface().nodes().iter().map(place).collect();
-    for facet in problem.surface().facets() {
-        facet.nodes.iter().for_each(|&at| places[at].area += facet.area / D as f64);
-    }
-    places
+    problem.surface().nodes().iter().zip(problem.surface().tributary_areas()).map(place).collect()
 }

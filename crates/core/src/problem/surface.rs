@@ -61,6 +61,16 @@ impl<const D: usize> ContactSurface<D> {
         &self.facets
     }
 
+    /// Tributary area (m²) of each node: its share of the candidate facets, ℓ_k of eq. \[45\].
+    #[must_use]
+    pub fn tributary_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.nodes.len()];
+        for facet in &self.facets {
+            facet.nodes.iter().for_each(|&at| areas[at] += facet.area / D as f64);
+        }
+        areas
+    }
+
     /// The gap of a node with this displacement (m), eq. \[3\].
     #[inline]
     #[must_use]

@@ -1,7 +1,6 @@
 //! Case 6: a block that is almost rigid, on a tilted plane and under a push to and fro.
 
 use super::super::{ReproduceError, Tally};
-use super::row::Expected::Order;
 use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::{Trial, plane};
@@ -41,17 +40,6 @@ fn pressed(
     let down = move |y: f64| -weight / young * y * (height - 0.5 * y);
     let start = rows.flat_map(move |y| (0..=cells[0]).map(move |_| [0.0, down(y)]));
     text.plane_start(start)?.number("young", young)
-}
-
-fn row(
-    quantity: &str,
-    unit: &'static str,
-    exact: f64,
-    computed: Vec<f64>,
-    order: f64,
-    reason: &'static str,
-) -> PackRow {
-    PackRow { quantity: quantity.to_string(), unit, exact, computed, expected: Order(order), reason }
 }
 
 /// How far the centre of mass has come along the plane, exact and computed.
@@ -96,10 +84,17 @@ pub(super) fn tilted_plane(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceEr
     }
     let (exact, end) = shown.ok_or_else(|| ReproduceError::Unexpected("no run".to_string()))?;
     let rows = vec![
-        row("distance, ½(g sin θ − μg cos θ)t²", "m", exact.position(end), distance, 1.0, LATE),
-        row("acceleration, g sin θ − μg cos θ", "m/s²", exact.velocity(end) / end, acceleration, 2.0, LATE_TWICE),
-        row("energy dissipated by friction", "J", exact.dissipated(end), energy, 1.0, LATE),
-        row("slip with μ = 0.7 > tan θ", "m", 0.0, slip, 2.0, OVERSHOOT),
+        PackRow::of_order("distance, ½(g sin θ − μg cos θ)t²", "m", exact.position(end), distance, 1.0, LATE),
+        PackRow::of_order(
+            "acceleration, g sin θ − μg cos θ",
+            "m/s²",
+            exact.velocity(end) / end,
+            acceleration,
+            2.0,
+            LATE_TWICE,
+        ),
+        PackRow::of_order("energy dissipated by friction", "J", exact.dissipated(end), energy, 1.0, LATE),
+        PackRow::of_order("slip with μ = 0.7 > tan θ", "m", 0.0, slip, 2.0, OVERSHOOT),
     ];
     Ok(Outcome { rows, curve: None })
 }
@@ -137,8 +132,8 @@ pub(super) fn stick_slip(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceErro
         shown = shown.or(Some(path));
     }
     let rows = vec![
-        row("largest error of the position over the largest distance", "", 0.0, apart, 1.0, LATE),
-        row("energy dissipated by friction", "J", dissipated, energy, 1.0, LATE),
+        PackRow::of_order("largest error of the position over the largest distance", "", 0.0, apart, 1.0, LATE),
+        PackRow::of_order("energy dissipated by friction", "J", dissipated, energy, 1.0, LATE),
     ];
     Ok(Outcome { rows, curve: shown })
 }

@@ -27,6 +27,18 @@ pub struct PackRow {
 }
 
 impl PackRow {
+    /// A quantity that converges with an order.
+    pub(super) fn of_order(
+        quantity: impl Into<String>,
+        unit: &'static str,
+        exact: f64,
+        computed: Vec<f64>,
+        order: f64,
+        reason: &'static str,
+    ) -> Self {
+        Self { quantity: quantity.into(), unit, exact, computed, expected: Expected::Order(order), reason }
+    }
+
     /// Computed on the finest mesh.
     #[must_use]
     pub fn finest(&self) -> f64 {

@@ -2,7 +2,6 @@
 
 use super::super::{ReproduceError, Tally};
 use super::field_error::mean_error;
-use super::row::Expected::Order;
 use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::{Trial, bar, plane};
@@ -40,17 +39,6 @@ const MODE: BarMode = BarMode {
 
 const RAMP: BarRamp = BarRamp { length: 0.1, young: 70e9, density: 2700.0, section: 1e-4, rate: 1e12 };
 
-fn row(
-    quantity: String,
-    unit: &'static str,
-    exact: f64,
-    computed: Vec<f64>,
-    order: f64,
-    reason: &'static str,
-) -> PackRow {
-    PackRow { quantity, unit, exact, computed, expected: Order(order), reason }
-}
-
 /// Velocity of the pulled end over time, exact and computed.
 fn curve(trial: &Trial<1, 2>, end: usize) -> Curve {
     let time = trial.times();
@@ -79,8 +67,15 @@ pub(super) fn bar_mode(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError>
         energy.push(mean_error(&trial, exact) / MODE.energy().sqrt());
     }
     let rows = vec![
-        row("largest error of a node after 2.25 periods over the amplitude".into(), "", 0.0, largest, 2.0, SMOOTH),
-        row("error over the energy norm, mean over time".into(), "", 0.0, energy, 1.0, LINEAR),
+        PackRow::of_order(
+            "largest error of a node after 2.25 periods over the amplitude",
+            "",
+            0.0,
+            largest,
+            2.0,
+            SMOOTH,
+        ),
+        PackRow::of_order("error over the energy norm, mean over time", "", 0.0, energy, 1.0, LINEAR),
     ];
     Ok(Outcome { rows, curve: None })
 }
@@ -136,7 +131,7 @@ pub(super) fn block_modes(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceErr
         }
         let name = if wave == Wave::Pressure { "pressure" } else { "shear" };
         let quantity = format!("{name} wave: root mean square error after 1.2 periods over the amplitude");
-        rows.push(row(quantity, "", 0.0, errors, 2.0, SMOOTH));
+        rows.push(PackRow::of_order(quantity, "", 0.0, errors, 2.0, SMOOTH));
     }
     Ok(Outcome { rows, curve: None })
 }
@@ -162,16 +157,16 @@ pub(super) fn ramp(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
         shown = shown.or_else(|| Some(curve(&trial, elements)));
     }
     let rows = vec![
-        row(
-            "root mean square error of the displacement at the end over the largest".into(),
+        PackRow::of_order(
+            "root mean square error of the displacement at the end over the largest",
             "",
             0.0,
             mean,
             5.0 / 3.0,
             KINK,
         ),
-        row("displacement of the pulled end".into(), "m", exact_end, end, 2.0, AWAY),
-        row("error over the energy norm, mean over time".into(), "", 0.0, energy, 1.0, KINK_OF_STRESS),
+        PackRow::of_order("displacement of the pulled end", "m", exact_end, end, 2.0, AWAY),
+        PackRow::of_order("error over the energy norm, mean over time", "", 0.0, energy, 1.0, KINK_OF_STRESS),
     ];
     Ok(Outcome { rows, curve: shown })
 }

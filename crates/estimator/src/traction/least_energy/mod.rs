@@ -6,7 +6,7 @@
 //! that gives no element a resultant or a moment is allowed. All of them are spanned by the modes of
 //! [`basis`], and a few conjugate gradients over these, for each instant alone, bring down
 //! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. However many steps are
-//! taken and however coarse the numbers that steer them, the fields stay exactly admissible.
+//! taken, the fields stay exactly admissible.
 
 mod basis;
 mod descent;

@@ -64,8 +64,7 @@ impl Grid {
         measure: usize,
         wanted: impl Fn(&Setting) -> bool,
     ) -> impl Iterator<Item = Value> {
-        let pairs = self.settings.iter().zip(&self.outcomes).filter(move |(setting, _)| wanted(setting));
-        pairs.map(move |(&setting, outcome)| Value { setting, value: outcome.effectivity(choice)[measure] })
+        self.values(wanted, move |outcome| outcome.effectivity(choice)[measure])
     }
 
     /// The relative errors ε of a choice in one measure, likewise.
@@ -75,11 +74,19 @@ impl Grid {
         measure: usize,
         wanted: impl Fn(&Setting) -> bool,
     ) -> impl Iterator<Item = Value> {
-        let pairs = self.settings.iter().zip(&self.outcomes).filter(move |(setting, _)| wanted(setting));
-        pairs.map(move |(&setting, outcome)| {
+        self.values(wanted, move |outcome| {
             let error = &outcome.estimates[choice];
-            Value { setting, value: [error.relative_sup, error.relative_mean][measure] }
+            [error.relative_sup, error.relative_mean][measure]
         })
+    }
+
+    fn values(
+        &self,
+        wanted: impl Fn(&Setting) -> bool,
+        value: impl Fn(&Outcome) -> f64,
+    ) -> impl Iterator<Item = Value> {
+        let pairs = self.settings.iter().zip(&self.outcomes).filter(move |(setting, _)| wanted(setting));
+        pairs.map(move |(&setting, outcome)| Value { setting, value: value(outcome) })
     }
 
     /// All numbers.

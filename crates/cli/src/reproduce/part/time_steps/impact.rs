@@ -26,11 +26,6 @@ pub(super) fn impacts(effort: &Effort) -> Result<Vec<Run>, ReproduceError> {
     pairs.map(|pair| Ok((pair, Block { past: PAST, ..block(pair[1], pair[0]) }.impact()?))).collect()
 }
 
-pub(super) fn weight(runs: &[Run]) -> f64 {
-    let one = |(_, impact): &Run| weight_of(&impact.problem, &impact.times);
-    runs.iter().map(one).sum::<f64>() * ContactForce::ALL.len() as f64
-}
-
 /// Computes the runs and adds text, figure and table.
 pub(super) fn add(
     section: &mut Section,

@@ -4,9 +4,11 @@ mod impact;
 mod mass;
 mod sweep;
 
-use super::block::{Block, Gap};
+use super::block::{Block, Gap, Impact};
+use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, Part, ReproduceError, Section, Tally};
 use percute_core::observer::Observer;
+use percute_estimator::ContactForce;
 
 pub(super) const PART: Part = Part { key: "time-steps", title: "The paper's figure 10: the error and the step", make };
 
@@ -27,11 +29,17 @@ fn block(ratio: f64, fraction: f64) -> Block {
     Block { courant: ratio, friction: 0.0, gap, ..Block::new([20, 16]) }
 }
 
+/// The weight of runs that are estimated with each reading.
+fn weight<T>(runs: &[(T, Impact)]) -> f64 {
+    let one = |(_, impact): &(T, Impact)| weight_of(&impact.problem, &impact.times);
+    runs.iter().map(one).sum::<f64>() * ContactForce::ALL.len() as f64
+}
+
 fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, ReproduceError> {
     let sweep = sweep::impacts(effort)?;
     let impacts = impact::impacts(effort)?;
     let bars = mass::bars(effort)?;
-    let total = sweep::weight(&sweep) + impact::weight(&impacts) + mass::weight(&bars);
+    let total = weight(&sweep) + weight(&impacts) + mass::weight(&bars);
     let tally = &mut Tally::new(PART.key, total, observer);
     let mut section = Section::new(PART.key, PART.title);
     sweep::add(&mut section, effort, &sweep, tally)?;

@@ -23,11 +23,6 @@ pub(super) fn impacts(effort: &Effort) -> Result<Vec<Run>, ReproduceError> {
     ratios(effort).iter().map(|&ratio| Ok((ratio, block(ratio, FRACTION).impact()?))).collect()
 }
 
-pub(super) fn weight(runs: &[Run]) -> f64 {
-    let one = |(_, impact): &Run| weight_of(&impact.problem, &impact.times);
-    runs.iter().map(one).sum::<f64>() * ContactForce::ALL.len() as f64
-}
-
 /// Computes the runs and adds text, figures and tables.
 pub(super) fn add(
     section: &mut Section,
