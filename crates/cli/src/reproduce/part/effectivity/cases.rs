@@ -1,7 +1,7 @@
 //! Which impacts are looked at, and their names.
 
 use super::body::Body;
-use super::study::{Case, ESTIMATED};
+use super::study::{Case, ESTIMATED, STEP};
 use crate::reproduce::Effort;
 use percute_core::material::Hypothesis::{self, PlaneStrain, PlaneStress};
 
@@ -82,6 +82,7 @@ pub(in super::super) fn cases(effort: &Effort) -> Vec<Case> {
         velocity: OBLIQUE,
         gap: 0.2e-3,
         end: 13e-6,
+        ratio: STEP,
         meshes: ESTIMATED.len(),
         references: REFERENCES,
     };

@@ -3,6 +3,7 @@
 pub(super) mod body;
 pub(super) mod cases;
 mod figure;
+mod short_steps;
 pub(super) mod study;
 mod tables;
 mod touch;
@@ -49,6 +50,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
         section.text(outside(&results));
         section.table(effectivities);
     }
+    short_steps::add(&mut section, effort, observer)?;
     section.heading("The cases, and whether the references are fine enough");
     section.table(tables::cases(&results));
     if !effort.small {

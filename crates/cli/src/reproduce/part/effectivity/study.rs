@@ -12,7 +12,7 @@ use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder};
 use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
 
-/// Each run takes steps of exactly this times Δt_c and ends with the first at or past T.
+/// Δt/Δt_c, exactly, of all runs but those that are there for short steps.
 pub(super) const STEP: f64 = 0.9;
 /// Refinements of the meshes that are estimated, coarsest first.
 pub(super) const ESTIMATED: [usize; 4] = [0, 1, 2, 3];
@@ -38,8 +38,10 @@ pub(in super::super) struct Case {
     pub(in super::super) velocity: [f64; 2],
     /// Distance of the lowest node from the plane (m).
     pub(in super::super) gap: f64,
-    /// T (s).
+    /// T (s); a run ends with its first instant at or past it.
     pub(in super::super) end: f64,
+    /// Δt/Δt_c on the meshes that are estimated.
+    pub(in super::super) ratio: f64,
     /// How many of the meshes are estimated.
     pub(in super::super) meshes: usize,
     /// Refinements of the references, coarsest first; the last one counts.
@@ -110,14 +112,14 @@ impl Case {
         let mut runs = Vec::new();
         for &refinements in ESTIMATED.iter().take(self.meshes) {
             let problem = self.problem(refinements)?;
-            let times = steps_past(self.end, &problem)?;
+            let times = steps_past(self.end, self.ratio, &problem)?;
             let run = estimate(&problem, &times, choices, observer)?;
             runs.push((problem, times, run));
         }
         let end = runs.iter().map(|run| run.1.end()).fold(0.0, f64::max);
         for &refinements in self.references {
             let fine = self.problem(refinements)?;
-            let times = steps_past(end, &fine)?;
+            let times = steps_past(end, STEP, &fine)?;
             let mut comparison = Comparison::new(&fine, &times);
             for (problem, _, run) in &runs {
                 if let Some((motion, _)) = run {
@@ -135,9 +137,9 @@ impl Case {
     }
 }
 
-/// Steps of exactly 0.9 Δt_c that reach an instant.
-fn steps_past(reach: f64, problem: &TriangleProblem) -> Result<TimeGrid, ReproduceError> {
-    let step = STEP * critical_time_step(problem);
+/// Steps of exactly a part of Δt_c that reach an instant.
+fn steps_past(reach: f64, ratio: f64, problem: &TriangleProblem) -> Result<TimeGrid, ReproduceError> {
+    let step = ratio * critical_time_step(problem);
     let count = (reach / step).ceil();
     Ok(TimeGrid::uniform(count * step, count as usize)?)
 }
