@@ -33,7 +33,10 @@ def test_the_readme_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> N
         [sys.executable, "-m", "percute", "run", "examples/block.toml"], cwd=ROOT, capture_output=True, text=True, check=True
     )
     shown = textwrap.dedent("".join(re.findall(r"(?m)^    case .*\n(?:    .*\n)*", text)))
-    assert shown.splitlines()[1:] == done.stdout.splitlines()[1:]
+    # What the residual is, is rounding: which one is largest, and by how much, is no promise.
+    told, given = (re.sub(r"(?m)^(residual  largest) \S+ \(\w+\)", r"\1", part) for part in (shown, done.stdout))
+    assert told.count("residual  largest,") == 1
+    assert told.splitlines()[1:] == given.splitlines()[1:]
 
 
 def test_the_example_of_the_package_runs() -> None:

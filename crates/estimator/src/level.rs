@@ -1,6 +1,6 @@
 //! All nodal and element fields at one instant t_n.
 
-use crate::contact_force::{Densities, SurfaceStep};
+use crate::contact_force::{Densities, Pressure, SurfaceStep};
 use crate::kinematic::Knot;
 
 /// Which value at an instant where contact changes.
@@ -34,9 +34,9 @@ pub(crate) struct Level<const D: usize> {
     pub(crate) acceleration_before: Vec<[f64; D]>,
     pub(crate) density_before: Densities<D>,
     pub(crate) density_after: Densities<D>,
-    /// Where they may act off contact: the normal part of the densities (Pa) on each candidate facet, at its beginning and
-    /// its end, of each step since the sampled level before.
-    pub(crate) pressures: Vec<Vec<[[f64; D]; 2]>>,
+    /// Where densities may act off contact: the normal pressures on each candidate facet, at its beginning and its end, of
+    /// each step since the sampled level before.
+    pub(crate) pressures: Vec<Vec<[Pressure<D>; 2]>>,
     /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
     pub(crate) contact: Vec<[f64; 2]>,
     /// σ_h of each element (Pa).

@@ -79,10 +79,12 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         self.stiffness.subtract_internal_forces(displacement, force)
     }
 
-    /// The forces M a_n of all nodes (N) but for contact, supports included.
-    pub fn forces_without_contact(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) {
-        self.forces(n, displacement, force);
+    /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain
+    /// energy (J).
+    pub fn forces_without_contact(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+        let strain = self.forces(n, displacement, force);
         self.apply_supports(n, force, |_, _| ());
+        strain
     }
 
     /// Sets the force on prescribed components to what their motion needs (N), and hands each

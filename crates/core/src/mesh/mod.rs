@@ -141,6 +141,12 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self.mended
     }
 
+    /// For each node the one that stands for its part: the first of it.
+    #[must_use]
+    pub fn part_of_nodes(&self) -> Vec<NodeId> {
+        parts::part_of_nodes(self.points.len(), &self.cells)
+    }
+
     /// How many separate parts there are: elements that share a node are of one part.
     #[must_use]
     pub fn parts(&self) -> usize {

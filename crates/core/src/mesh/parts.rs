@@ -26,7 +26,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
 }
 
 /// For each node the one that stands for its part: the first of it.
-fn part_of_nodes<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> Vec<NodeId> {
+pub(super) fn part_of_nodes<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> Vec<NodeId> {
     let mut parent: Vec<NodeId> = (0..node_count).map(NodeId::new).collect();
     for cell in cells {
         for pair in cell.windows(2) {

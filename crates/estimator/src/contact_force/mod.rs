@@ -7,6 +7,7 @@
 mod paper;
 mod sharp;
 mod stopping;
+mod tilt;
 mod whole;
 
 use crate::options::ContactForce;
@@ -14,6 +15,7 @@ use crate::residual::{Residuals, worse};
 use paper::Paper;
 use percute_core::problem::{ContactFacet, Problem};
 pub(crate) use stopping::Stopping;
+pub(crate) use whole::Pressure;
 use whole::Whole;
 
 /// Nodal values of a density on each candidate facet (Pa).
@@ -40,7 +42,7 @@ pub(crate) struct Interval<const D: usize> {
 pub(crate) enum Reading<const D: usize> {
     Paper(Paper),
     Sharp,
-    Whole(Whole),
+    Whole(Whole<D>),
 }
 
 impl<const D: usize> Reading<D> {
@@ -55,6 +57,18 @@ impl<const D: usize> Reading<D> {
     /// Whether forces may act where a node does not touch.
     pub(crate) fn acts_off_contact(&self) -> bool {
         matches!(self, Self::Whole(_))
+    }
+
+    /// The normal pressures of a step on each candidate facet, at its beginning and its end, where they may act off contact.
+    pub(crate) fn pressures<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        now: &SurfaceStep<D>,
+        next: &SurfaceStep<D>,
+        interval: &Interval<D>,
+    ) -> Option<Vec<[Pressure<D>; 2]>> {
+        let Self::Whole(whole) = self else { return None };
+        Some(whole.pressures(problem, now, next, interval))
     }
 
     /// The densities of the step from `now` to `next`. `before` and `after` are the steps around

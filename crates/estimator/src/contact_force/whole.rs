@@ -1,38 +1,71 @@
 //! The whole reaction as a density on all candidate facets of its node.
 
-use super::{Densities, none};
-use percute_core::problem::Problem;
+use super::tilt::Tilt;
+use super::{Densities, Interval, SurfaceStep, none};
+use percute_core::problem::{ContactFacet, ContactNode, Problem};
 
-/// Areas, fixed in time.
+/// What is fixed in time.
 #[derive(Clone, Debug)]
-pub(crate) struct Whole {
+pub(crate) struct Whole<const D: usize> {
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
+    tilt: Tilt<D>,
 }
 
-impl Whole {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
-        let mut tributary = vec![0.0; problem.surface().nodes().len()];
-        for facet in problem.surface().facets() {
-            facet.nodes.iter().for_each(|&k| tributary[k] += facet.area / D as f64);
-        }
-        Self { tributary }
+/// Normal pressures (Pa) at the nodes of a facet at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pressure<const D: usize> {
+    /// Of the density.
+    pub(crate) acting: [f64; D],
+    /// Of the density that the reactions alone give, their impulses not spread in time.
+    pub(crate) sudden: [f64; D],
+}
+
+impl<const D: usize> Pressure<D> {
+    /// Halfway between two: pressures are linear in time over a step.
+    pub(crate) fn middle(start: &Self, end: &Self) -> Self {
+        let mean = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|p| 0.5 * (a[p] + b[p]));
+        Self { acting: mean(&start.acting, &end.acting), sudden: mean(&start.sudden, &end.sudden) }
+    }
+}
+
+impl<const D: usize> Whole<D> {
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+        Self { tributary: problem.surface().tributary_areas(), tilt: Tilt::new(problem) }
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
-    /// facet. Their resultant is that of the reactions, and where those are in the cone, so is every mean of
-    /// two of them.
-    pub(crate) fn densities<const D: usize, const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        pressing: &[[f64; D]],
-    ) -> Densities<D> {
+    /// facet, tilted so that they have the moment of the reactions too. Their resultant is that of the reactions,
+    /// and where those are in the cone, so is every mean of two of them.
+    pub(crate) fn densities<const N: usize>(&self, problem: &Problem<D, N>, pressing: &[[f64; D]]) -> Densities<D> {
         let mut densities = none(problem);
+        // Reactions of the integrator are in the cone; those of a foreign history need not be.
+        let held = |(contact, force): (&ContactNode, &[f64; D])| {
+            problem.obstacles()[contact.obstacle].project_into_cone(force)
+        };
+        let pressing: Vec<[f64; D]> = problem.surface().nodes().iter().zip(pressing).map(held).collect();
+        let factors = self.tilt.factors(&pressing);
         for (facet, density) in problem.surface().facets().iter().zip(&mut densities) {
-            let plane = &problem.obstacles()[facet.obstacle];
-            // Reactions of the integrator are in the cone; those of a foreign history need not be.
-            *density = facet.nodes.map(|k| plane.project_into_cone(&pressing[k].map(|r| r / self.tributary[k])));
+            *density = facet.nodes.map(|k| pressing[k].map(|r| factors[k] * r / self.tributary[k]));
         }
         densities
+    }
+
+    /// The normal pressures of a step on each facet, at its beginning and its end.
+    pub(super) fn pressures<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        now: &SurfaceStep<D>,
+        next: &SurfaceStep<D>,
+        interval: &Interval<D>,
+    ) -> Vec<[Pressure<D>; 2]> {
+        let sudden = [now, next].map(|step| self.densities(problem, &step.reaction));
+        let acting = [&interval.start, &interval.end];
+        let one = |(f, facet): (usize, &ContactFacet<D>)| {
+            let plane = &problem.obstacles()[facet.obstacle];
+            let normal = |densities: &Densities<D>| densities[f].map(|force| plane.split(&force).0);
+            [0, 1].map(|end| Pressure { acting: normal(acting[end]), sudden: normal(&sudden[end]) })
+        };
+        problem.surface().facets().iter().enumerate().map(one).collect()
     }
 }

@@ -159,7 +159,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             let steps: Vec<_> = to.pressures.iter().map(|step| step[facet]).collect();
             Pressed { facet, first: from.index, steps }
         };
-        let pressed = self.facets.iter().map(pressed).collect();
+        let facets = if to.pressures.is_empty() { &[][..] } else { &self.facets };
+        let pressed = facets.iter().map(pressed).collect();
         self.queue.push_back(Waiting { start, end, mid, stop, touching, pressed });
     }
 

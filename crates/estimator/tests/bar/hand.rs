@@ -102,7 +102,7 @@ impl Bar {
 
     /// N of the elements, and the acceleration that they alone give, which the balance is built on: the simulation's,
     /// or for `whole` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
-    /// acceleration a: on a uniform bar that is what is left of (h²/12c² − Δt²/12).
+    /// acceleration a, and less (Δt_c²/6)² (K/M)² a/36: on a uniform bar that is what is left of (h²/12c² − Δt²/12), and β.
     fn sources(&self, history: &[Instant], reading: ContactForce) -> Vec<(Vec<f64>, Vec<f64>)> {
         if reading != ContactForce::Whole {
             return history.iter().map(|i| (i.force.clone(), i.free.clone())).collect();
@@ -112,7 +112,8 @@ impl Bar {
             let pull = |i: usize| if i < n { force[i] } else { 0.0 } - if i > 0 { force[i - 1] } else { 0.0 };
             (0..=n).map(|i| pull(i) / self.mass(i)).collect()
         };
-        let left = (1.0 / (self.courant * self.courant) - 1.0) * dt * dt / 12.0;
+        let critical = dt * dt / (self.courant * self.courant);
+        let (left, damping) = ((critical - dt * dt) / 12.0, critical * critical / 36.0 / 36.0);
         let (mut u, mut v) = (vec![0.0; n + 1], vec![-self.speed; n + 1]);
         let mut made = Vec::new();
         for (k, pressing) in self.pressing(history).into_iter().enumerate() {
@@ -121,8 +122,9 @@ impl Bar {
             let mut a = free.clone();
             a[0] += pressing / self.mass(0);
             let correction = over_mass(&self.forces(&a));
+            let again = over_mass(&self.forces(&correction));
             for i in 0..=n {
-                v[i] += if k == 0 { 0.5 * dt } else { dt } * (a[i] - left * correction[i]);
+                v[i] += if k == 0 { 0.5 * dt } else { dt } * (a[i] - left * correction[i] - damping * again[i]);
                 u[i] += dt * v[i];
             }
             made.push((force, free));
@@ -130,18 +132,14 @@ impl Bar {
         made
     }
 
-    /// What `whole` adds at each knot: Q·gap, and ∫Q|w| up to there by the trapezoidal rule.
+    /// What `whole` adds at each knot: Q·gap, and ∫R|w| up to there by the trapezoidal rule.
     fn normal_law(&self, history: &[Instant], knots: &[Knot], reading: ContactForce) -> Vec<f64> {
-        let push = |k: usize| {
-            let ends = self.contact_force(history, (k / 2).min(self.steps - 1), reading);
-            if k == 2 * self.steps {
-                ends[1]
-            } else if k.is_multiple_of(2) {
-                ends[0]
-            } else {
-                0.5 * (ends[0] + ends[1])
-            }
-        };
+        let pressing = self.pressing(history);
+        // Linear in time over each step.
+        let at = |force: &dyn Fn(usize) -> f64, k: usize| 0.5 * (force(k / 2) + force(k.div_ceil(2)));
+        let push = |k: usize| at(&|n| pressing[n], k);
+        // The reaction as it was does the work, whatever goes on of it.
+        let stop = |k: usize| at(&|n| history[n].reaction.max(0.0), k);
         let mut work = 0.0;
         let mut made = Vec::new();
         for (k, (u, v)) in knots.iter().enumerate() {
@@ -150,7 +148,7 @@ impl Bar {
                 continue;
             }
             if k > 0 {
-                work += 0.25 * self.step() * (push(k - 1) * knots[k - 1].1[0].abs() + push(k) * v[0].abs());
+                work += 0.25 * self.step() * (stop(k - 1) * knots[k - 1].1[0].abs() + stop(k) * v[0].abs());
             }
             made.push(push(k) * (self.gap + u[0]).max(0.0) + work);
         }

@@ -3,22 +3,23 @@
 //! Exactly, a normal force F_n acts at gap 0 and on no normal motion. Where it does not, the energy ∫F_n gap is
 //! the misfit of the law at displacement level, finite, and zero if and only if the complementarity holds;
 //! and ∫∫F_n|w_n| dt is the work that it took from the motion or gave to it, which the exact force never
-//! does: it adds up, as the waves that it should have made are missing from then on.
+//! does: it adds up, as the waves that it should have made are missing from then on. That is the work of the simulation's own
+//! reactions: what stops a node within a step takes its energy, even where F_DA spreads the impulse over a time in which
+//! the node rests.
 
-use crate::contact_force::{gap_energy, normal_power};
+use crate::contact_force::{Pressure, gap_energy, normal_power};
 use crate::kinematic::ContactTrack;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// Normal pressures (Pa) on one candidate facet, at its nodes, at the beginning and the end of each step of an interval
-/// between samples.
+/// Normal pressures on one candidate facet at the beginning and the end of each step of an interval between samples.
 #[derive(Clone, Debug)]
 pub(super) struct Pressed<const D: usize> {
     /// Position among the candidate facets.
     pub(super) facet: usize,
     /// First step of the interval.
     pub(super) first: usize,
-    pub(super) steps: Vec<[[f64; D]; 2]>,
+    pub(super) steps: Vec<[Pressure<D>; 2]>,
 }
 
 /// Energies of an interval (J): at its beginning, middle and end.
@@ -52,11 +53,11 @@ impl<const D: usize> Pressed<D> {
         let mut misfit = NormalMisfit::default();
         for (k, [start, end]) in self.steps.iter().enumerate() {
             let knot = 2 * (self.first + k);
-            let middle = std::array::from_fn(|p| 0.5 * (start[p] + end[p]));
-            let at = |half: usize, force: &[f64; D]| {
+            let middle = Pressure::middle(start, end);
+            let at = |half: usize, pressure: &Pressure<D>| {
                 let motion = facet.nodes.map(|at| tracks[at].at(knot + half));
-                let energy = gap_energy(facet.area, force, &motion.map(|(_, gap)| gap.max(0.0)));
-                (energy, normal_power(facet.area, force, &motion.map(|(speed, _)| speed)))
+                let energy = gap_energy(facet.area, &pressure.acting, &motion.map(|(_, gap)| gap.max(0.0)));
+                (energy, normal_power(facet.area, &pressure.sudden, &motion.map(|(speed, _)| speed)))
             };
             let [(before, p0), (between, p1), (after, p2)] = [at(0, start), at(1, &middle), at(2, end)];
             let half = 0.5 * times.step(self.first + k);

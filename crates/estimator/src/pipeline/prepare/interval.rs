@@ -20,6 +20,8 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
         self.before = Some(self.levels[first].surface.clone());
+        let pressures = self.reading.pressures(self.problem, &now.surface, &next.surface, &interval);
+        self.levels[first + 1].pressures = pressures.into_iter().collect();
         self.set_accelerations(first, interval);
         self.integrate_acceleration(first);
         self.add_contact_misfit(first);
@@ -96,13 +98,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             // 2∫[…], twice over half a step each.
             contact.push([so_far + 0.5 * dt * (a + m), so_far + 0.5 * dt * (a + 2.0 * m + b)]);
         }
-        let pressures = |facet: usize| {
-            let plane = &problem.obstacles()[problem.surface().facets()[facet].obstacle];
-            [&now.density_after[facet], &next.density_before[facet]].map(|density| density.map(|f| plane.split(&f).0))
-        };
-        let pressures = self.reading.acts_off_contact().then(|| (0..contact.len()).map(pressures).collect());
         self.levels[first + 1].contact = contact;
-        self.levels[first + 1].pressures = pressures.into_iter().collect();
     }
 }
 

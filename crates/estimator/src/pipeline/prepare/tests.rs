@@ -60,7 +60,7 @@ fn a_missed_support_shows() {
 
 /// Densities that leave the cone between reading and check.
 #[test]
-fn both_readings_are_checked_at_every_step() {
+fn every_reading_is_checked_at_every_step() {
     let (problem, times) = impact();
     for &reading in ContactForce::ALL {
         let preparation = prepared(&problem, &times, reading);
