@@ -49,6 +49,8 @@ pub enum Ablation {
     Correction,
     /// Reactions as they are, however short the step in which they stop a node.
     Stopping,
+    /// Densities R_k/ℓ_k as they are, whose moment is not that of the reactions.
+    Moment,
     /// The tractions of the star problems.
     LeastEnergy,
     /// No work of normal forces, only their energy off contact.

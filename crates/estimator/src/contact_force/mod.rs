@@ -10,7 +10,7 @@ mod stopping;
 mod tilt;
 mod whole;
 
-use crate::options::ContactForce;
+use crate::options::{Ablation, ContactForce};
 use crate::residual::{Residuals, worse};
 use paper::Paper;
 use percute_core::problem::{ContactFacet, Problem};
@@ -51,6 +51,14 @@ impl<const D: usize> Reading<D> {
             ContactForce::Paper => Self::Paper(Paper::new(problem)),
             ContactForce::Sharp => Self::Sharp,
             ContactForce::Whole => Self::Whole(Whole::new(problem)),
+        }
+    }
+
+    /// The same, and where it is asked for without the moments of the reactions.
+    pub(crate) fn without(self, ablation: Ablation) -> Self {
+        match self {
+            Self::Whole(whole) if ablation == Ablation::Moment => Self::Whole(whole.untilted()),
+            other => other,
         }
     }
 

@@ -41,6 +41,11 @@ impl<const D: usize> Tilt<D> {
         Self { centroid, lever, bodies: bodies(problem) }
     }
 
+    /// One that leaves all densities as they are.
+    pub(super) fn none() -> Self {
+        Self { centroid: Vec::new(), lever: Vec::new(), bodies: Vec::new() }
+    }
+
     /// 1 + δ_k for these reactions; at most 2 and not negative: where that is too little, part of the moment is missing.
     pub(super) fn factors(&self, reaction: &[[f64; D]]) -> Vec<f64> {
         let mut factors = vec![1.0; reaction.len()];

@@ -34,6 +34,11 @@ impl<const D: usize> Whole<D> {
         Self { tributary: problem.surface().tributary_areas(), tilt: Tilt::new(problem) }
     }
 
+    /// The same with densities whose moment is not that of the reactions.
+    pub(super) fn untilted(self) -> Self {
+        Self { tilt: Tilt::none(), ..self }
+    }
+
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// facet, tilted so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.

@@ -55,7 +55,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
-        let reading = Reading::new(options.contact_force, problem);
+        let reading = Reading::new(options.contact_force, problem).without(options.ablation);
         Self {
             problem,
             times,

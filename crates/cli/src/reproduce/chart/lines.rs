@@ -18,7 +18,7 @@ const MARGIN: f64 = 16.0;
 /// Room right of a plot (pixels).
 const RIGHT: f64 = 18.0;
 /// Colours of curves, told apart on white and on black.
-const PALETTE: [RGBColor; 8] = [
+const PALETTE: [RGBColor; 9] = [
     RGBColor(47, 121, 200),
     RGBColor(218, 98, 40),
     RGBColor(36, 150, 110),
@@ -27,6 +27,7 @@ const PALETTE: [RGBColor; 8] = [
     RGBColor(150, 125, 30),
     RGBColor(20, 150, 175),
     RGBColor(130, 135, 145),
+    RGBColor(165, 100, 80),
 ];
 
 /// Curves in panels.

@@ -5,12 +5,15 @@ use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::{Trial, plane};
 use super::{Curve, Outcome};
+use crate::case::{Case, CaseOf};
 use percute_exact::RigidSlide;
 
 /// Young's moduli (Pa): the wave speed doubles from one to the next.
 const STIFFNESS: [f64; 4] = [3.2e6, 1.28e7, 5.12e7, 2.048e8];
 pub(super) const TILT_RUNS: usize = 2 * STIFFNESS.len();
 pub(super) const STICK_SLIP_RUNS: usize = STIFFNESS.len();
+
+const TILTED_PLANE: &str = include_str!("../../../../../examples/pack/tilted_plane.toml");
 
 const DENSITY: f64 = 1000.0;
 const GRAVITY: f64 = 9.81;
@@ -60,9 +63,18 @@ fn rigid(mass: f64, limit: f64, push: &[(f64, f64)]) -> Result<RigidSlide, Repro
 }
 
 fn tilted(young: f64, friction: f64, tally: &mut Tally<'_>) -> Result<Trial<2, 3>, ReproduceError> {
-    let text = CaseText::new("tilted_plane", include_str!("../../../../../examples/pack/tilted_plane.toml"));
+    let text = CaseText::new("tilted_plane", TILTED_PLANE);
     let text = pressed(text, [0.4, 0.2], [4, 2], young, DENSITY * GRAVITY * TILT.cos())?;
     plane(&text.number("friction", friction)?, tally)
+}
+
+/// The block on the tilted plane as its file has it.
+pub(in crate::reproduce) fn sliding_block() -> Result<CaseOf<2, 3>, ReproduceError> {
+    let text = CaseText::new("tilted_plane", TILTED_PLANE);
+    match text.read()? {
+        Case::Plane(case) => Ok(*case),
+        Case::Bar(_) => Err(text.unexpected("this is a bar")),
+    }
 }
 
 /// Case 6, the tilted plane.

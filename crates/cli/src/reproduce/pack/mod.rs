@@ -16,6 +16,7 @@ mod text;
 mod trial;
 mod vibration;
 
+pub(super) use friction::sliding_block;
 pub use row::{Expected, PackRow};
 pub(super) use show::PART;
 

@@ -137,12 +137,27 @@ fn ranges(grid: &Grid) -> String {
          whose balance is that of the simulation's own displacements does not see what has accumulated. `whole` balances a companion solution \
          with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c in the runs that go \
          on beyond the contact: there the simulation is at its limit of stability, and its shortest wave, once the release has \
-         excited it, grows with time; the companion is then the simulation itself and grows with it.",
+         excited it, grows with time. The companion's does not grow, but the release excites it as well, and about half of that is not seen. \
+         {}",
         PAPER[0],
         PAPER[1],
         Acceleration::default(),
         ContactForce::ALL.iter().map(one).collect::<Vec<_>>().join("; "),
+        below_the_critical_step(grid),
     )
+}
+
+/// The default in the long runs, but for those at the critical step.
+fn below_the_critical_step(grid: &Grid) -> String {
+    let default = (ContactForce::default(), Acceleration::default());
+    let choice = grid.choices.iter().position(|c| *c == default).unwrap_or(0);
+    let end = ENDS.into_iter().fold(0.0, f64::max);
+    let ranges = MEASURES.iter().enumerate().filter_map(|(m, measure)| {
+        let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end && s.ratio < 1.0)?;
+        Some(format!("{} to {} (`{measure}`)", short(summary.low.value, 3), short(summary.high.value, 3)))
+    });
+    let ranges: Vec<String> = ranges.collect();
+    format!("With all shorter steps, `{}` is {} until t_c + {end} L/c.", default.0, ranges.join(" and "))
 }
 
 /// The worst of the fractions.

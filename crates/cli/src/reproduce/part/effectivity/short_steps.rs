@@ -11,7 +11,7 @@ use crate::reproduce::chart::{Axis, Band, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError, Section};
 use percute_core::observer::Observer;
-use percute_estimator::ContactForce;
+use percute_estimator::{Ablation, Options};
 
 /// Δt/Δt_c.
 const RATIOS: [f64; 6] = [0.9, 0.5, 0.2, 0.1, 0.05, 0.02];
@@ -22,6 +22,16 @@ const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 const MESHES: usize = 2;
 const REFERENCE: &[usize] = &[5];
 
+/// A way to estimate: its name and its options.
+type Attempt = (String, Options);
+
+/// The readings, and the default with reactions that are not spread in time.
+fn attempts() -> Vec<Attempt> {
+    let unspread = Options { ablation: Ablation::Stopping, threads: Some(1), ..Options::default() };
+    let readings = readings().into_iter().map(|options| (options.contact_force.to_string(), options));
+    readings.chain([("whole, not spread".to_string(), unspread)]).collect()
+}
+
 /// A body.
 #[derive(Clone, Copy, Debug)]
 enum Subject {
@@ -29,7 +39,7 @@ enum Subject {
     Plane(Case),
 }
 
-/// e/e_ref of each reading: sup and mean, lowest and highest.
+/// e/e_ref of each attempt: sup and mean, lowest and highest.
 type Ranges = Vec<[[f64; 2]; 2]>;
 
 impl Subject {
@@ -43,26 +53,27 @@ impl Subject {
     /// All it takes at one ratio.
     fn run(&self, ratio: f64, observer: &mut dyn Observer) -> Result<Ranges, ReproduceError> {
         let mut found: Vec<Vec<[f64; 2]>> = Vec::new();
+        let options: Vec<Options> = attempts().into_iter().map(|(_, options)| options).collect();
         match self {
             Self::Bar => {
                 for fraction in FRACTIONS {
                     let setting = Setting { elements: ELEMENTS, ratio, fraction, after_impact: 2.0 };
-                    let outcome = setting.run_with(&readings(), observer)?;
-                    found.push((0..ContactForce::ALL.len()).map(|r| outcome.effectivity(r)).collect());
+                    let outcome = setting.run_with(&options, observer)?;
+                    found.push((0..options.len()).map(|r| outcome.effectivity(r)).collect());
                 }
             }
             Self::Plane(case) => {
-                let meshes = Case { ratio, ..*case }.run(&readings(), observer)?;
+                let meshes = Case { ratio, ..*case }.run(&options, observer)?;
                 let last = meshes.into_iter().flatten().next_back();
                 let last = last.ok_or_else(|| ReproduceError::Unexpected(format!("no run: {}", case.name())))?;
-                found.push((0..ContactForce::ALL.len()).map(|r| last.effectivity(r)).collect());
+                found.push((0..options.len()).map(|r| last.effectivity(r)).collect());
             }
         }
         let range = |r: usize, m: usize| {
             let values = || found.iter().map(|one| one[r][m]);
             [values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max)]
         };
-        Ok((0..ContactForce::ALL.len()).map(|r| [range(r, 0), range(r, 1)]).collect())
+        Ok((0..options.len()).map(|r| [range(r, 0), range(r, 1)]).collect())
     }
 }
 
@@ -90,7 +101,7 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     section.heading("Short steps");
     section.text(format!(
         "The simulation stops the mass of a node that arrives within a step: the shorter the step, the larger the force. The readings must not \
-         follow it. The bar of figure 5, with impacts at {} fractions of a step and until t_c + 2L/c, against the exact solution; \
+         follow it, which for `whole` needs its impulses spread in time. The bar of figure 5, with impacts at {} fractions of a step and until t_c + 2L/c, against the exact solution; \
          plane bodies on mesh {MESHES} against the first reference.",
         FRACTIONS.len(),
     ));
@@ -118,8 +129,8 @@ fn table(runs: &[(Subject, f64)], found: &[Ranges]) -> Table {
     let caption = "Effectivity over Δt/Δt_c: of the bar the lowest and the highest over the fractions of a step, of a plane body one value.";
     let mut table = Table::new("effectivity-steps", caption, columns);
     for ((subject, ratio), ranges) in runs.iter().zip(found) {
-        for (reading, range) in ContactForce::ALL.iter().zip(ranges) {
-            let words = [subject.name().into(), reading.to_string().into(), Cell::from(*ratio)];
+        for ((name, _), range) in attempts().iter().zip(ranges) {
+            let words = [subject.name().into(), Cell::from(name.clone()), Cell::from(*ratio)];
             table.push(words.into_iter().chain(range.iter().flatten().map(|&x| x.into())));
         }
     }
@@ -127,14 +138,16 @@ fn table(runs: &[(Subject, f64)], found: &[Ranges]) -> Table {
 }
 
 fn draw(table: &Table, subjects: &[Subject]) -> Result<String, ReproduceError> {
-    let curve = |subject: &Subject, (k, reading): (usize, &ContactForce), measure: &str| {
-        let rows = [("body", subject.name().into()), ("contact force", reading.to_string().into())];
+    let curve = |subject: &Subject, (k, (name, _)): (usize, &Attempt), measure: &str| {
+        let rows = [("body", subject.name().into()), ("contact force", Cell::from(name.clone()))];
         let points = table.numbers("Δt/Δt_c", &rows).into_iter().zip(table.numbers(&column("highest", measure), &rows));
-        Series::new(format!("{reading}, {measure}"), points.map(|(x, y)| [x, y]).collect(), Hue::Own(k)).marked()
+        Series::new(format!("{name}, {measure}"), points.map(|(x, y)| [x, y]).collect(), Hue::Own(k)).marked()
     };
     let panel = |subject: &Subject| {
         let both = |one| [curve(subject, one, MEASURES[0]), curve(subject, one, MEASURES[1]).dashed()];
-        Panel { title: subject.name(), series: ContactForce::ALL.iter().enumerate().flat_map(both).collect() }
+        // The default lies over the others.
+        let series = attempts().iter().enumerate().rev().flat_map(both).collect();
+        Panel { title: subject.name().split(',').next().unwrap_or_default().to_string(), series }
     };
     let lines = Lines {
         x: Axis::log("Δt/Δt_c").marks(&[0.02, 0.05, 0.1, 0.2, 0.5, 0.9]),

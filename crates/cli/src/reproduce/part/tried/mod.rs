@@ -1,5 +1,7 @@
 //! What was tried: the default without each of its parts, and the other readings, on some of the cases.
 
+mod slide;
+
 use super::bar_maps::PAPER;
 use super::bar_maps::study::{Outcome, Setting};
 use super::effectivity::body::Body;
@@ -28,7 +30,7 @@ const fn of_whole(name: &'static str, what: &'static str, ablation: Ablation) ->
     Attempt { name, what, contact_force: ContactForce::Whole, ablation }
 }
 
-const ATTEMPTS: [Attempt; 8] = [
+const ATTEMPTS: [Attempt; 9] = [
     of_whole("whole", "the default with all its parts", Ablation::None),
     of_whole(
         "no companion",
@@ -47,6 +49,12 @@ const ATTEMPTS: [Attempt; 8] = [
         "no descent to tractions of least energy: where the contact begins, and around corners, the elastic part is several times too \
          large",
         Ablation::LeastEnergy,
+    ),
+    of_whole(
+        "no moment",
+        "the densities R_k/ℓ_k as they are, without the moment of the reactions: of little weight while an impact lasts, but a body \
+         that slides turns ever faster (below)",
+        Ablation::Moment,
     ),
     of_whole(
         "no normal work",
@@ -69,6 +77,14 @@ const ATTEMPTS: [Attempt; 8] = [
     Attempt { name: "paper", what: "the paper's forces", contact_force: ContactForce::Paper, ablation: Ablation::None },
 ];
 
+impl Attempt {
+    /// On the thread that calls.
+    fn options(&self) -> Options {
+        let Self { contact_force, ablation, .. } = *self;
+        Options { contact_force, ablation, threads: Some(1), ..Options::default() }
+    }
+}
+
 /// Part of the grid of the bar maps: N_s, α, fraction; up to the end of contact.
 const ELEMENTS: [usize; 3] = [10, 40, 160];
 const RATIOS: [f64; 3] = [0.5, 0.8, 1.0];
@@ -78,15 +94,7 @@ const MESHES: usize = 3;
 const REFERENCE: &[usize] = &[5];
 
 fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, ReproduceError> {
-    let options: Vec<Options> = ATTEMPTS
-        .iter()
-        .map(|attempt| Options {
-            contact_force: attempt.contact_force,
-            ablation: attempt.ablation,
-            threads: Some(1),
-            ..Options::default()
-        })
-        .collect();
+    let options: Vec<Options> = ATTEMPTS.iter().map(Attempt::options).collect();
     let bars = bars(effort);
     let on_bars: Vec<Outcome> =
         in_order(PART.key, threads(effort.threads), &bars, observer, |bar, stop| bar.run_with(&options, stop))?;
@@ -110,6 +118,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
         section.table(bar(&on_bars));
     }
     section.table(plane);
+    slide::add(&mut section, effort, observer)?;
     Ok(section)
 }
 
@@ -207,7 +216,8 @@ fn draw(table: &Table, bodies: &[Case]) -> Result<String, ReproduceError> {
     };
     let panel = |case: &Case| Panel {
         title: case.name(),
-        series: ATTEMPTS.iter().enumerate().map(|attempt| curve(case, attempt)).collect(),
+        // The default lies over the others.
+        series: ATTEMPTS.iter().enumerate().rev().map(|attempt| curve(case, attempt)).collect(),
     };
     let lines = Lines {
         x: Axis::log("times finer than mesh 1").marks(&[1.0, 2.0, 4.0]),
