@@ -65,7 +65,7 @@ fn introduce(section: &mut Section) {
     section.text(format!(
         "Bodies of aluminium (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³) fly against a rigid plane; the estimates, with Γ_DA `{}`, are set against the \
          energy norm of the difference to a run on a much finer mesh, in which the mesh is nested: e_ref² = max or mean over the t_n of ½∫ρ|Δv|² + \
-         ½∫Δε:K:Δε, exact in space, the reference being interpolated linearly between its instants. All runs take steps of {STEP} Δt_c and end with the first \
+         ½∫Δε:K:Δε, exact in space, the reference being interpolated linearly between its instants. Runs take steps of {STEP} Δt_c, but for those with short steps further down, and end with the first \
          past T. The velocity is 400 m/s across the plane (normal), and for oblique impacts as much along it; a tilt turns plane and velocity clockwise \
          under the body.",
         Acceleration::default(),
