@@ -21,8 +21,10 @@ const TABLES: &str = "tables";
 /// [`ReproduceError::NotEmpty`] unless `overwrite`; [`ReproduceError::Unwritable`].
 pub fn prepare(folder: &Path, overwrite: bool) -> Result<(), ReproduceError> {
     let unwritable = |file: &Path, cause: String| ReproduceError::Unwritable { file: file.to_path_buf(), cause };
-    if folder.exists() && !folder.is_dir() {
-        return Err(unwritable(folder, "it is no folder".to_string()));
+    for place in [folder.to_path_buf(), folder.join(FIGURES), folder.join(TABLES)] {
+        if place.exists() && !place.is_dir() {
+            return Err(unwritable(&place, "it is no folder".to_string()));
+        }
     }
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !parent.is_dir() {
@@ -33,9 +35,7 @@ pub fn prepare(folder: &Path, overwrite: bool) -> Result<(), ReproduceError> {
     if used && !overwrite {
         return Err(ReproduceError::NotEmpty { folder: folder.to_path_buf() });
     }
-    for made in [folder.to_path_buf(), folder.join(FIGURES), folder.join(TABLES)] {
-        std::fs::create_dir_all(&made).map_err(|cause| unwritable(&made, cause.to_string()))?;
-    }
+    std::fs::create_dir_all(folder).map_err(|cause| unwritable(folder, cause.to_string()))?;
     for name in [PAGE, SHORT_PAGE, NUMBERS] {
         let file = folder.join(name);
         crate::writable::check(&file).map_err(|cause| unwritable(&file, cause.to_string()))?;
@@ -76,7 +76,10 @@ pub fn numbers(sections: &[Section], effort: &Effort) -> Value {
     })
 }
 
+/// Writes a file, in a folder that is made with its first one: a run that is stopped before leaves none.
 fn write(file: &Path, content: &[u8]) -> Result<(), ReproduceError> {
-    std::fs::write(file, content)
+    let folder = file.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::write(file, content))
         .map_err(|cause| ReproduceError::Unwritable { file: file.to_path_buf(), cause: cause.to_string() })
 }
