@@ -96,20 +96,27 @@ fn free_flight_under_gravity() {
 }
 
 /// A uniform stress under its own tractions, started with its own linear displacement, stays: it
-/// is both admissible fields.
+/// is both admissible fields. So does one that a side holds, wherever that side is held.
 #[test]
 fn uniform_stress() {
     let gradient = [[1e-3, 4e-4], [-2e-4, -5e-4]];
     let stress = law().stress(&gradient);
     let mesh = distorted();
     let displacement = mesh.points().iter().map(|p| gradient.map(|g| g[0] * p[0] + g[1] * p[1])).collect();
-    let mut builder = Problem::builder(mesh).material(law()).initial_displacement(Initial::Nodal(displacement));
-    for (group, normal) in [("left", [-1.0, 0.0]), ("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])]
-    {
-        let value = Table::constant(stress.map(|s| s[0] * normal[0] + s[1] * normal[1]));
-        builder = builder.traction(Traction { group: group.into(), value, profile: Profile::UNIFORM });
+    let free = Problem::builder(mesh).material(law()).initial_displacement(Initial::Nodal(displacement));
+    for held in [None, Some("left"), Some("top")] {
+        let mut builder = free.clone();
+        let sides = [("left", [-1.0, 0.0]), ("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])];
+        for (group, normal) in sides {
+            let value = Table::constant(stress.map(|s| s[0] * normal[0] + s[1] * normal[1]));
+            builder = if held == Some(group) {
+                builder.support(Support { group: group.into(), components: [true, true], velocity: None })
+            } else {
+                builder.traction(Traction { group: group.into(), value, profile: Profile::UNIFORM })
+            };
+        }
+        assert_no_error(&builder.build().unwrap(), 0.5 * 0.2 * law().complementary_form(&stress));
     }
-    assert_no_error(&builder.build().unwrap(), 0.5 * 0.2 * law().complementary_form(&stress));
 
     let mesh = BarMesh::uniform_bar(1.0, 9).unwrap();
     let displacement = mesh.points().iter().map(|p| [1e-3 * p[0]]).collect();

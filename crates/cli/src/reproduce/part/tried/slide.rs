@@ -30,9 +30,9 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     }
     section.heading("What adds up");
     section.text(format!(
-        "A block slides down a plane for {} s, some {} times as long as a wave needs through its height. It slides as it should: the \
-         distance differs from the exact one by a few parts in a thousand (see the pack). What makes an estimate rise with T is a force that \
-         is missing and accelerates the admissible fields all the time.",
+        "A block slides down a plane for {} s, some {} times as long as a wave needs through its height. The energy of its motion grows \
+         like the square of the time and its error does not, so that ε falls. Where ε stays, a force is missing that accelerates the \
+         admissible fields as long as the block slides.",
         short(case.times.end(), 2),
         short(waves(&case), 2),
     ));
