@@ -25,7 +25,16 @@ pub(crate) struct Companion<const D: usize> {
     correction: Vec<[f64; D]>,
     /// Whether it is made at all.
     corrected: bool,
+    /// How often so far a step has been longer than both its neighbours, or shorter.
+    reversals: usize,
 }
+
+/// Reversals after which corrections are no longer made. Steps that are long and short in turn drive waves that need four of
+/// them for a period; the corrected scheme has such waves from shorter steps on than the plain one, and can be unstable where the
+/// simulation is not. A few do no harm; and the plain scheme is as stable as the simulation.
+const FEW: usize = 8;
+/// Relative difference from which on a step is longer than another.
+const LONGER: f64 = 1e-3;
 
 impl<const D: usize> Companion<D> {
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
@@ -34,6 +43,7 @@ impl<const D: usize> Companion<D> {
             half_step: problem.initial_velocity().to_vec(),
             correction: vec![[0.0; D]; problem.mesh().node_count()],
             corrected,
+            reversals: 0,
         }
     }
 
@@ -60,7 +70,10 @@ impl<const D: usize> Companion<D> {
             return;
         }
         let (h, dt) = (times.velocity_step(n), times.step(n));
-        if self.corrected {
+        self.reversals += usize::from(reverses(times, n));
+        if self.reversals > FEW {
+            self.correction.iter_mut().for_each(|value| *value = [0.0; D]);
+        } else if self.corrected {
             self.correct(problem, dynamics, dt * times.step(n.saturating_sub(1)), acceleration);
         }
         let states = self.half_step.iter_mut().zip(&mut self.displacement).zip(acceleration).zip(&self.correction);
@@ -111,6 +124,12 @@ fn damping<const D: usize>() -> f64 {
     }
     let largest = (D + 1) as f64 / (D + 2) as f64;
     (0.5 * largest - 1.0 / 3.0) / (largest * largest)
+}
+
+/// Whether the step before t_n is longer than those beside it, or shorter.
+fn reverses(times: &TimeGrid, n: usize) -> bool {
+    let change = |k: usize| times.step(k) / times.step(k - 1) - 1.0;
+    n >= 2 && change(n) * change(n - 1) < 0.0 && change(n).abs().min(change(n - 1).abs()) > LONGER
 }
 
 /// ½ v·M v (J).

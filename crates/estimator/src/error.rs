@@ -84,7 +84,7 @@ pub enum EstimateError {
     /// The companion of the reading `whole` moves ever faster than the simulation.
     #[error(
         "the companion solution of the reading `whole` became unstable at step {step}, t = {time:.6e} s: it takes the history's steps \
-         by central differences, and they are too long for that or jump from one to the next (the longest is {longest_step:.4e} s); \
+         by central differences, and they are too long for that (the longest is {longest_step:.4e} s); \
          estimate this history with contact_force = \"sharp\", or store shorter steps"
     )]
     Companion {

@@ -91,6 +91,36 @@ fn the_shortest_wave_of_a_bar_does_not_grow() {
     }
 }
 
+/// Steps of 0.7 and 0.6 of the critical one in turn: below 1/√2, so that the simulation is stable. The corrected scheme is not,
+/// and is not taken but for the first of them.
+#[test]
+fn uneven_steps_leave_the_corrections_out() {
+    let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
+    let mut random = Random::new(5);
+    let rough = (0..=ELEMENTS).map(|_| [random.between(-1.0, 1.0)]).collect();
+    let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
+    let problem = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
+    let step = |n: usize| if n.is_multiple_of(2) { 0.7 } else { 0.6 } / ELEMENTS as f64;
+    let times = TimeGrid::from_steps(&(0..1000).map(step).collect::<Vec<_>>()).unwrap();
+    let all = motion(&problem, &times, true);
+    let largest = all.iter().flatten().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    // All modes together, each at its largest; corrected to the end, 1.17 for each pair of steps would make 1e34.
+    assert!(largest < 100.0, "{largest}");
+}
+
+/// Rounding, steps that become shorter once, or swing slowly, do not reverse; steps in turn do.
+#[test]
+fn what_reverses() {
+    let count = |steps: Vec<f64>| {
+        let times = TimeGrid::from_steps(&steps).unwrap();
+        (0..steps.len()).filter(|&n| reverses(&times, n)).count()
+    };
+    assert_eq!(count(vec![0.1; 997]), 0);
+    assert_eq!(count([vec![0.1; 50], vec![0.05; 50], vec![0.001]].concat()), 0);
+    assert_eq!(count((0..1000).map(|n| 1.0 + 0.1 * (0.006 * n as f64).sin()).collect()), 0);
+    assert_eq!(count((0..20).map(|n| if n % 2 == 0 { 0.1 } else { 0.09 }).collect()), 18);
+}
+
 fn rough_block() -> TriangleProblem {
     let mesh = random_rectangle(1.0, 0.8, 6, 3).unwrap();
     let mut random = Random::new(7);

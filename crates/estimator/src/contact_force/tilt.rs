@@ -2,111 +2,169 @@
 //!
 //! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k, but acts
 //! at the centroids of the shape functions, and at the end of a contact surface or between unequal facets those are
-//! not at the nodes. What is missing would turn the body, ever faster as long as it acts. Nodal factors 1 + δ_k
-//! leave each direction, and with it the cone, as it is; the least δ, in the mean that the reactions weigh, that keeps the
-//! resultant and brings the moment is affine in space where all reactions have one direction.
+//! not at the nodes. What is missing would turn the body, ever faster as long as it acts. So the normal forces of the nodes of a body
+//! that face one plane are multiplied by factors that keep their sum and bring the moment: those nearest to 1, in the mean that
+//! the forces weigh, affine along the plane, and 0 where that would be negative. Friction goes with its normal force, and what
+//! its sum lacks then is shared out where the cone has room, of which there is always enough.
 
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 
-/// Directions that add less than this part to those before are rounding.
-const INDEPENDENT: f64 = 1e-9;
+/// Such a part of a force is nothing: its place within an edge is known to 1e-16 only, which counts squared.
+const NOTHING: f64 = 1e-24;
 
-/// Places of the nodes of the contact surface.
+/// What the nodes of a body that face one plane have in common, and their places.
+#[derive(Clone, Debug)]
+struct Group<const D: usize> {
+    normal: [f64; D],
+    tangent: [f64; D],
+    friction: f64,
+    nodes: Vec<Place>,
+}
+
+/// A node of the contact surface.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// Position in the contact surface.
+    at: usize,
+    /// Centroid of its shape function along the plane (m).
+    centroid: f64,
+    /// From there to the node, along the plane and away from it (m).
+    lever: [f64; 2],
+    /// Whether its tangential motion is prescribed: no friction moves it.
+    guided: bool,
+}
+
+/// Gives reactions as forces whose densities have their moment.
 #[derive(Clone, Debug)]
 pub(super) struct Tilt<const D: usize> {
-    /// Centroid of each node's shape function on the candidate facets (m).
-    centroid: Vec<[f64; D]>,
-    /// From the centroid to the node (m).
-    lever: Vec<[f64; D]>,
-    /// The nodes of each part of the mesh that may touch.
-    bodies: Vec<Vec<usize>>,
+    groups: Vec<Group<D>>,
 }
 
 impl<const D: usize> Tilt<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        let (points, surface) = (problem.mesh().points(), problem.surface());
-        let place = |k: usize| points[surface.nodes()[k].node.index()];
-        let mut centroid = vec![[0.0; D]; surface.nodes().len()];
-        for facet in surface.facets() {
-            let sum: [f64; D] = std::array::from_fn(|c| facet.nodes.iter().map(|&k| place(k)[c]).sum());
-            for &k in &facet.nodes {
-                (0..D).for_each(|c| centroid[k][c] += facet.area / (D * (D + 1)) as f64 * (place(k)[c] + sum[c]));
-            }
+        if D != 2 {
+            return Self::none();
         }
-        for (centroid, area) in centroid.iter_mut().zip(surface.tributary_areas()) {
-            centroid.iter_mut().for_each(|x| *x /= area);
+        let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
+        let centroids = centroids(problem);
+        let mut groups: Vec<((NodeId, usize), Group<D>)> = Vec::new();
+        for (at, (contact, centroid)) in surface.nodes().iter().zip(&centroids).enumerate() {
+            let key = (part[contact.node.index()], contact.obstacle);
+            let found = groups.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
+                let plane = &problem.obstacles()[contact.obstacle];
+                let normal = *plane.normal();
+                let mut tangent = [0.0; D];
+                (tangent[0], tangent[D - 1]) = (normal[D - 1], -normal[0]);
+                groups.push((key, Group { normal, tangent, friction: plane.friction(), nodes: Vec::new() }));
+                groups.len() - 1
+            });
+            let group = &mut groups[found].1;
+            let point = problem.mesh().points()[contact.node.index()];
+            let arm: [f64; D] = std::array::from_fn(|c| point[c] - centroid[c]);
+            group.nodes.push(Place {
+                at,
+                centroid: along(centroid, &group.tangent),
+                lever: [along(&arm, &group.tangent), along(&arm, &group.normal)],
+                guided: contact.guided,
+            });
         }
-        let lever = centroid.iter().enumerate().map(|(k, x)| std::array::from_fn(|c| place(k)[c] - x[c])).collect();
-        Self { centroid, lever, bodies: bodies(problem) }
+        Self { groups: groups.into_iter().map(|(_, group)| group).collect() }
     }
 
-    /// One that leaves all densities as they are.
+    /// One that leaves all reactions as they are.
     pub(super) fn none() -> Self {
-        Self { centroid: Vec::new(), lever: Vec::new(), bodies: Vec::new() }
+        Self { groups: Vec::new() }
     }
 
-    /// 1 + δ_k for these reactions; at most 2 and not negative: where that is too little, part of the moment is missing.
-    pub(super) fn factors(&self, reaction: &[[f64; D]]) -> Vec<f64> {
-        let mut factors = vec![1.0; reaction.len()];
-        if D == 2 {
-            self.bodies.iter().for_each(|body| self.tilt(body, reaction, &mut factors));
-        }
-        factors
+    /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have the
+    /// moment of the reactions, or come as near as pressing forces can.
+    pub(super) fn apply(&self, reaction: &mut [[f64; D]]) {
+        self.groups.iter().for_each(|group| group.apply(reaction));
     }
+}
 
-    fn tilt(&self, body: &[usize], reaction: &[[f64; D]], factors: &mut [f64]) {
-        let size = |k: usize| reaction[k].iter().map(|r| r * r).sum::<f64>().sqrt();
-        let pressed: Vec<(usize, f64)> = body.iter().map(|&k| (k, size(k))).filter(|(_, w)| *w > 0.0).collect();
-        let whole: f64 = pressed.iter().map(|(_, w)| w).sum();
-        let missing: f64 = pressed.iter().map(|&(k, _)| cross(&self.lever[k], &reaction[k])).sum();
-        if pressed.len() < 2 || missing == 0.0 {
+impl<const D: usize> Group<D> {
+    fn apply(&self, reaction: &mut [[f64; D]]) {
+        let normal: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.normal)).collect();
+        if normal.iter().filter(|n| **n > 0.0).count() < 2 {
             return;
         }
-        let mean = |c: usize| pressed.iter().map(|&(k, w)| w * self.centroid[k][c]).sum::<f64>() / whole;
-        let middle: [f64; D] = std::array::from_fn(mean);
-        let direction = |&(k, w): &(usize, f64)| reaction[k].map(|r| r / w);
-        let arm = |&(k, _): &(usize, f64)| std::array::from_fn(|c| self.centroid[k][c] - middle[c]);
-        let inner =
-            |a: &[f64], b: &[f64]| pressed.iter().zip(a.iter().zip(b)).map(|((_, w), (a, b))| w * a * b).sum::<f64>();
-        // What a δ adds to the resultant and to the moment, the moment's part that leaves the resultant alone last.
-        let mut rows: Vec<Vec<f64>> = (0..D).map(|c| pressed.iter().map(|one| direction(one)[c]).collect()).collect();
-        rows.push(pressed.iter().map(|one| cross(&arm(one), &direction(one))).collect());
-        let mut basis: Vec<(Vec<f64>, f64)> = Vec::new();
-        for mut row in rows {
-            let before = inner(&row, &row);
-            for (other, norm) in &basis {
-                let along = inner(&row, other) / norm;
-                row.iter_mut().zip(other).for_each(|(a, b)| *a -= along * b);
+        let tangential: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.tangent)).collect();
+        let forces = self.nodes.iter().zip(normal.iter().zip(&tangential));
+        let missing: f64 = forces.map(|(node, (n, t))| node.lever[0] * n - node.lever[1] * t).sum();
+        let factors = self.factors(&normal, missing);
+        let normal: Vec<f64> = normal.iter().zip(&factors).map(|(n, factor)| n * factor).collect();
+        let tangential = self.share_out(&normal, &tangential, &factors);
+        for ((node, n), t) in self.nodes.iter().zip(normal).zip(tangential) {
+            reaction[node.at] = std::array::from_fn(|c| n * self.normal[c] + t * self.tangent[c]);
+        }
+    }
+
+    /// α + β s, nowhere negative, with Σ factor N = ΣN and Σ factor N s = Σ N s + `missing` over those that are not 0.
+    fn factors(&self, normal: &[f64], missing: f64) -> Vec<f64> {
+        let whole: f64 = normal.iter().sum();
+        let first: f64 = self.nodes.iter().zip(normal).map(|(node, n)| node.centroid * n).sum();
+        // About the middle of the force, which has to move by this way.
+        let (middle, way) = (first / whole, missing / whole);
+        let place = |k: usize| self.nodes[k].centroid - middle;
+        let mut pressed: Vec<usize> = (0..normal.len()).filter(|&k| normal[k] > 0.0).collect();
+        loop {
+            let sum = |power: i32| pressed.iter().map(|&k| normal[k] * place(k).powi(power)).sum::<f64>() / whole;
+            let (weight, mean) = (sum(0), sum(1) / sum(0));
+            let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / whole;
+            let extent = pressed.iter().map(|&k| (place(k) - mean).powi(2)).fold(0.0, f64::max);
+            // One node alone, or all but what is rounding beside it, has no lever.
+            let slope = if pressed.len() > 1 && spread > NOTHING * extent { (way - mean) / spread } else { 0.0 };
+            let factor = |k: usize| 1.0 / weight + slope * (place(k) - mean);
+            let kept: Vec<usize> = pressed.iter().copied().filter(|&k| factor(k) > 0.0).collect();
+            if kept.len() == pressed.len() || kept.is_empty() {
+                let mut factors = vec![0.0; normal.len()];
+                pressed.iter().for_each(|&k| factors[k] = factor(k));
+                return factors;
             }
-            let norm = inner(&row, &row);
-            basis.push((row, if norm > INDEPENDENT * before { norm } else { f64::INFINITY }));
+            pressed = kept;
         }
-        let Some((row, norm)) = basis.pop() else { return };
-        let largest = row.iter().fold(0.0_f64, |m, x| m.max((missing / norm * x).abs()));
-        let step = missing / norm / largest.max(1.0);
-        // Rounding must not turn a force that is to vanish.
-        pressed.iter().zip(&row).for_each(|(&(k, _), x)| factors[k] = (1.0 + step * x).max(0.0));
+    }
+
+    /// Friction that goes with its normal force; what its sum lacks goes where there is room up to μN.
+    fn share_out(&self, normal: &[f64], tangential: &[f64], factors: &[f64]) -> Vec<f64> {
+        let mut shared: Vec<f64> = tangential.iter().zip(factors).map(|(t, factor)| t * factor).collect();
+        let lacking = tangential.iter().sum::<f64>() - shared.iter().sum::<f64>();
+        let rooms = self.nodes.iter().zip(normal).zip(&shared).map(|((node, n), t)| {
+            let room = self.friction * n - lacking.signum() * t;
+            if node.guided { 0.0 } else { room.max(0.0) }
+        });
+        let rooms: Vec<f64> = rooms.collect();
+        let whole: f64 = rooms.iter().sum();
+        if whole > 0.0 {
+            let part = (lacking / whole).clamp(-1.0, 1.0);
+            shared.iter_mut().zip(&rooms).for_each(|(t, room)| *t += part * room);
+        }
+        shared
     }
 }
 
-/// The nodes of the contact surface, by the part of the mesh to which they belong.
-fn bodies<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Vec<usize>> {
-    let part = problem.mesh().part_of_nodes();
-    let mut bodies: Vec<(NodeId, Vec<usize>)> = Vec::new();
-    for (k, contact) in problem.surface().nodes().iter().enumerate() {
-        let own = part[contact.node.index()];
-        match bodies.iter_mut().find(|(other, _)| *other == own) {
-            Some((_, nodes)) => nodes.push(k),
-            None => bodies.push((own, vec![k])),
+/// Centroid of each node's shape function on the candidate facets (m).
+fn centroids<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+    let (points, surface) = (problem.mesh().points(), problem.surface());
+    let place = |k: usize| points[surface.nodes()[k].node.index()];
+    let mut centroids = vec![[0.0; D]; surface.nodes().len()];
+    for facet in surface.facets() {
+        let sum: [f64; D] = std::array::from_fn(|c| facet.nodes.iter().map(|&k| place(k)[c]).sum());
+        for &k in &facet.nodes {
+            (0..D).for_each(|c| centroids[k][c] += facet.area / (D * (D + 1)) as f64 * (place(k)[c] + sum[c]));
         }
     }
-    bodies.into_iter().map(|(_, nodes)| nodes).collect()
+    for (centroid, area) in centroids.iter_mut().zip(surface.tributary_areas()) {
+        centroid.iter_mut().for_each(|x| *x /= area);
+    }
+    centroids
 }
 
-/// The moment of a force with a lever in the plane.
-fn cross<const D: usize>(lever: &[f64; D], force: &[f64; D]) -> f64 {
-    lever[0] * force[D - 1] - lever[D - 1] * force[0]
+/// The component of a vector along a direction.
+fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
+    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

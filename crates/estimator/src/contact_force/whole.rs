@@ -48,10 +48,10 @@ impl<const D: usize> Whole<D> {
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
             problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let pressing: Vec<[f64; D]> = problem.surface().nodes().iter().zip(pressing).map(held).collect();
-        let factors = self.tilt.factors(&pressing);
+        let mut pressing: Vec<[f64; D]> = problem.surface().nodes().iter().zip(pressing).map(held).collect();
+        self.tilt.apply(&mut pressing);
         for (facet, density) in problem.surface().facets().iter().zip(&mut densities) {
-            *density = facet.nodes.map(|k| pressing[k].map(|r| factors[k] * r / self.tributary[k]));
+            *density = facet.nodes.map(|k| pressing[k].map(|r| r / self.tributary[k]));
         }
         densities
     }

@@ -5,7 +5,7 @@ mod interval;
 mod supports;
 
 use crate::companion::{Companion, kinetic_energy};
-use crate::contact_force::{Reading, Stopping, SurfaceStep};
+use crate::contact_force::{Pressure, Reading, Stopping, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
@@ -22,8 +22,7 @@ use std::collections::VecDeque;
 use supports::SupportCheck;
 
 /// A companion whose kinetic energy is so many times the largest energy of the simulation is unstable: its error would be a
-/// thousand times what there is. A stable one may have some hundred times as much for a while, where friction
-/// holds a body of a few elements on a moving load.
+/// thousand times what there is.
 const UNSTABLE: f64 = 1e6;
 
 /// Turns steps into levels whose fields are known on both sides.
@@ -46,6 +45,8 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     /// Levels not yet handed on; `ready` of them are complete.
     levels: VecDeque<Level<D>>,
     ready: usize,
+    /// Normal pressures of the steps since the last sampled level that was handed on.
+    pressures: Vec<Vec<[Pressure<D>; 2]>>,
     /// The step before the first of `levels` that is not complete.
     before: Option<SurfaceStep<D>>,
     steps: StepCheck,
@@ -73,6 +74,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             supports: SupportCheck::default(),
             levels: VecDeque::new(),
             ready: 0,
+            pressures: Vec::new(),
             before: None,
             steps: StepCheck::default(),
             impulse: Impulse::default(),
@@ -195,8 +197,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     fn check_companion(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
         let Some(companion) = &self.companion else { return Ok(()) };
         let energy = companion.kinetic_energy(self.problem.mass());
-        // Before the first steps nothing may move yet.
-        if step.index > 2 && self.liveliest > 0.0 && energy > UNSTABLE * self.liveliest {
+        // A body that starts unstrained at rest has no energy before it is loaded.
+        if self.liveliest > 0.0 && energy > UNSTABLE * self.liveliest {
             let longest_step = self.times.longest_step();
             return Err(EstimateError::Companion { step: step.index, time: step.time, longest_step });
         }
@@ -216,17 +218,16 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.tracks.iter_mut().for_each(|track| track.finish(tolerance));
     }
 
-    /// The next complete level that is sampled; others only carry the integral of ã on.
+    /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their pressures.
     pub(super) fn next_ready(&mut self, last: bool) -> Option<Level<D>> {
         while self.ready > 0 {
             self.ready -= 1;
-            let level = self.levels.pop_front()?;
+            let mut level = self.levels.pop_front()?;
+            self.pressures.append(&mut level.pressures);
             let end = last && self.levels.is_empty();
             if level.index % self.every == 0 || end {
+                level.pressures = std::mem::take(&mut self.pressures);
                 return Some(level);
-            }
-            if let Some(next) = self.levels.front_mut() {
-                next.pressures.splice(0..0, level.pressures);
             }
         }
         None

@@ -44,22 +44,45 @@ fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
     nodal_forces(problem, &whole.densities(problem, reaction))
 }
 
-/// Reactions in the cone, between 1 and `range` in the direction of the normal.
-fn reactions(problem: &TriangleProblem, random: &mut Random, range: f64) -> Vec<[f64; 2]> {
-    let normal = *problem.obstacles()[0].normal();
+/// Reactions in the cone: normal parts up to `range` times each other, friction up to a part of what the cone allows.
+fn reactions(problem: &TriangleProblem, random: &mut Random, range: f64, part: f64) -> Vec<[f64; 2]> {
     let one = |_| {
-        let (n, t) = (random.between(1.0, range), random.between(-0.4, 0.4));
-        [n * (normal[0] - t * normal[1]), n * (normal[1] + t * normal[0])]
+        let n = random.between(1.0, range);
+        in_frame(problem, n, 0.4 * n * random.between(-part, part))
     };
     problem.surface().nodes().iter().map(one).collect()
 }
 
-/// Each block gets the resultant and the moment of its own reactions, whatever the angle.
+/// A force with a normal part and one along the plane.
+fn in_frame(problem: &TriangleProblem, n: f64, t: f64) -> [f64; 2] {
+    let normal = problem.obstacles()[0].normal();
+    [n * normal[0] + t * normal[1], n * normal[1] - t * normal[0]]
+}
+
+/// Whether forces press and their friction is within the cone, to the last bits.
+fn admissible(problem: &TriangleProblem, forces: &[[f64; 2]]) -> bool {
+    let normal = problem.obstacles()[0].normal();
+    forces.iter().all(|f| {
+        let (n, t) = (f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]);
+        n >= 0.0 && t.abs() <= 0.4 * n + 1e-14
+    })
+}
+
+/// Each block gets the resultant and the moment of its own reactions, whatever the angle and the friction: none, some, or as
+/// much as the cone allows, on all nodes or on the first two alone.
 #[test]
 fn resultant_and_moment_are_those_of_the_reactions() {
-    for seed in 0..20_u32 {
+    for seed in 0..40_u32 {
         let problem = blocks(0.3 * f64::from(seed));
-        let reaction = reactions(&problem, &mut Random::new(seed.into()), 1.5);
+        let part = [0.0, 0.3, 1.0, 1e-17][seed as usize % 4];
+        let mut reaction = reactions(&problem, &mut Random::new(seed.into()), 1.5, part);
+        if seed >= 20 {
+            let first = |at: usize| problem.surface().nodes()[at].node.index() < 4;
+            (0..10).filter(|&at| !first(at)).for_each(|at| reaction[at] = [0.0; 2]);
+        }
+        let mut tilted = reaction.clone();
+        Tilt::new(&problem).apply(&mut tilted);
+        assert!(admissible(&problem, &tilted), "{seed}: {tilted:?}");
         let (given, found) = (balance(&problem, &reaction), balance(&problem, &made(&problem, &reaction)));
         for (given, found) in given.iter().zip(&found) {
             // Rounding of sums of five terms of up to 1.5·12.
@@ -68,26 +91,59 @@ fn resultant_and_moment_are_those_of_the_reactions() {
     }
 }
 
-/// Where all is carried by the end of a block, the density cannot act there: the resultant stays, the force stays in
-/// the cone, and what is missing of the moment is less than without the tilt.
+/// The same reactions in another frame are tilted alike, with friction that is nothing but rounding, too.
+#[test]
+fn no_frame_is_special() {
+    let numbers = [[3.0, 0.1], [1.0, -1e-17], [2.0, 0.8], [0.0, 0.0], [1.5, 1e-17]];
+    let tilted = |angle: f64| -> Vec<[f64; 2]> {
+        let problem = blocks(angle);
+        let mut forces: Vec<[f64; 2]> = problem
+            .surface()
+            .nodes()
+            .iter()
+            .map(|contact| {
+                let [n, t] = numbers[contact.node.index() % 10 / 2];
+                in_frame(&problem, n, t)
+            })
+            .collect();
+        Tilt::new(&problem).apply(&mut forces);
+        let normal = *problem.obstacles()[0].normal();
+        let own = |f: &[f64; 2]| [f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]];
+        let mut all: Vec<(usize, [f64; 2])> =
+            problem.surface().nodes().iter().map(|c| c.node.index()).zip(forces.iter().map(own)).collect();
+        all.sort_by_key(|(node, _)| *node);
+        all.into_iter().map(|(_, f)| f).collect()
+    };
+    let flat = tilted(0.0);
+    assert!((flat[0][0] - 3.0).abs() > 0.1, "nothing was tilted: {flat:?}");
+    for angle in [0.5, 2.0, 4.0] {
+        for (a, b) in flat.iter().zip(&tilted(angle)) {
+            // Rounding of coordinates of 12 over edges of 0.5.
+            assert!((0..2).all(|c| (a[c] - b[c]).abs() < 1e-13), "{angle}: {b:?} for {a:?}");
+        }
+    }
+}
+
+/// Where nearly all is carried by the end of a block, the density cannot act there: the end takes what it can, and what is
+/// missing of the moment is what a hat over the first edge must miss.
 #[test]
 fn what_cannot_be_had_is_had_in_part() {
     let problem = blocks(0.0);
     let mut reaction = vec![[0.0, 0.0]; 10];
-    let left = problem.surface().nodes().iter().position(|c| c.node.index() == 0).unwrap();
-    let beside = problem.surface().nodes().iter().position(|c| c.node.index() == 2).unwrap();
-    (reaction[left], reaction[beside]) = ([0.3, 1.0], [0.0, 0.1]);
-    let Reading::Whole(whole) = Reading::new(ContactForce::Whole, &problem) else { panic!("another reading") };
-    let densities = whole.densities(&problem, &reaction);
-    assert!(densities.iter().flatten().all(|f| f[1] >= 0.0 && f[0].abs() <= 0.4 * f[1] + 1e-15));
-    let [found, other] = balance(&problem, &nodal_forces(&problem, &densities));
+    let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
+    (reaction[at(0)], reaction[at(2)]) = ([0.3, 1.0], [0.0, 0.1]);
+    let mut tilted = reaction.clone();
+    Tilt::new(&problem).apply(&mut tilted);
+    assert!(admissible(&problem, &tilted));
+    // All on the first node, friction too.
+    assert!((0..2).all(|c| (tilted[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{tilted:?}");
+    assert_eq!(tilted[at(2)], [0.0; 2]);
+    let [found, other] = balance(&problem, &made(&problem, &reaction));
     let [given, _] = balance(&problem, &reaction);
     assert_eq!(other, [0.0; 3]);
     assert!((0..2).all(|c| (found[c] - given[c]).abs() < 1e-15), "{found:?} for {given:?}");
-    // Without the tilt the first node's part acts at a third of its edge of 0.5 m, the second's at (0.5·⅓·… + 1.5·⅙…)/ℓ.
-    let centroid = (0.5 / 6.0 * (2.0 * 0.5) + 1.5 / 6.0 * (2.0 * 0.5 + 2.0)) / 1.0;
-    let untilted = 1.0 * 0.5 / 3.0 + 0.1 * centroid - given[2];
-    assert!(found[2] - given[2] > 0.0 && found[2] - given[2] < untilted, "{} of {untilted}", found[2] - given[2]);
+    // The first hat acts at a third of its edge of 0.5 m; given is 0.1 N at 0.5 m.
+    assert!((found[2] - 1.1 * 0.5 / 3.0).abs() < 1e-15 && (given[2] - 0.05).abs() < 1e-15, "{found:?}, {given:?}");
 }
 
 /// One node alone has one density, and nothing is done to it.
@@ -96,7 +152,9 @@ fn a_node_alone_is_left_as_it_is() {
     let problem = blocks(0.2);
     for k in 0..10 {
         let mut reaction = vec![[0.0; 2]; 10];
-        reaction[k] = problem.obstacles()[0].normal().map(|n| 2.0 * n);
-        assert!(Tilt::new(&problem).factors(&reaction).iter().all(|f| *f == 1.0));
+        reaction[k] = in_frame(&problem, 2.0, 0.3);
+        let mut tilted = reaction.clone();
+        Tilt::new(&problem).apply(&mut tilted);
+        assert_eq!(tilted, reaction);
     }
 }

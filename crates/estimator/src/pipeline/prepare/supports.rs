@@ -10,7 +10,9 @@ use percute_core::time::TimeGrid;
 pub(super) struct SupportCheck {
     /// One for each prescribed component (m).
     pub(super) exact: Vec<f64>,
-    /// The longest way of any (m).
+    /// How far each has been from its undeformed place (m): one that comes back leaves the rounding of its way.
+    farthest: Vec<f64>,
+    /// The farthest of all (m).
     longest: f64,
 }
 
@@ -28,13 +30,16 @@ impl SupportCheck {
             let start = problem.initial_displacement()[p.node.index()][p.component];
             if n == 0 {
                 self.exact.push(start);
+                self.farthest.push(start.abs());
                 continue;
             }
             let velocity = |m: usize| problem.prescribed_velocity(p, times.instants()[m]);
             let exact = &mut self.exact[k];
             *exact += 0.5 * times.step(n - 1) * (velocity(n - 1) + velocity(n));
-            self.longest = self.longest.max(exact.abs());
-            let scale = exact.abs().max(start.abs()).max(1e-12 * self.longest);
+            let farthest = &mut self.farthest[k];
+            *farthest = farthest.max(exact.abs());
+            self.longest = self.longest.max(*farthest);
+            let scale = farthest.max(1e-12 * self.longest);
             let miss = (knot.displacement[p.node.index()][p.component] - *exact).abs();
             largest = worse(largest, if miss == 0.0 { 0.0 } else { miss / scale });
         }
