@@ -63,7 +63,7 @@ fn every_estimate_says_what_the_page_has() {
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/verification.md")).unwrap();
     let tables = tables(&page);
     let (mut least, mut most, mut corner) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-    let mut others = [f64::INFINITY, 0.0_f64];
+    let (mut others, mut slow) = ([f64::INFINITY, 0.0_f64], 0.0_f64);
     for row in tables.values().flatten() {
         let number = |at: usize| row[at].parse::<f64>().unwrap();
         match row[..] {
@@ -74,7 +74,16 @@ fn every_estimate_says_what_the_page_has() {
                     (least, most) = (least.min(number(3)).min(number(5)), most.max(number(4)).max(number(6)));
                 }
             }
-            ["sharp" | "paper", "closest", _, "2.0", ..] if row.len() == 11 => others[0] = others[0].min(number(5)),
+            // Slow impacts.
+            [body, "whole", _, over, ..] if row.len() == 6 => {
+                if over.parse().is_ok_and(|over: f64| over >= 0.01) {
+                    let highest = if body.contains("10°") { &mut corner } else { &mut most };
+                    *highest = highest.max(number(4)).max(number(5));
+                } else if body.contains("10°") {
+                    slow = slow.max(number(5));
+                }
+            }
+            ["sharp" | "paper", "closest", ..] if row.len() == 11 => others[0] = others[0].min(number(5)),
             [_, "sharp" | "paper", "sup" | "mean", ..] if row.len() == 8 => others[1] = others[1].max(number(4)),
             ["whole", "closest", _, "2.0", ..] if row.len() == 11 => {
                 (least, most) = (least.min(number(5)), most.max(number(7)));
@@ -95,6 +104,10 @@ fn every_estimate_says_what_the_page_has() {
         down(least),
         up(most),
         up(corner)
+    );
+    assert!(
+        slow > up(corner) && said.contains("far more where a corner or a curve touches slower than c/100"),
+        "{slow}"
     );
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
     for reading in [percute_estimator::ContactForce::Sharp, percute_estimator::ContactForce::Paper] {

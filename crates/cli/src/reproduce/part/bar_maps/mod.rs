@@ -131,8 +131,8 @@ fn ranges(grid: &Grid) -> String {
         format!("with `{reading}` {}", parts.collect::<Vec<_>>().join(", "))
     };
     format!(
-        "The paper finds effectivities from {} to {} and does not say of which measure. Over all runs and with Γ_DA `{}` they are: {}. The high \
-         ends come from means of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
+        "The paper finds effectivities from {} to {} and does not say of which measure. Over all runs and with Γ_DA `{}` they are: {}. {} The highest \
+         means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
          The low ends of `sharp` and `paper` come from fine meshes and small steps, where dispersion adds up behind the front: a measure \
          whose balance is that of the simulation's own displacements does not see what has accumulated. `whole` balances a companion solution \
          with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c in the runs that go \
@@ -143,7 +143,41 @@ fn ranges(grid: &Grid) -> String {
         PAPER[1],
         Acceleration::default(),
         ContactForce::ALL.iter().map(one).collect::<Vec<_>>().join("; "),
+        spread(grid),
         below_the_critical_step(grid),
+    )
+}
+
+/// Whether the values of the default are less spread than those of the others.
+fn spread(grid: &Grid) -> String {
+    let ratio = |reading: ContactForce, m: usize, end: f64| {
+        let choice = grid.choices.iter().position(|c| *c == (reading, Acceleration::default())).unwrap_or(0);
+        let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end);
+        summary.map_or(f64::NAN, |summary| summary.high.value / summary.low.value)
+    };
+    let default = ContactForce::default();
+    let wider = MEASURES.iter().enumerate().flat_map(|(m, measure)| {
+        ENDS.iter().filter_map(move |&end| {
+            let own = ratio(default, m, end);
+            let others = ContactForce::ALL.iter().filter(|reading| **reading != default);
+            let least = others.map(|&reading| ratio(reading, m, end)).fold(f64::INFINITY, f64::min);
+            (own > 0.5 * least).then(|| {
+                format!(
+                    "`{measure}`, T = t_c + {end} L/c: {} against {} of the nearest",
+                    short(own, 3),
+                    short(least, 3)
+                )
+            })
+        })
+    });
+    let wider: Vec<String> = wider.collect();
+    let but = if wider.is_empty() {
+        String::new()
+    } else {
+        format!(", but for {} (Δt = Δt_c makes the difference, see below)", wider.join("; "))
+    };
+    format!(
+        "The highest over the lowest value is with `{default}` at most half of that with either other reading{but}."
     )
 }
 

@@ -4,6 +4,7 @@ pub(super) mod body;
 pub(super) mod cases;
 mod figure;
 mod short_steps;
+mod speeds;
 pub(super) mod study;
 mod tables;
 mod touch;
@@ -51,6 +52,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
         section.table(effectivities);
     }
     short_steps::add(&mut section, effort, observer)?;
+    speeds::add(&mut section, effort, observer)?;
     section.heading("The cases, and whether the references are fine enough");
     section.table(tables::cases(&results));
     if !effort.small {
