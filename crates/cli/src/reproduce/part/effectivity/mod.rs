@@ -103,15 +103,21 @@ fn growth(results: &[tables::Result], r: usize) -> String {
         let growth = at(3)?.effectivity(r)[0] / at(1)?.effectivity(r)[0];
         let falls: Option<Vec<String>> =
             (1..4).map(|mesh| Some(short(at(mesh - 1)?.exact.last()?[0] / at(mesh)?.exact.last()?[0], 3))).collect();
-        Some((growth, case.name(), *tables::moves(found).last()?, falls?))
+        let contact = [at(1)?.contact[r], at(3)?.contact[r]];
+        Some((growth, case.name(), *tables::moves(found).last()?, falls?, contact))
     });
-    let Some((most, name, lack, falls)) = grown.max_by(|a, b| a.0.total_cmp(&b.0)) else { return String::new() };
+    let Some((most, name, lack, falls, contact)) = grown.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return String::new();
+    };
     format!(
         "What grows most from mesh 2 to mesh 4 is the largest error for {name}: by {}, of which the references may lack {} (below). \
-         The work of nodes that arrive one after the other falls like h. The square of the true error falls faster at first, \
-         for most of it is smooth, then alike: from mesh to mesh the true error falls by {}, and √2 would be alike.",
+         Its part of contact falls faster than the rest, from {} of η to {}. The parts of inertia and stress hold the dispersion that has \
+         added up and fall more slowly; so will the true error when little else is left of it: from mesh to mesh it falls by {} \
+         as yet.",
         percent(most - 1.0),
         percent(lack),
+        percent(contact[0]),
+        percent(contact[1]),
         falls.join(", "),
     )
 }
