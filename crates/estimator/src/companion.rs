@@ -72,7 +72,7 @@ impl<const D: usize> Companion<D> {
         let (h, dt) = (times.velocity_step(n), times.step(n));
         self.reversals += usize::from(reverses(times, n));
         if self.reversals > FEW {
-            self.correction.iter_mut().for_each(|value| *value = [0.0; D]);
+            self.correction.fill([0.0; D]);
         } else if self.corrected {
             self.correct(problem, dynamics, dt * times.step(n.saturating_sub(1)), acceleration);
         }
@@ -100,7 +100,7 @@ impl<const D: usize> Companion<D> {
         let mut once = mass_difference(problem, inverse_mass, acceleration);
         hold(&mut once);
         let twice = mass_difference(problem, inverse_mass, &once);
-        self.correction.iter_mut().for_each(|f| *f = [0.0; D]);
+        self.correction.fill([0.0; D]);
         dynamics.stiffness().subtract_internal_forces(acceleration, &mut self.correction);
         let (time, damping) = (square_of_step / 12.0, damping::<D>());
         let parts = self.correction.iter_mut().zip(inverse_mass).zip(once.iter().zip(&twice));
@@ -117,7 +117,7 @@ impl<const D: usize> Companion<D> {
 /// the critical step on. With it, p is at most ⅓, and x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: stable wherever the simulation
 /// is. In 1D it would be so without: but there the simulation takes the critical step exactly, its shortest wave grows with
 /// time once it is excited, and a companion that does the same does not see it. 1/36 keeps it from that, at the
-/// price of up to a tenth more of the estimate at that step. It changes errors of the order that is left anyway.
+/// price of a larger estimate at that step. It changes errors of the order that is left anyway.
 fn damping<const D: usize>() -> f64 {
     if D == 1 {
         return 1.0 / 36.0;

@@ -13,6 +13,7 @@ mod whole;
 use crate::options::{Ablation, ContactForce};
 use crate::residual::{Residuals, worse};
 use paper::Paper;
+use percute_core::obstacle::Plane;
 use percute_core::problem::{ContactFacet, Problem};
 pub(crate) use stopping::Stopping;
 pub(crate) use whole::Pressure;
@@ -65,18 +66,6 @@ impl<const D: usize> Reading<D> {
     /// Whether forces may act where a node does not touch.
     pub(crate) fn acts_off_contact(&self) -> bool {
         matches!(self, Self::Whole(_))
-    }
-
-    /// The normal pressures of a step on each candidate facet, at its beginning and its end, where they may act off contact.
-    pub(crate) fn pressures<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        now: &SurfaceStep<D>,
-        next: &SurfaceStep<D>,
-        interval: &Interval<D>,
-    ) -> Option<Vec<[Pressure<D>; 2]>> {
-        let Self::Whole(whole) = self else { return None };
-        Some(whole.pressures(problem, now, next, interval))
     }
 
     /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
@@ -139,13 +128,9 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
         return 0.0;
     }
     let plane = &problem.obstacles()[facet.obstacle];
-    // A tangent: the normal turned by a quarter.
-    let mut tangent = [0.0; D];
-    tangent[0] = -plane.normal()[1];
-    tangent[1] = plane.normal()[0];
-    let along = |v: &[f64; D]| v.iter().zip(&tangent).map(|(a, b)| a * b).sum::<f64>();
-    let force = density.map(|f| (plane.split(&f).0, along(&f)));
-    let sliding = velocity.map(|v| along(&v));
+    let tangent = tangent(plane);
+    let force = density.map(|f| (plane.split(&f).0, along(&f, &tangent)));
+    let sliding = velocity.map(|v| along(&v, &tangent));
 
     facet.area
         * over_signs([sliding[0], sliding[1]], |s| {
@@ -154,6 +139,18 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
             let (normal, tangential) = (line(force[0].0, force[1].0), line(force[0].1, force[1].1));
             plane.friction() * normal * w.abs() + w * tangential
         })
+}
+
+/// Along a plane in 2D: its normal turned back by a quarter.
+fn tangent<const D: usize>(plane: &Plane<D>) -> [f64; D] {
+    let mut tangent = [0.0; D];
+    (tangent[0], tangent[D - 1]) = (plane.normal()[D - 1], -plane.normal()[0]);
+    tangent
+}
+
+/// The component of a vector along a direction.
+fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
+    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
 }
 
 /// Mean over an edge of a quantity that is quadratic on each piece on which a linear velocity keeps its sign.

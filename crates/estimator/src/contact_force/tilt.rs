@@ -7,6 +7,7 @@
 //! the forces weigh, affine along the plane, and 0 where that would be negative. Friction goes with its normal force, and what
 //! its sum lacks then is shared out where the cone has room, of which there is always enough.
 
+use super::{along, tangent};
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 
@@ -53,9 +54,7 @@ impl<const D: usize> Tilt<D> {
             let key = (part[contact.node.index()], contact.obstacle);
             let found = groups.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
                 let plane = &problem.obstacles()[contact.obstacle];
-                let normal = *plane.normal();
-                let mut tangent = [0.0; D];
-                (tangent[0], tangent[D - 1]) = (normal[D - 1], -normal[0]);
+                let (normal, tangent) = (*plane.normal(), tangent(plane));
                 groups.push((key, Group { normal, tangent, friction: plane.friction(), nodes: Vec::new() }));
                 groups.len() - 1
             });
@@ -160,11 +159,6 @@ fn centroids<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f6
         centroid.iter_mut().for_each(|x| *x /= area);
     }
     centroids
-}
-
-/// The component of a vector along a direction.
-fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
-    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ impl<const D: usize> Whole<D> {
     }
 
     /// The normal pressures of a step on each facet, at its beginning and its end.
-    pub(super) fn pressures<const N: usize>(
+    pub(crate) fn pressures<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         now: &SurfaceStep<D>,

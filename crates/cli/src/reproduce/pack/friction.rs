@@ -5,7 +5,7 @@ use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::{Trial, plane};
 use super::{Curve, Outcome};
-use crate::case::{Case, CaseOf};
+use crate::case::CaseOf;
 use percute_exact::RigidSlide;
 
 /// Young's moduli (Pa): the wave speed doubles from one to the next.
@@ -70,11 +70,7 @@ fn tilted(young: f64, friction: f64, tally: &mut Tally<'_>) -> Result<Trial<2, 3
 
 /// The block on the tilted plane as its file has it.
 pub(in crate::reproduce) fn sliding_block() -> Result<CaseOf<2, 3>, ReproduceError> {
-    let text = CaseText::new("tilted_plane", TILTED_PLANE);
-    match text.read()? {
-        Case::Plane(case) => Ok(*case),
-        Case::Bar(_) => Err(text.unexpected("this is a bar")),
-    }
+    CaseText::new("tilted_plane", TILTED_PLANE).read_plane()
 }
 
 /// Case 6, the tilted plane.

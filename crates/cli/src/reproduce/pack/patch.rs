@@ -26,7 +26,7 @@ fn row(quantity: String, unit: &'static str, exact: f64, computed: f64, within: 
 /// Case 8, a free body: no error for any choice of the method.
 pub(super) fn free(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
     let text = CaseText::new("patch", include_str!("../../../../../examples/pack/patch.toml"));
-    let crate::case::Case::Plane(case) = text.read()? else { return Err(text.unexpected("this is a bar")) };
+    let case = text.read_plane()?;
     let mut rows = Vec::new();
     for &contact_force in ContactForce::ALL {
         for &acceleration in Acceleration::ALL {

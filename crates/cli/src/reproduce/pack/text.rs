@@ -1,7 +1,7 @@
 //! The case files of the pack, with other meshes and starts.
 
 use super::super::ReproduceError;
-use crate::case::{Case, Source};
+use crate::case::{Case, CaseOf, Source};
 
 /// A case file that the program carries with it, and its settings.
 #[derive(Clone, Debug)]
@@ -58,8 +58,24 @@ impl CaseText {
     }
 
     /// The case, read and checked.
-    pub(super) fn read(&self) -> Result<Case, ReproduceError> {
+    fn read(&self) -> Result<Case, ReproduceError> {
         Ok(Case::parse(Source::new(format!("{}.toml", self.name), &*self.text))?)
+    }
+
+    /// The same of a bar.
+    pub(super) fn read_bar(&self) -> Result<CaseOf<1, 2>, ReproduceError> {
+        match self.read()? {
+            Case::Bar(case) => Ok(*case),
+            Case::Plane(_) => Err(self.unexpected("this is no bar")),
+        }
+    }
+
+    /// The same of a plane body.
+    pub(super) fn read_plane(&self) -> Result<CaseOf<2, 3>, ReproduceError> {
+        match self.read()? {
+            Case::Plane(case) => Ok(*case),
+            Case::Bar(_) => Err(self.unexpected("this is a bar")),
+        }
     }
 
     /// What this case is not.

@@ -2,7 +2,7 @@
 
 use super::super::{ReproduceError, Tally};
 use super::text::CaseText;
-use crate::case::{Case, CaseOf};
+use crate::case::CaseOf;
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::Simulation;
 use percute_estimator::reference::{Motion, Recorder};
@@ -18,18 +18,12 @@ pub(super) struct Trial<const D: usize, const N: usize> {
 
 /// Runs a bar.
 pub(super) fn bar(text: &CaseText, tally: &mut Tally<'_>) -> Result<Trial<1, 2>, ReproduceError> {
-    match text.read()? {
-        Case::Bar(case) => run(*case, tally),
-        Case::Plane(_) => Err(text.unexpected("this is no bar")),
-    }
+    run(text.read_bar()?, tally)
 }
 
 /// Runs a plane body.
 pub(super) fn plane(text: &CaseText, tally: &mut Tally<'_>) -> Result<Trial<2, 3>, ReproduceError> {
-    match text.read()? {
-        Case::Plane(case) => run(*case, tally),
-        Case::Bar(_) => Err(text.unexpected("this is a bar")),
-    }
+    run(text.read_plane()?, tally)
 }
 
 fn run<const D: usize, const N: usize>(

@@ -1,7 +1,7 @@
 //! What becomes known over a step: F_DA, then ã, ∫ã dt and the contact part of η.
 
 use super::Preparation;
-use crate::contact_force::{self, Densities, Interval};
+use crate::contact_force::{self, Densities, Interval, Reading};
 use crate::kinematic::Knot;
 use crate::level::Level;
 use percute_core::problem::Problem;
@@ -20,8 +20,10 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
         self.before = Some(self.levels[first].surface.clone());
-        let pressures = self.reading.pressures(self.problem, &now.surface, &next.surface, &interval);
-        self.levels[first + 1].pressures = pressures.into_iter().collect();
+        if let Reading::Whole(whole) = &self.reading {
+            let pressures = whole.pressures(self.problem, &now.surface, &next.surface, &interval);
+            self.levels[first + 1].pressures.push(pressures);
+        }
         self.set_accelerations(first, interval);
         self.integrate_acceleration(first);
         self.add_contact_misfit(first);

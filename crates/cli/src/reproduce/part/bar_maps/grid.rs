@@ -5,6 +5,7 @@ use crate::reproduce::part::parallel::{in_order, threads};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError};
 use percute_core::observer::Observer;
+use percute_estimator::{Acceleration, ContactForce};
 
 /// N_s and α of the paper's figures 5 and 6: from 10 to 400 and from 0.5 to 1.
 const ELEMENTS: [usize; 7] = [10, 20, 40, 80, 160, 240, 400];
@@ -78,6 +79,11 @@ impl Grid {
             let error = &outcome.estimates[choice];
             [error.relative_sup, error.relative_mean][measure]
         })
+    }
+
+    /// The place of a reading with the default Γ_DA among the choices.
+    pub(super) fn choice(&self, reading: ContactForce) -> usize {
+        self.choices.iter().position(|choice| *choice == (reading, Acceleration::default())).unwrap_or(0)
     }
 
     fn values(

@@ -117,7 +117,7 @@ fn middle() -> f64 {
 /// Where effectivities lie with each reading, default Γ_DA, over all ends and measures.
 fn ranges(grid: &Grid) -> String {
     let one = |reading: &ContactForce| {
-        let choice = grid.choices.iter().position(|c| *c == (*reading, Acceleration::default())).unwrap_or(0);
+        let choice = grid.choice(*reading);
         let parts = MEASURES.iter().enumerate().flat_map(|(m, measure)| {
             ENDS.iter().filter_map(move |&end| {
                 let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end)?;
@@ -151,8 +151,7 @@ fn ranges(grid: &Grid) -> String {
 /// Whether the values of the default are less spread than those of the others.
 fn spread(grid: &Grid) -> String {
     let ratio = |reading: ContactForce, m: usize, end: f64| {
-        let choice = grid.choices.iter().position(|c| *c == (reading, Acceleration::default())).unwrap_or(0);
-        let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end);
+        let summary = Summary::of(grid, grid.choice(reading), m, |s: &Setting| s.after_impact == end);
         summary.map_or(f64::NAN, |summary| summary.high.value / summary.low.value)
     };
     let default = ContactForce::default();
@@ -183,15 +182,15 @@ fn spread(grid: &Grid) -> String {
 
 /// The default in the long runs, but for those at the critical step.
 fn below_the_critical_step(grid: &Grid) -> String {
-    let default = (ContactForce::default(), Acceleration::default());
-    let choice = grid.choices.iter().position(|c| *c == default).unwrap_or(0);
+    let default = ContactForce::default();
+    let choice = grid.choice(default);
     let end = ENDS.into_iter().fold(0.0, f64::max);
     let ranges = MEASURES.iter().enumerate().filter_map(|(m, measure)| {
         let summary = Summary::of(grid, choice, m, |s: &Setting| s.after_impact == end && s.ratio < 1.0)?;
         Some(format!("{} to {} (`{measure}`)", short(summary.low.value, 3), short(summary.high.value, 3)))
     });
     let ranges: Vec<String> = ranges.collect();
-    format!("With all shorter steps, `{}` is {} until t_c + {end} L/c.", default.0, ranges.join(" and "))
+    format!("With all shorter steps, `{default}` is {} until t_c + {end} L/c.", ranges.join(" and "))
 }
 
 /// The worst of the fractions.

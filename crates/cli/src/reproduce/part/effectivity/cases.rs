@@ -13,8 +13,8 @@ const NORMAL: [f64; 2] = [0.0, -400.0];
 const REFERENCES: &[usize] = &[5, 6];
 const ONE_MORE: &[usize] = &[5, 6, 7];
 
-/// Meshes of the small effort, against the first of the references.
-const FEW: usize = 2;
+/// Meshes of the small effort, and of studies of other things than the mesh, which show the last of them.
+pub(super) const FEW: usize = 2;
 
 /// Cases that are judged together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +56,11 @@ impl Case {
         }
     }
 
+    /// The same on few meshes, against the first of the references.
+    pub(super) fn few(self) -> Self {
+        Self { meshes: FEW, references: &self.references[..1], ..self }
+    }
+
     /// Its name in tables.
     pub(in super::super) fn name(&self) -> String {
         let body = match self.body {
@@ -88,8 +93,7 @@ pub(in super::super) fn cases(effort: &Effort) -> Vec<Case> {
     };
     let tilted = Case { end: 16e-6, ..block };
     if effort.small {
-        let few = |case: Case| Case { meshes: FEW, references: &case.references[..1], ..case };
-        return [block, Case { tilt: 3.0, ..tilted }].map(few).to_vec();
+        return [block, Case { tilt: 3.0, ..tilted }].map(Case::few).to_vec();
     }
     let flat = |hypothesis: Hypothesis| {
         let variants = [0.0, 0.2, 0.5].into_iter().flat_map(|friction| [(friction, OBLIQUE), (friction, NORMAL)]);

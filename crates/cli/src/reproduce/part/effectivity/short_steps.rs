@@ -2,7 +2,7 @@
 
 use super::super::bar_maps::study::Setting;
 use super::super::parallel::{in_order, threads};
-use super::cases::cases;
+use super::cases::{FEW, cases};
 use super::figure::GOOD;
 use super::study::{Case, readings};
 use super::tables::MEASURES;
@@ -18,9 +18,6 @@ const RATIOS: [f64; 6] = [0.9, 0.5, 0.2, 0.1, 0.05, 0.02];
 /// The bar, and the fractions of a step at which its impact falls.
 const ELEMENTS: usize = 40;
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-/// Meshes of a plane body: the second of them is shown.
-const MESHES: usize = 2;
-const REFERENCE: &[usize] = &[5];
 
 /// A way to estimate: its name and its options.
 type Attempt = (String, Options);
@@ -63,10 +60,8 @@ impl Subject {
                 }
             }
             Self::Plane(case) => {
-                let meshes = Case { ratio, ..*case }.run(&options, observer)?;
-                let last = meshes.into_iter().flatten().next_back();
-                let last = last.ok_or_else(|| ReproduceError::Unexpected(format!("no run: {}", case.name())))?;
-                found.push((0..options.len()).map(|r| last.effectivity(r)).collect());
+                let finest = Case { ratio, ..*case }.run_finest(&options, observer)?;
+                found.push((0..options.len()).map(|r| finest.effectivity(r)).collect());
             }
         }
         let range = |r: usize, m: usize| {
@@ -82,7 +77,7 @@ fn subjects(effort: &Effort) -> Vec<Subject> {
     let all = cases(&Effort::FULL);
     let of_kind = |kind: Kind| {
         let found = all.iter().find(|case| case.kind() == kind && case.friction > 0.0);
-        found.map(|&case| Subject::Plane(Case { meshes: MESHES, references: REFERENCE, ..case }))
+        found.map(|case| Subject::Plane(case.few()))
     };
     let plane = [of_kind(Kind::Flat), of_kind(Kind::Corner)].into_iter().flatten();
     let subjects: Vec<Subject> = std::iter::once(Subject::Bar).chain(plane).collect();
@@ -102,7 +97,7 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     section.text(format!(
         "The simulation stops the mass of a node that arrives within a step: the shorter the step, the larger the force. The readings must not \
          follow it, which for `whole` needs its impulses spread in time. The bar of figure 5, with impacts at {} fractions of a step and until t_c + 2L/c, against the exact solution; \
-         plane bodies on mesh {MESHES} against the first reference. Spread over the time of a wave through the depth of the node, a force begins with twice the \
+         plane bodies on mesh {FEW} against the first reference. Spread over the time of a wave through the depth of the node, a force begins with twice the \
          exact one: on the flat block the largest error of `whole`, which is then that of the impact, rises with shorter steps to a limit, and the mean does not.",
         FRACTIONS.len(),
     ));

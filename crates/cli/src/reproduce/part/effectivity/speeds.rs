@@ -12,9 +12,6 @@ use percute_estimator::ContactForce;
 
 /// Parts of the speed and the gap of the cases.
 const PARTS: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
-/// The second mesh is shown, against the first reference.
-const MESHES: usize = 2;
-const REFERENCE: &[usize] = &[5];
 
 /// A case, and the part of its speed.
 type Run = (Case, f64);
@@ -27,8 +24,7 @@ fn runs(effort: &Effort) -> Vec<Run> {
     let first = |kind: Kind| all.iter().find(|case| case.kind() == kind && case.friction > 0.0);
     // The last curved body is the disc that falls straight.
     let of_kind = |kind: Kind| if kind == Kind::Curved { last(kind) } else { first(kind) };
-    let few = |case: &Case| Case { meshes: MESHES, references: REFERENCE, ..*case };
-    let chosen: Vec<Case> = kinds.into_iter().filter_map(of_kind).map(few).collect();
+    let chosen: Vec<Case> = kinds.into_iter().filter_map(of_kind).map(|case| case.few()).collect();
     let chosen = effort.first(1, &chosen);
     chosen.iter().flat_map(|&case| PARTS.map(|part| (case, part))).collect()
 }
@@ -38,8 +34,7 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     let runs = runs(effort);
     let found = in_order(PART.key, threads(effort.threads), &runs, observer, |(case, part), stop| {
         let slower = Case { velocity: case.velocity.map(|v| part * v), gap: part * case.gap, ..*case };
-        let last = slower.run(&readings(), stop)?.into_iter().flatten().next_back();
-        last.ok_or_else(|| ReproduceError::Unexpected(format!("no run: {}", case.name())))
+        slower.run_finest(&readings(), stop)
     })?;
     let mut columns = vec![
         Column::new("body"),

@@ -102,6 +102,12 @@ impl Case {
         finest * (1e9 * self.end) as u64
     }
 
+    /// What is found on the finest of the meshes that are estimated.
+    pub(super) fn run_finest(&self, choices: &[Options], observer: &mut dyn Observer) -> Result<Found, ReproduceError> {
+        let finest = self.run(choices, observer)?.into_iter().flatten().next_back();
+        finest.ok_or_else(|| ReproduceError::Unexpected(format!("no run: {}", self.name())))
+    }
+
     /// Estimates on each mesh, then compares with the references. A mesh that is not wanted, or on which the body starts
     /// too near to the plane, is left out: `None`.
     pub(in super::super) fn run(
