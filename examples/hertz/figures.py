@@ -72,7 +72,7 @@ def _contact(done: Study) -> Figure:
 def _error(done: Study) -> Figure:
     """The constitutive relation error over time in all readings, and where the default sees it."""
     figure, (over_time, near) = plt.subplots(1, 2, figsize=(9.0, 3.3), layout="constrained", width_ratios=(1, 1.2))
-    for name, colour in (("paper", SLOW), ("sharp", SHARP), ("whole", FE)):
+    for name, colour in (("published", SLOW), ("consistent", SHARP), ("corrected", FE)):
         over = done.estimates[name].over_time
         time = (over.time - FLIGHT) * 1e6
         over_time.plot(time, np.sqrt(over.total), color=colour, label=f"{name}, error √η")
@@ -82,7 +82,7 @@ def _error(done: Study) -> Figure:
     over_time.set_ylim(0.03, 100.0)
     over_time.set_xlim(left=0.0)
     over_time.legend(loc="lower right", ncols=2, fontsize="small")
-    done.estimates["whole"].plot_map(axes=near)
+    done.estimates["corrected"].plot_map(axes=near)
     near.set_xlim(-1.5, 1.5)
     near.set_ylim(-10.1, -8.6)
     near.set_title("whole, near the contact")

@@ -21,7 +21,7 @@ DISC = Cylinder(radius=0.01, young=70e9, poisson=0.3, density=2700.0)
 SPEED = 30.0
 """m/s: at the peak, b is a tenth of the radius and spans fifteen edges."""
 SPEEDS = (3.75, 7.5, 15.0, 30.0, 60.0)
-READINGS = ("paper", "sharp", "whole")
+READINGS = ("published", "consistent", "corrected")
 CUT = 6.0
 """Vibrations up to about this frequency (c/R): their waves, about R long, are long against b, so that the force acts at a point."""
 
@@ -55,7 +55,7 @@ def study(every: int = 1) -> Study:
         "cut in four, half the speed": simulate(DISC, fine, SPEED / 2, end)[0],
         "cut in four, twice the speed": simulate(DISC, fine, SPEED * 2, end)[0],
     }
-    estimates = {name: pc.estimate(history, contact_force=name, every=every) for name in READINGS}
+    estimates = {name: pc.estimate(history, reconstruction=name, every=every) for name in READINGS}
     return Study(main, history, speeds, variants, estimates)
 
 

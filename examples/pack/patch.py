@@ -12,10 +12,10 @@ from pack import HERE, compare
 def main() -> None:
     """Compare stresses and estimates."""
     history = pc.run(HERE / "patch.toml").history
-    for contact_force in (None, "paper"):
+    for reconstruction in (None, "published"):
         for acceleration in ("closest", "rigid", "weak"):
-            estimate = pc.estimate(history, contact_force=contact_force, acceleration=acceleration)
-            name = contact_force or "the default"
+            estimate = pc.estimate(history, reconstruction=reconstruction, acceleration=acceleration)
+            name = reconstruction or "the default"
             compare(f"relative error, {name}, {acceleration}", 0.0, [estimate.relative_sup])
     estimate = pc.run(HERE / "patch_contact.toml")
     density = estimate.contact.density

@@ -56,10 +56,10 @@ def wrong(name: str, value: object, allowed: str) -> InputError:
     return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
 
 
-def warn(doubts: Iterable[str]) -> None:
+def warn(plausibility_warnings: Iterable[str]) -> None:
     """Warn of what is doubtful at the line that called the function which calls this one."""
-    for doubt in doubts:
-        warnings.warn(doubt, InputWarning, stacklevel=3)
+    for plausibility_warning in plausibility_warnings:
+        warnings.warn(plausibility_warning, InputWarning, stacklevel=3)
 
 
 def instance(name: str, value: object, kind: type[T]) -> T:

@@ -55,4 +55,4 @@ class EstimateError(PercuteError, RuntimeError):
 
 
 class MeshWarning(UserWarning):
-    """Something was noticed, and left out, when a mesh was read; the message says what and why."""
+    """Something was reported, and left out, when a mesh was read; the message says what and why."""

@@ -123,8 +123,8 @@ class Estimate:
     @property
     def meaning(self) -> str:
         """What the error means and what it does not, and how far from the true error it was in tests."""
-        contact_force, _, _ = self._data.options()
-        return _percute.meaning(contact_force)
+        reconstruction, _, _ = self._data.options()
+        return _percute.meaning(reconstruction)
 
     @property
     def kept_impulse(self) -> float | None:
@@ -175,9 +175,9 @@ class Estimate:
 
     @property
     def options(self) -> Mapping[str, str | int]:
-        """The choices ``contact_force``, ``acceleration`` and ``every`` it was made with."""
-        contact_force, acceleration, every = self._data.options()
-        return MappingProxyType({"contact_force": contact_force, "acceleration": acceleration, "every": every})
+        """The choices ``reconstruction``, ``acceleration`` and ``every`` it was made with."""
+        reconstruction, acceleration, every = self._data.options()
+        return MappingProxyType({"reconstruction": reconstruction, "acceleration": acceleration, "every": every})
 
     def worst_elements(self, n: int = 5) -> list[WorstElement]:
         """Give the ``n`` elements that contribute most, largest first."""
@@ -312,7 +312,7 @@ def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:
 def estimate(
     history: History,
     *,
-    contact_force: Literal["whole", "sharp", "paper"] | None = None,
+    reconstruction: Literal["corrected", "consistent", "published"] | None = None,
     acceleration: Literal["closest", "rigid", "weak"] | None = None,
     every: int | None = None,
     threads: int | None = None,
@@ -327,10 +327,10 @@ def estimate(
     ----------
     history : History
         The steps; at least two instants.
-    contact_force : {"whole", "sharp", "paper"}, optional
+    reconstruction : {"corrected", "consistent", "published"}, optional
         How reactions become admissible contact forces: all of them, those before contact included; on the edges that touch
         throughout a step, statically equivalent; or by the paper's construction, eq. [45] to [50]. By default what the
-        history's file or case states, else "whole".
+        history's file or case states, else "corrected".
     acceleration : {"closest", "rigid", "weak"}, optional
         The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion, or
         the linear one that does the lumped work. By default as stated, else "closest".
@@ -360,7 +360,7 @@ def estimate(
     """
     stated = instance("history", history, History)._data.options()
     options = (
-        stated[0] if contact_force is None else text("contact_force", contact_force),
+        stated[0] if reconstruction is None else text("reconstruction", reconstruction),
         stated[1] if acceleration is None else text("acceleration", acceleration),
         stated[2] if every is None else whole("every", every),
     )

@@ -97,11 +97,11 @@ def run(
     with shown(progress) as tell, history_of_the_exception():
         name, content, source = _read(case)
         read = _percute.CaseData(name, content, os.path.dirname(source or ""))
-        tell_of_mesh(read.notices())
+        tell_of_mesh(read.import_warnings())
         asked = read.outputs(source, told, replace)
         # The working directory may change in a callback.
         file, report = absolute(asked["history"]), absolute(asked["estimate"])
-        warn(read.doubts(file is None))
+        warn(read.plausibility_warnings(file is None))
         # Maps are what an estimate file is for; nobody else asked for them.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         history = History._of(_percute.simulate_case(read, file, replace, tell), name=name)

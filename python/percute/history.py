@@ -317,7 +317,7 @@ def simulate(
     times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
     file = None if store is None else file_name("store", store)
     replace = flag("overwrite", overwrite)
-    warn(_percute.doubts(problem._data, times, file is None))
+    warn(_percute.plausibility_warnings(problem._data, times, file is None))
     with shown(progress) as tell, history_of_the_exception(problem):
         data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))

@@ -149,10 +149,10 @@ class Mesh:
         file, factor = file_name("path", path), number("scale", scale)
         if is_gmsh(file):
             mesh = cls._of(_percute.MeshData.read(file, factor))
-            notices = mesh._data.notices()
+            import_warnings = mesh._data.import_warnings()
         else:
-            mesh, notices = read_foreign(cls, file, factor)
-        tell_of_mesh(notices)
+            mesh, import_warnings = read_foreign(cls, file, factor)
+        tell_of_mesh(import_warnings)
         return mesh
 
     def write(
@@ -225,9 +225,9 @@ class Mesh:
         return self._data.size
 
     @property
-    def mended_elements(self) -> int:
+    def reoriented_elements(self) -> int:
         """How many elements were given with the wrong orientation and turned round."""
-        return self._data.mended_elements
+        return self._data.reoriented_elements
 
     def __repr__(self) -> str:
         kind = "bars" if self.dimension == 1 else "triangles"

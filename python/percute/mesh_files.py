@@ -58,7 +58,7 @@ def is_gmsh(file: str) -> bool:
 
 
 def tell_of_mesh(messages: Iterable[str]) -> None:
-    """Warn whoever called the caller of what was noticed when a mesh was read."""
+    """Warn whoever called the caller of what was reported when a mesh was read."""
     for message in messages:
         warnings.warn(message, MeshWarning, stacklevel=3)
 
@@ -94,8 +94,8 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
     except InputError as error:
         raise FileFormatError(f"{name}: {error}") from None
     if scale == 1 and mesh.size > LARGE:
-        reader.notices.append(f"the mesh is {mesh.size:.3f} m large, corner to corner: if in millimetres, give `scale` = 1e-3")
-    return mesh, reader.notices
+        reader.import_warnings.append(f"the mesh is {mesh.size:.3f} m large, corner to corner: if in millimetres, give `scale` = 1e-3")
+    return mesh, reader.import_warnings
 
 
 def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "") -> Any:
@@ -118,7 +118,7 @@ class _Reader:
 
     def __init__(self, name: str, found: Any) -> None:
         self.name = name
-        self.notices: list[str] = []
+        self.import_warnings: list[str] = []
         self.points = np.asarray(found.points, dtype=np.float64)
         self.blocks = [(block.type, np.asarray(block.data)) for block in found.cells]
         for kind, data in self.blocks:
@@ -157,7 +157,7 @@ class _Reader:
         if len(used) < len(points):
             count = len(points) - len(used)
             nodes = "1 node" if count == 1 else f"{count} nodes"
-            self.notices.append(f"{nodes} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
+            self.import_warnings.append(f"{nodes} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
         return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
 
     def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -186,7 +186,7 @@ class _Reader:
             inner = int(np.count_nonzero(of[chosen] > 1))
             if inner:
                 edges = "1 edge lies" if inner == 1 else f"{inner} edges lie"
-                self.notices.append(f"group {name!r}: {edges} inside the body, left out: groups name parts of its boundary")
+                self.import_warnings.append(f"group {name!r}: {edges} inside the body, left out: groups name parts of its boundary")
             groups[name] = numbers[facets[chosen][of[chosen] == 1]]
         return groups
 

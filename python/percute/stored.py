@@ -80,7 +80,7 @@ class StoredEstimate:
         self._parts = [report.number("parts", name) for name in PARTS]
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
         self._given = [report.of(bool, "given", name) for name in ("velocity", "acceleration")]
-        self._options = [report.of(str, "options", name) for name in ("contact_force", "acceleration")]
+        self._options = [report.of(str, "options", name) for name in ("reconstruction", "acceleration")]
         self._every: int = report.of(int, "options", "every")
 
     @cached_property
@@ -116,8 +116,8 @@ class StoredEstimate:
 
     def options(self) -> tuple[str, str, int]:
         """The choices it was made with."""
-        contact_force, acceleration = self._options
-        return contact_force, acceleration, self._every
+        reconstruction, acceleration = self._options
+        return reconstruction, acceleration, self._every
 
     def worst_elements(self, count: int) -> list[tuple[int, float]]:
         """The elements that contribute most, largest first; of equal ones the one with the lower number."""

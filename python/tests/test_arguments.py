@@ -170,7 +170,7 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.run, "window", (*NO_WHOLES, 0)),
     (Calls.run, "progress", NO_PROGRESS),
     (Calls.estimate, "history", (None, 3, "x")),
-    (Calls.estimate, "contact_force", (*NO_TEXTS, "", "blunt")),
+    (Calls.estimate, "reconstruction", (*NO_TEXTS, "", "blunt")),
     (Calls.estimate, "acceleration", (*NO_TEXTS, "", "blunt")),
     (Calls.estimate, "every", (*NO_WHOLES, 0)),
     (Calls.estimate, "threads", (*NO_WHOLES, 0, 1025, 20000)),

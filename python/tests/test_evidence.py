@@ -49,7 +49,7 @@ def test_its_numbers_are_those_of_an_estimate(page: Path) -> None:
         row: dict[str, Any] = dict(zip(names, values, strict=True))
         if row["mesh"] != "5×4":
             continue
-        estimate = pc.estimate(history, contact_force=row["contact force"], acceleration=row["Γ_DA"])
+        estimate = pc.estimate(history, reconstruction=row["contact force"], acceleration=row["Γ_DA"])
         # The plane's place and T are products in another order: rounding of the last digits.
         assert estimate.sup == pytest.approx(row["e_sup"], rel=1e-9)
         assert estimate.mean == pytest.approx(row["e_mean"], rel=1e-9)

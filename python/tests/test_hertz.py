@@ -45,7 +45,7 @@ def test_the_mesh_is_what_the_study_needs(study: Any, hertz: Any) -> None:
     assert study.main.hertz_half_width.max() > 15 * study.main.edge
 
 
-@pytest.mark.parametrize("reading", ["paper", "sharp", "whole"])
+@pytest.mark.parametrize("reading", ["published", "consistent", "corrected"])
 def test_all_readings_are_admissible(reading: str, study: Any) -> None:
     residuals = study.estimates[reading].residuals
     assert len(residuals) == 13
@@ -53,8 +53,8 @@ def test_all_readings_are_admissible(reading: str, study: Any) -> None:
 
 
 def test_readings_differ_by_the_impulse_that_they_keep(study: Any) -> None:
-    """`paper` loses the forces at the ends of a contact that moves; an ellipse over fifteen edges has about 2 % of its force there."""
-    paper, sharp, whole = (study.estimates[name] for name in ("paper", "sharp", "whole"))
+    """`published` loses the forces at the ends of a contact that moves; an ellipse over fifteen edges has about 2 % of its force there."""
+    paper, sharp, whole = (study.estimates[name] for name in ("published", "consistent", "corrected"))
     # All reactions are in the cone: nothing is cut off, and the sums of steps are the same but for rounding.
     assert abs(whole.kept_impulse - 1.0) < 1e-12
     assert abs(sharp.kept_impulse - 1.0) < 0.005
@@ -193,4 +193,4 @@ def test_figures(study: Any, hertz: Any, tmp_path: Path) -> None:
         assert f"](hertz-{name}.png)" in (ROOT / "docs" / "hertz.md").read_text()
         assert (tmp_path / f"hertz-{name}.png").stat().st_size < 150_000
         assert plt.imread(tmp_path / f"hertz-{name}.png").std() > 0.05
-    assert isinstance(study.estimates["whole"], pc.Estimate)
+    assert isinstance(study.estimates["corrected"], pc.Estimate)

@@ -179,7 +179,7 @@ def test_what_meshlane_finds_is_checked(tmp_path: Path) -> None:
     assert "1 node of the mesh file left out" in told[0] and "group '3': 1 edge lies inside" in told[1]
     assert {name: all_.tolist() for name, all_ in mesh.elements.items()} == {"5": [0], "6": [1]}
     assert {name: all_.tolist() for name, all_ in mesh.groups.items()} == {"2": [[0, 1]], "3": []}
-    assert mesh.mended_elements == 1
+    assert mesh.reoriented_elements == 1
     for points, cells, phrase in [
         (places[:4], [("quad", np.array([[0, 1, 2, 3]]))], "'quad'; percute takes 3-node triangles"),
         (places[:4], [("vertex", np.array([[0]]))], "neither triangles nor lines"),

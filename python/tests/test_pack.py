@@ -35,7 +35,7 @@ def test_every_script_has_its_lines_and_every_case_its_script() -> None:
 @pytest.mark.parametrize("name", LINES)
 def test_script(name: str) -> None:
     done = subprocess.run([sys.executable, PACK / f"{name}.py"], capture_output=True, text=True, check=True)
-    # A doubt about the case, or a warning of any kind, would stand here.
+    # A plausibility_warning about the case, or a warning of any kind, would stand here.
     assert done.stderr == ""
     printed = re.findall(r"^(.*?) +exact .* apart +(\S+) +order +(\S+)$", done.stdout, flags=re.MULTILINE)
     assert len(printed) == len(LINES[name]), done.stdout

@@ -47,7 +47,7 @@ def test_a_pickled_history_is_the_same(block_history: pc.History, tmp_path: Path
 
 @pytest.mark.parametrize("fields", [False, True])
 def test_a_pickled_estimate_is_the_same(fields: bool, block_history: pc.History) -> None:
-    estimate = pc.estimate(block_history, contact_force="paper", every=2, instants=3, fields=fields)
+    estimate = pc.estimate(block_history, reconstruction="published", every=2, instants=3, fields=fields)
     again = pickle.loads(pickle.dumps(estimate))
     assert again.history is None and again._measures == estimate._measures
     assert (again.parts, again.options, again.given) == (estimate.parts, estimate.options, estimate.given)

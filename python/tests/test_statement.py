@@ -59,7 +59,7 @@ def test_a_mesh_tells_what_it_is() -> None:
     assert mesh.dimension == 2 and mesh.size == pytest.approx(0.02 * 2**0.5)
     assert mesh.groups["top"].tolist() == [[6, 7], [7, 8]] and mesh.elements["low"].tolist() == [0, 1, 2, 3]
     turned = pc.Mesh([0.0, 0.5, 1.0], [[1, 0], [1, 2]], {"end": [2]})
-    assert (turned.dimension, turned.mended_elements, turned.cells.tolist()) == (1, 1, [[0, 1], [1, 2]])
+    assert (turned.dimension, turned.reoriented_elements, turned.cells.tolist()) == (1, 1, [[0, 1], [1, 2]])
     assert repr(turned) == "<percute.Mesh: 2 bars, 3 nodes>"
 
 
@@ -156,7 +156,7 @@ def test_mistakes_in_time(arguments: dict[str, Any], message: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"contact_force": "blunt"}, '`contact_force`: "blunt" is not known; choose one of whole, sharp, paper'),
+        ({"reconstruction": "blunt"}, '`reconstruction`: "blunt" is not known; choose one of corrected, consistent, published'),
         ({"acceleration": "none"}, "`acceleration`"),
         ({"every": 0}, "`every` is 0; it must be at least 1"),
         ({"threads": 1.5}, "`threads` is 1.5"),

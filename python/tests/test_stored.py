@@ -107,7 +107,7 @@ KEYS = [
     ("kept_impulse",),
     ("residuals",),
     ("given", "velocity"),
-    ("options", "contact_force"),
+    ("options", "reconstruction"),
     ("options", "every"),
 ]
 
@@ -143,19 +143,19 @@ def test_a_number_that_json_cannot_have(good: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("reading", "says"), [("whole", "In tests"), ("sharp", "With `sharp` it may lie far off"), ("of tomorrow", "contact together.")]
+    ("reading", "says"), [("corrected", "In tests"), ("consistent", "With `consistent` it may lie far off"), ("of tomorrow", "contact together.")]
 )
 def test_a_report_of_another_version(reading: str, says: str, good: Path, tmp_path: Path) -> None:
     """Older ones do not say what their number means, newer ones may have a reading of which nothing is known here."""
 
     def report(text: bytes) -> np.bytes_:
         document = json.loads(text)
-        document["options"]["contact_force"] = reading
+        document["options"]["reconstruction"] = reading
         del document["meaning"]
         return np.bytes_(json.dumps(document).encode())
 
     estimate = pc.open(changed(good, tmp_path, replaced(REPORT, report)))
-    assert isinstance(estimate, pc.Estimate) and estimate.options["contact_force"] == reading
+    assert isinstance(estimate, pc.Estimate) and estimate.options["reconstruction"] == reading
     assert says in estimate.meaning and estimate.meaning.endswith(".")
 
 

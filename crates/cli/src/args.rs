@@ -2,7 +2,7 @@
 
 use crate::case::{Instants, hint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use percute_estimator::{Acceleration, ContactForce, MOST_THREADS, UnknownName};
+use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, UnknownName};
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -102,8 +102,8 @@ pub struct EstimateArguments {
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// How contact reactions are read [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<ContactForce>, help = named("How contact reactions are read", ContactForce::ALL))]
-    pub contact_force: Option<ContactForce>,
+    #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>, help = named("How contact reactions are read", Reconstruction::ALL))]
+    pub reconstruction: Option<Reconstruction>,
     /// Choice of the admissible acceleration [default: as stored in the history]
     #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>, help = named("Choice of the admissible acceleration", Acceleration::ALL))]
     pub acceleration: Option<Acceleration>,

@@ -13,7 +13,7 @@ use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimator, Options};
+use percute_estimator::{Estimator, Options, Reconstruction};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -109,9 +109,9 @@ fn integrator(problem: &TriangleProblem, dt: f64, count: u64) -> Duration {
 }
 
 /// Simulation and estimate, every = 1, on one thread.
-fn estimate(problem: &TriangleProblem, dt: f64, count: u64, contact_force: ContactForce) -> Duration {
+fn estimate(problem: &TriangleProblem, dt: f64, count: u64, reconstruction: Reconstruction) -> Duration {
     let times = steps(dt, count);
-    let options = Options { contact_force, threads: Some(1), ..Options::default() };
+    let options = Options { reconstruction, threads: Some(1), ..Options::default() };
     let estimator = Estimator::new(problem, &times, options).expect("valid options");
     let mut sink = Timed { inner: estimator, first: None };
     simulate(problem, &times, &mut sink, &mut Unobserved).expect("a stable run");
@@ -144,7 +144,7 @@ fn throughput(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("integrator", elements), |b| {
             b.iter_custom(|count| integrator(&problem, dt, count));
         });
-        for &reading in ContactForce::ALL {
+        for &reading in Reconstruction::ALL {
             group.bench_function(BenchmarkId::new(format!("integrator and estimate, {reading}"), elements), |b| {
                 // Full windows of steps: the maps of the elements are made once for each.
                 b.iter_custom(|count| estimate(&problem, dt, STEPS * count, reading) / STEPS as u32);

@@ -81,13 +81,13 @@ pub enum EstimateError {
         /// The smallest gap that will do (m).
         smallest_gap: f64,
     },
-    /// The companion of the reading `whole` moves ever faster than the simulation.
+    /// The auxiliary solution of the reading `corrected` moves ever faster than the simulation.
     #[error(
-        "the companion solution of the reading `whole` became unstable at step {step}, t = {time:.6e} s: it takes the history's steps \
+        "the auxiliary solution of the reading `corrected` became unstable at step {step}, t = {time:.6e} s: it takes the history's steps \
          by central differences, and they are too long for that (the longest is {longest_step:.4e} s); \
-         estimate this history with contact_force = \"sharp\", or store shorter steps"
+         estimate this history with reconstruction = \"consistent\", or store shorter steps"
     )]
-    Companion {
+    AuxiliarySolution {
         /// The step.
         step: usize,
         /// Its time (s).

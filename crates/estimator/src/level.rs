@@ -61,7 +61,7 @@ impl<const D: usize> Level<D> {
             force: Vec::new(),
             body_force: Vec::new(),
             load_moments: Vec::new(),
-            surface: SurfaceStep { reaction: Vec::new(), pressing: Vec::new(), touching: Vec::new() },
+            surface: SurfaceStep { reaction: Vec::new(), smoothed_reaction: Vec::new(), touching: Vec::new() },
             acceleration: Vec::new(),
             acceleration_before: Vec::new(),
             density_before: none.clone(),

@@ -7,7 +7,7 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur en
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
-mod companion;
+mod auxiliary;
 mod contact_force;
 mod element;
 mod error;
@@ -30,7 +30,7 @@ mod traction;
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use map::{AdmissibleFields, ElementMap};
-pub use options::{Ablation, Acceleration, ContactForce, MOST_THREADS, Options, UnknownName};
+pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName};
 pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};

@@ -9,18 +9,18 @@ pub const MOST_THREADS: usize = 1024;
 
 /// The reading of the contact force, and what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ContactForce {
+pub enum Reconstruction {
     /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
-    /// normal contact law measured where they act off contact; the balance of a companion solution with less
+    /// normal contact law measured where they act off contact; the balance of a auxiliary solution with less
     /// dispersion; tractions of least energy.
     #[default]
-    Whole,
+    Corrected,
     /// On each interval, on the edges that touch throughout it, statically equivalent to the
     /// reactions: force starts with contact.
-    Sharp,
+    Consistent,
     /// The paper's: reaction over tributary length, from one step after impact to one step before
     /// release and away from the border of the contact zone (eq. \[45\]–\[50\]).
-    Paper,
+    Published,
 }
 
 /// Which field Γ_DA balances the equilibrated tractions of an element.
@@ -35,7 +35,7 @@ pub enum Acceleration {
     Weak,
 }
 
-/// What the reading [`ContactForce::Whole`] is without one of its parts, or with another: no choice for an estimate, but
+/// What the reading [`Reconstruction::Corrected`] is without one of its parts, or with another: no choice for an estimate, but
 /// the evidence of what each part is for. The other readings have none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ablation {
@@ -44,11 +44,11 @@ pub enum Ablation {
     None,
     /// The balance of the simulation's own displacements, with accelerations that take up what the nodal forces of the
     /// density and the reactions differ by.
-    Companion,
-    /// A companion with the dispersion of the simulation.
+    AuxiliarySolution,
+    /// A auxiliary solution with the dispersion of the simulation.
     Correction,
     /// Reactions as they are, however short the step in which they stop a node.
-    Stopping,
+    ImpulseSmoothing,
     /// Densities R_k/ℓ_k as they are, whose moment is not that of the reactions.
     Moment,
     /// The tractions of the star problems.
@@ -63,7 +63,7 @@ pub enum Ablation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Reading of the contact force.
-    pub contact_force: ContactForce,
+    pub reconstruction: Reconstruction,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
     /// For evidence only.
@@ -81,7 +81,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            contact_force: ContactForce::default(),
+            reconstruction: Reconstruction::default(),
             acceleration: Acceleration::default(),
             ablation: Ablation::default(),
             every: 1,
@@ -130,7 +130,7 @@ macro_rules! named {
     };
 }
 
-named!(ContactForce: Whole = "whole", Sharp = "sharp", Paper = "paper");
+named!(Reconstruction: Corrected = "corrected", Consistent = "consistent", Published = "published");
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]
@@ -142,9 +142,9 @@ mod tests {
         for &choice in Acceleration::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        for &choice in ContactForce::ALL {
+        for &choice in Reconstruction::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        assert_eq!("blunt".parse::<ContactForce>().unwrap_err().known, ["whole", "sharp", "paper"]);
+        assert_eq!("blunt".parse::<Reconstruction>().unwrap_err().known, ["corrected", "consistent", "published"]);
     }
 }

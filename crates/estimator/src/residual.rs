@@ -16,7 +16,7 @@ pub struct Residuals {
     /// u_CA = u_d on supports, eq. \[4\].
     pub supports: f64,
     /// u_CA on the plane when a contact phase begins (problem P_CA).
-    pub rendezvous: f64,
+    pub onset: f64,
     /// Normal velocity during contact, eq. \[42\].
     pub normal_velocity: f64,
     /// Penetration at the knots, eq. \[3\].
@@ -46,7 +46,7 @@ impl Residuals {
         [
             ("initial_conditions", self.initial_conditions),
             ("supports", self.supports),
-            ("rendezvous", self.rendezvous),
+            ("onset", self.onset),
             ("normal_velocity", self.normal_velocity),
             ("penetration_at_knots", self.penetration_at_knots),
             ("penetration_between_knots", self.penetration_between_knots),
@@ -65,7 +65,7 @@ impl Residuals {
         let fields = [
             (&mut self.initial_conditions, other.initial_conditions),
             (&mut self.supports, other.supports),
-            (&mut self.rendezvous, other.rendezvous),
+            (&mut self.onset, other.onset),
             (&mut self.normal_velocity, other.normal_velocity),
             (&mut self.penetration_at_knots, other.penetration_at_knots),
             (&mut self.penetration_between_knots, other.penetration_between_knots),

@@ -15,7 +15,7 @@ use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder};
-use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
+use percute_estimator::{ErrorMeasures, Estimator, Options, Reconstruction};
 
 /// Gap (m) and the least T (s): a run takes steps of exactly 0.9 Δt_c and ends with the first at or
 /// past it. (13 µs in equal, slightly shorter steps would give 1.74 instead of 1.80 for the first.)
@@ -28,9 +28,9 @@ const STEPS: [usize; 4] = [12, 23, 45, 89];
 type Row = [f64; 4];
 /// e_sup/e_ref and e_mean/e_ref of a computation independent of this program: plane stress,
 /// μ = 0.2, v = (400, −400) m/s, against 160×128 cells, Γ_DA `closest`.
-const INDEPENDENT: [(ContactForce, Row, Row); 2] = [
-    (ContactForce::Sharp, [1.50, 1.26, 1.18, 1.16], [1.51, 1.26, 1.20, 1.23]),
-    (ContactForce::Paper, [1.80, 1.78, 2.02, 2.52], [1.83, 1.65, 1.78, 2.08]),
+const INDEPENDENT: [(Reconstruction, Row, Row); 2] = [
+    (Reconstruction::Consistent, [1.50, 1.26, 1.18, 1.16], [1.51, 1.26, 1.20, 1.23]),
+    (Reconstruction::Published, [1.80, 1.78, 2.02, 2.52], [1.83, 1.65, 1.78, 2.08]),
 ];
 
 /// Steps of exactly 0.9 Δt_c that reach an instant.
@@ -43,7 +43,7 @@ fn grid(problem: &TriangleProblem, reach: f64) -> TimeGrid {
 /// Motion and estimates of one run, in the order of [`INDEPENDENT`].
 fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [ErrorMeasures; 2]) {
     let estimator = |which: usize| {
-        let options = Options { contact_force: INDEPENDENT[which].0, ..Options::default() };
+        let options = Options { reconstruction: INDEPENDENT[which].0, ..Options::default() };
         Estimator::new(problem, times, options).unwrap()
     };
     let mut sink = (Recorder::new(problem, times), (estimator(0), estimator(1)));

@@ -9,10 +9,10 @@ use common::{MESHES, assert_close, block};
 use percute_core::dynamics::critical_time_step;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Options, Request};
+use percute_estimator::{Options, Reconstruction, Request};
 
 /// Number of steps, e_sup and e_mean (J^½ per metre of thickness): from a computation independent of
-/// this program, with the forces `paper`, Γ_DA `closest`, plane stress, a gap of 1.3 Δt|v_y| and
+/// this program, with the forces `published`, Γ_DA `closest`, plane stress, a gap of 1.3 Δt|v_y| and
 /// steps of exactly 0.9 Δt_c, the first number past 12 µs. (The paper itself gives 499, 396,
 /// 346, 312 and 394, 313, 260, 228, but neither gap, nor T, nor plane hypothesis.)
 const INDEPENDENT: [(usize, f64, f64); 4] =
@@ -26,7 +26,7 @@ fn the_eight_absolute_errors() {
         assert!(before <= 12e-6 && end > 12e-6, "{steps} steps of {step} s are not the first past 12 µs");
         let problem = block(cells, 1.3 * step * 400.0);
         let times = TimeGrid::uniform(end, steps).unwrap();
-        let options = Options { contact_force: ContactForce::Paper, ..Options::default() };
+        let options = Options { reconstruction: Reconstruction::Published, ..Options::default() };
         let (_, estimate) =
             percute_estimator::run(&problem, &times, options, &Request::default(), &mut Unobserved).unwrap();
         // The values are rounded to 1 J^½, 0.25 % of the smallest; 1 % leaves room for the

@@ -29,13 +29,16 @@ impl CaseData {
     }
 
     /// What is doubtful about it; with `in_memory`, its history is kept in memory.
-    fn doubts(&self, in_memory: bool) -> Vec<String> {
-        each!(&self.case, case => case.doubts(in_memory)).into_iter().map(|doubt| doubt.message).collect()
+    fn plausibility_warnings(&self, in_memory: bool) -> Vec<String> {
+        each!(&self.case, case => case.plausibility_warnings(in_memory))
+            .into_iter()
+            .map(|plausibility_warning| plausibility_warning.message)
+            .collect()
     }
 
-    /// What was noticed when its mesh was read.
-    fn notices(&self) -> Vec<String> {
-        each!(&self.case, case => case.problem.mesh().notices().iter().map(|notice| notice.message.clone()).collect())
+    /// What was reported when its mesh was read.
+    fn import_warnings(&self) -> Vec<String> {
+        each!(&self.case, case => case.problem.mesh().import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
     }
 
     /// The files of a run, checked before any work: the history in `store` or as the case says, and the estimate,

@@ -85,7 +85,7 @@ impl From<Wanted> for Instants {
 pub(crate) fn estimate(
     py: Python<'_>,
     history: &HistoryData,
-    contact_force: &str,
+    reconstruction: &str,
     acceleration: &str,
     every: usize,
     threads: Option<usize>,
@@ -94,7 +94,7 @@ pub(crate) fn estimate(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
-    let options = Options { threads, window, ..options(py, contact_force, acceleration, every)? };
+    let options = Options { threads, window, ..options(py, reconstruction, acceleration, every)? };
     let instants = instants.map(Instants::from);
     Ok(EstimateData {
         made: match &history.run {
@@ -106,19 +106,19 @@ pub(crate) fn estimate(
 
 /// What the error means with a reading, by its name; a file may have one that this version does not know.
 #[pyfunction]
-pub(crate) fn meaning(contact_force: &str) -> String {
-    percute::report::meaning(contact_force.parse().ok())
+pub(crate) fn meaning(reconstruction: &str) -> String {
+    percute::report::meaning(reconstruction.parse().ok())
 }
 
 /// Options of an estimate by their names.
-pub(crate) fn options(py: Python<'_>, contact_force: &str, acceleration: &str, every: usize) -> PyResult<Options> {
+pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, every: usize) -> PyResult<Options> {
     let unknown = |name: &str, error: UnknownName| {
         let hint = hint(&error.given, error.known.iter().copied());
         errors::input(py, &format!("`{name}`: {error}{hint}"))
     };
-    let contact_force = contact_force.parse().map_err(|error| unknown("contact_force", error))?;
+    let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
     let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
-    Ok(Options { contact_force, acceleration, every, ..Options::default() })
+    Ok(Options { reconstruction, acceleration, every, ..Options::default() })
 }
 
 fn estimate_one<const D: usize, const N: usize>(
@@ -275,7 +275,7 @@ impl EstimateData {
     /// Names of the method's choices, and the samples taken.
     fn options(&self) -> (String, String, usize) {
         let options = each!(&self.made, m => m.options);
-        (options.contact_force.to_string(), options.acceleration.to_string(), options.every)
+        (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
     }
 
     /// The elements that contribute most, largest first.

@@ -38,10 +38,10 @@ impl HistoryData {
         touching: PyReadonlyArray2<'_, bool>,
         options: (String, String, usize),
     ) -> PyResult<Self> {
-        let (contact_force, acceleration, every) = options;
+        let (reconstruction, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::time(py, &error))?;
         let given = Given {
-            options: estimate::options(py, &contact_force, &acceleration, every)?,
+            options: estimate::options(py, &reconstruction, &acceleration, every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: reaction.as_slice()?,
@@ -78,7 +78,7 @@ impl HistoryData {
     /// Arguments of `estimate` that it takes unless told otherwise.
     fn options(&self) -> (String, String, usize) {
         let options = each!(&self.run, run => run.options);
-        (options.contact_force.to_string(), options.acceleration.to_string(), options.every)
+        (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
     }
 
     /// Nodes of the rows of reactions and touching status.

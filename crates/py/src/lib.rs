@@ -43,7 +43,7 @@ mod _percute {
     #[pymodule_export]
     use super::reproduce::reproduce;
     #[pymodule_export]
-    use super::simulate::{doubts, open_history, simulate, simulate_case};
+    use super::simulate::{open_history, plausibility_warnings, simulate, simulate_case};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
 

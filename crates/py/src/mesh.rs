@@ -80,9 +80,9 @@ impl MeshData {
         written.map_err(|error| errors::gmsh(py, &error))
     }
 
-    /// What was noticed when it was read.
-    fn notices(&self) -> Vec<String> {
-        each!(&self.mesh, mesh => mesh.notices().iter().map(|notice| notice.message.clone()).collect())
+    /// What was reported when it was read.
+    fn import_warnings(&self) -> Vec<String> {
+        each!(&self.mesh, mesh => mesh.import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
     }
 
     #[getter]
@@ -135,8 +135,8 @@ impl MeshData {
     }
 
     #[getter]
-    fn mended_elements(&self) -> usize {
-        each!(&self.mesh, mesh => mesh.mended_elements())
+    fn reoriented_elements(&self) -> usize {
+        each!(&self.mesh, mesh => mesh.reoriented_elements())
     }
 }
 

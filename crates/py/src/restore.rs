@@ -79,10 +79,10 @@ pub(crate) fn restore<const D: usize, const N: usize>(
     problem: &Arc<Problem<D, N>>,
     state: &State<'_>,
 ) -> PyResult<Made<D, N>> {
-    let (contact_force, acceleration, every) = &state.options;
+    let (reconstruction, acceleration, every) = &state.options;
     let unknown = |error: percute_estimator::UnknownName| pyo3::exceptions::PyValueError::new_err(error.to_string());
     let options = Options {
-        contact_force: contact_force.parse().map_err(unknown)?,
+        reconstruction: reconstruction.parse().map_err(unknown)?,
         acceleration: acceleration.parse().map_err(unknown)?,
         every: *every,
         ..Options::default()
@@ -132,7 +132,7 @@ fn residuals(named: &HashMap<String, f64>) -> Residuals {
     Residuals {
         initial_conditions: of("initial_conditions"),
         supports: of("supports"),
-        rendezvous: of("rendezvous"),
+        onset: of("onset"),
         normal_velocity: of("normal_velocity"),
         penetration_at_knots: of("penetration_at_knots"),
         penetration_between_knots: of("penetration_between_knots"),

@@ -74,16 +74,22 @@ pub(crate) fn simulate_case(
 
 /// What is doubtful about a run; with `in_memory`, its history is kept in memory.
 #[pyfunction]
-pub(crate) fn doubts(py: Python<'_>, problem: &ProblemData, times: Times, in_memory: bool) -> PyResult<Vec<String>> {
+pub(crate) fn plausibility_warnings(
+    py: Python<'_>,
+    problem: &ProblemData,
+    times: Times,
+    in_memory: bool,
+) -> PyResult<Vec<String>> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let (doubts, needed, groups) = each!(&problem.problem, problem => {
+    let (plausibility_warnings, needed, groups) = each!(&problem.problem, problem => {
         let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
         let groups: Vec<_> = problem.statement().materials.iter().map(|(group, _)| group.clone()).collect();
-        (percute_core::problem::doubts(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups)
+        (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups)
     });
-    let told =
-        doubts.into_iter().map(|doubt| format!("`{}`: {}", errors::argument(doubt.place, &groups), doubt.message));
+    let told = plausibility_warnings.into_iter().map(|plausibility_warning| {
+        format!("`{}`: {}", errors::argument(plausibility_warning.place, &groups), plausibility_warning.message)
+    });
     let scarce = memory::scarce(needed, memory::available(), in_memory).map(|message| format!("`mesh`: {message}"));
     Ok(told.chain(scarce).collect())
 }

@@ -154,7 +154,7 @@ mod tests {
         }
         assert!(close(normals(&mesh, "bottom"), [0.0, -2.0]));
         assert!(close(normals(&image, "bottom"), [2.0, 0.0]));
-        assert_eq!((image.mended_elements(), image.cells()), (0, mesh.cells()));
+        assert_eq!((image.reoriented_elements(), image.cells()), (0, mesh.cells()));
         assert_eq!(image.element_groups(), mesh.element_groups());
     }
 
@@ -162,7 +162,7 @@ mod tests {
     fn a_mirror_image_needs_no_mending() {
         let mesh = grouped();
         let image = mirrored(&mesh).unwrap();
-        assert_eq!(image.mended_elements(), 0);
+        assert_eq!(image.reoriented_elements(), 0);
         assert!(close(normals(&mesh, "left"), [-1.0, 0.0]));
         assert!(close(normals(&image, "left"), [1.0, 0.0]));
         assert_eq!(mirrored(&image).unwrap().points(), mesh.points());
@@ -186,7 +186,7 @@ mod tests {
         let (image, new) = renumbered(&mesh, 4).unwrap();
         assert_ne!(new.node, (0..mesh.node_count()).collect::<Vec<_>>());
         assert_eq!(new.nodal(mesh.points()), image.points());
-        assert_eq!(image.mended_elements(), 0);
+        assert_eq!(image.reoriented_elements(), 0);
         for old in 0..mesh.element_count() {
             let mut expected: Vec<usize> = mesh.cells()[old].iter().map(|n| new.node[n.index()]).collect();
             let mut found: Vec<usize> = image.cells()[new.element[old]].iter().map(|n| n.index()).collect();
@@ -208,7 +208,7 @@ mod tests {
     fn bars_can_be_renumbered() {
         let mesh = BarMesh::uniform_bar(1.0, 7).unwrap();
         let (image, new) = renumbered(&mesh, 1).unwrap();
-        assert_eq!(image.mended_elements(), 0);
+        assert_eq!(image.reoriented_elements(), 0);
         let end = image.facets()[image.facet_groups()["end"][0].index()].nodes[0];
         assert_eq!((end, image.points()[end.index()]), (NodeId::new(new.node[7]), [1.0]));
     }

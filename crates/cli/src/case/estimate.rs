@@ -11,8 +11,8 @@ use std::str::FromStr;
 pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
     let mut options = Options::default();
     let Some(table) = root.single("estimate")? else { return Ok(options) };
-    table.only(&["contact_force", "acceleration", "every"])?;
-    options.contact_force = choice(&table, "contact_force")?.unwrap_or_default();
+    table.only(&["reconstruction", "acceleration", "every"])?;
+    options.reconstruction = choice(&table, "reconstruction")?.unwrap_or_default();
     options.acceleration = choice(&table, "acceleration")?.unwrap_or_default();
     if let Some(every) = table.get("every") {
         options.every = every.count(1)?;

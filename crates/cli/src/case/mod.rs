@@ -17,14 +17,13 @@
 //! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
 //!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
 //! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
-//! - `[estimate]`: `contact_force`, `acceleration`, `every`;
+//! - `[estimate]`: `reconstruction`, `acceleration`, `every`;
 //! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
 //!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields.
 //!
 //! The reader walks the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
-mod doubts;
 mod estimate;
 mod load;
 mod material;
@@ -32,6 +31,7 @@ mod mesh;
 mod obstacle;
 mod output;
 mod place;
+mod plausibility_warnings;
 mod problem;
 mod source;
 mod spelling;

@@ -5,7 +5,7 @@ use super::spelling::hint;
 use super::table::Table;
 use super::value::Value;
 use super::{load, material, obstacle, place, support};
-use percute_core::mesh::{Mesh, Notice};
+use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::{Builder, Cause, Initial, InputError, Problem};
 
 /// Reads all that makes the problem on a mesh.
@@ -13,7 +13,7 @@ pub(super) fn read<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
-    let notices = mesh.notices().to_vec();
+    let import_warnings = mesh.import_warnings().to_vec();
     let mut builder = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
@@ -24,7 +24,7 @@ pub(super) fn read<const D: usize, const N: usize>(
             builder = builder.initial_displacement(field(&value, "m")?);
         }
     }
-    builder.build().map_err(|error| located(root, &error, &notices))
+    builder.build().map_err(|error| located(root, &error, &import_warnings))
 }
 
 /// Reads materials, planes, supports and loads.
@@ -71,20 +71,20 @@ fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, Ca
 }
 
 /// An error of the core, at its place in the file.
-fn located(root: &Table<'_>, error: &InputError, notices: &[Notice]) -> CaseError {
+fn located(root: &Table<'_>, error: &InputError, import_warnings: &[ImportWarning]) -> CaseError {
     let mut message = error.cause.to_string();
     if let Cause::UnknownGroup { name, known, .. } = &error.cause {
         message += &hint(name, known.iter().map(String::as_str));
     }
     if let Cause::UnknownGroup { name, .. } | Cause::EmptyGroup { name, .. } = &error.cause {
-        let of_group = notices.iter().filter(|notice| notice.groups.contains(name));
-        of_group.for_each(|notice| message += &format!("; {}", notice.message));
+        let of_group = import_warnings.iter().filter(|import_warning| import_warning.groups.contains(name));
+        of_group.for_each(|import_warning| message += &format!("; {}", import_warning.message));
     }
     if error.place.table == "obstacle" && !matches!(error.cause, Cause::UnknownGroup { .. } | Cause::EmptyGroup { .. })
     {
         // Planes are stated in metres: a body read in millimetres reaches far beyond them.
-        let large = notices.iter().filter(|notice| notice.name == "large_mesh");
-        large.for_each(|notice| message += &format!("; {}", notice.message));
+        let large = import_warnings.iter().filter(|import_warning| import_warning.name == "large_mesh");
+        large.for_each(|import_warning| message += &format!("; {}", import_warning.message));
     }
     if let (Cause::UnknownGroup { name, .. }, true) = (&error.cause, in_file(root)) {
         let what = if matches!(error.place.table, "material" | "body_force") { "Surface" } else { "Curve" };

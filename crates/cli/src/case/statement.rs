@@ -65,7 +65,7 @@ pub fn statement<const D: usize, const N: usize>(
     stated.body_forces.iter().for_each(|one| body_force(&mut text, one));
     if let Some(options) = options {
         text.table("[estimate]");
-        text.key("contact_force", quoted(&options.contact_force.to_string()));
+        text.key("reconstruction", quoted(&options.reconstruction.to_string()));
         text.key("acceleration", quoted(&options.acceleration.to_string()));
         // Integers of TOML have 63 bits; no run has that many steps.
         text.key("every", i64::try_from(options.every).unwrap_or(i64::MAX).to_string());

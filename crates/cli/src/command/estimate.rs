@@ -65,7 +65,7 @@ where
 /// The options stored in the history, with those of the command line instead where there are any.
 fn options(stored: Options, arguments: &EstimateArguments) -> Options {
     Options {
-        contact_force: arguments.contact_force.unwrap_or(stored.contact_force),
+        reconstruction: arguments.reconstruction.unwrap_or(stored.reconstruction),
         acceleration: arguments.acceleration.unwrap_or(stored.acceleration),
         every: arguments.every.unwrap_or(stored.every),
         ..stored

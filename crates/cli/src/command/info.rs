@@ -6,7 +6,7 @@ use crate::case::{Case, CaseOf};
 use crate::failure::{DONE, Failure};
 use crate::history::{AnyStored, open};
 use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
-use crate::report::noticed;
+use crate::report::reported;
 use percute_io::{Kind, estimate_file, gmsh, kind};
 use std::path::Path;
 
@@ -56,7 +56,7 @@ fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
 
 /// A case, of which is told what is doubtful.
 fn doubted<const D: usize, const N: usize>(case: &CaseOf<D, N>, console: &mut Console<'_>) -> Result<Info, Failure> {
-    console.doubt(case, false);
-    console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());
+    console.plausibility_warning(case, false);
+    console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     Ok(of_case(case)?)
 }

@@ -82,10 +82,14 @@ impl Console<'_> {
     }
 
     /// Says what is doubtful about a case, and gives the names of it.
-    fn doubt<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
-        let doubts = if quiet { Vec::new() } else { case.doubts(false) };
-        self.warn(&doubts);
-        doubts.iter().map(|doubt| doubt.name).collect()
+    fn plausibility_warning<const D: usize, const N: usize>(
+        &mut self,
+        case: &CaseOf<D, N>,
+        quiet: bool,
+    ) -> Vec<&'static str> {
+        let plausibility_warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };
+        self.warn(&plausibility_warnings);
+        plausibility_warnings.iter().map(|plausibility_warning| plausibility_warning.name).collect()
     }
 
     /// Says warnings.

@@ -8,8 +8,8 @@ use crate::failure::{DONE, Failure, INTERRUPTED};
 use crate::outputs::{Output, check, chosen};
 use crate::progress::Watch;
 use crate::report::build::{balance_summary, problem_summary};
-use crate::report::noticed;
 use crate::report::number::{bytes, short, trimmed};
+use crate::report::reported;
 use crate::report::summary::{body, drift, energy, layout, step};
 use crate::run::simulate_only;
 use percute_core::dynamics::Simulation;
@@ -34,9 +34,9 @@ fn simulate<const D: usize, const N: usize>(
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(Output { what: "history", file: &named });
     check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
-    console.doubt(case, quiet);
+    console.plausibility_warning(case, quiet);
     if !quiet {
-        console.warn(&noticed(case.problem.mesh()).collect::<Vec<_>>());
+        console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     }
     let writer = begin_history(case, history, force, quiet, console)?;
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);

@@ -1,7 +1,7 @@
 //! What a mesh file holds.
 
 use crate::report::number::short;
-use crate::report::{FORMAT, Versions, Warning, noticed};
+use crate::report::{FORMAT, Versions, Warning, reported};
 use percute_core::mesh::Mesh;
 use percute_io::gmsh::MeshFile;
 use serde::Serialize;
@@ -17,7 +17,7 @@ pub struct MeshInfo {
     pub dimension: usize,
     pub nodes: usize,
     pub elements: usize,
-    pub mended_elements: usize,
+    pub reoriented_elements: usize,
     pub lower_corner: Vec<f64>,
     pub upper_corner: Vec<f64>,
     pub facet_groups: Vec<GroupInfo>,
@@ -54,12 +54,12 @@ fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshI
         dimension: D,
         nodes: mesh.node_count(),
         elements: mesh.element_count(),
-        mended_elements: mesh.mended_elements(),
+        reoriented_elements: mesh.reoriented_elements(),
         lower_corner: corner(f64::INFINITY, f64::min),
         upper_corner: corner(f64::NEG_INFINITY, f64::max),
         facet_groups: mesh.facet_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
         element_groups: mesh.element_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
-        warnings: noticed(mesh).collect(),
+        warnings: reported(mesh).collect(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! From the results of a run to its report.
 
-use super::warnings::{Facts, Warning, few_samples, noticed, warnings};
+use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
     ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
     ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement, meaning,
@@ -9,7 +9,7 @@ use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
-use percute_core::problem::doubts;
+use percute_core::problem::plausibility_warnings;
 use percute_estimator::{ErrorMeasures, Estimate, Options, Sample};
 
 /// How many elements the report names.
@@ -28,19 +28,28 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let mut doubts = doubts(subject.problem, times);
+        let mut plausibility_warnings = plausibility_warnings(subject.problem, times);
         // What was foreseen and did not come is no warning any more.
-        doubts.retain(|doubt| doubt.name != "never_touches" || estimate.kept_impulse.is_none());
+        plausibility_warnings.retain(|plausibility_warning| {
+            plausibility_warning.name != "never_touches" || estimate.kept_impulse.is_none()
+        });
         let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
         let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
-        let contact_force = options.contact_force;
-        let facts =
-            Facts { problem: &problem, doubts: &doubts, drift, interrupted, contact_force, kept_impulse, residual };
+        let reconstruction = options.reconstruction;
+        let facts = Facts {
+            problem: &problem,
+            plausibility_warnings: &plausibility_warnings,
+            drift,
+            interrupted,
+            reconstruction,
+            kept_impulse,
+            residual,
+        };
         let mut warnings = warnings(&facts);
         warnings.extend(
             few_samples(options.every, planned).map(|few| Warning { message: format!("every {}", few.message), ..few }),
         );
-        warnings.extend(noticed(subject.problem.mesh()));
+        warnings.extend(reported(subject.problem.mesh()));
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),
@@ -57,7 +66,7 @@ impl Report {
             given: given(estimate),
             held,
             error: measures(&estimate.error),
-            meaning: meaning(Some(options.contact_force)),
+            meaning: meaning(Some(options.reconstruction)),
             parts: parts(&estimate.parts),
             time_of_sup: estimate.time_of_sup,
             worst_elements: worst(subject.problem.mesh(), estimate),
@@ -80,7 +89,7 @@ fn given<const D: usize>(estimate: &Estimate<D>) -> Given {
 
 fn options_used(options: Options) -> OptionsUsed {
     OptionsUsed {
-        contact_force: options.contact_force.to_string(),
+        reconstruction: options.reconstruction.to_string(),
         acceleration: options.acceleration.to_string(),
         every: options.every,
         threads: options.threads,
@@ -102,7 +111,7 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
         dimension: D,
         nodes: mesh.node_count(),
         elements: mesh.element_count(),
-        mended_elements: mesh.mended_elements(),
+        reoriented_elements: mesh.reoriented_elements(),
         lower_corner: (0..D).map(|c| extreme(c, f64::min)).collect(),
         upper_corner: (0..D).map(|c| extreme(c, f64::max)).collect(),
         mass: problem.mass().iter().sum(),

@@ -12,7 +12,7 @@ pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
 pub use summary::summary;
 pub use warnings::Warning;
-pub(crate) use warnings::{few_samples, noticed};
+pub(crate) use warnings::{few_samples, reported};
 
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -99,7 +99,7 @@ pub struct ProblemSummary {
     pub dimension: usize,
     pub nodes: usize,
     pub elements: usize,
-    pub mended_elements: usize,
+    pub reoriented_elements: usize,
     pub lower_corner: Vec<f64>,
     pub upper_corner: Vec<f64>,
     pub mass: f64,
@@ -127,7 +127,7 @@ pub struct ObstacleSummary {
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct OptionsUsed {
-    pub contact_force: String,
+    pub reconstruction: String,
     pub acceleration: String,
     pub every: usize,
     pub threads: Option<usize>,

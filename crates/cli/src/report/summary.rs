@@ -56,7 +56,10 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
         ("", step(report.time_step, report.critical_time_step)),
         (
             "options",
-            format!("{} forces, {} acceleration, every {}", options.contact_force, options.acceleration, options.every),
+            format!(
+                "{} forces, {} acceleration, every {}",
+                options.reconstruction, options.acceleration, options.every
+            ),
         ),
     ];
     let given = [("velocities", report.given.velocity), ("accelerations", report.given.acceleration)];

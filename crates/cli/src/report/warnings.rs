@@ -2,9 +2,9 @@
 
 use super::number::percent;
 use super::{LargestResidual, ProblemSummary};
-use percute_core::mesh::{Mesh, Notice};
-use percute_core::problem::Doubt;
-use percute_estimator::ContactForce;
+use percute_core::mesh::{ImportWarning, Mesh};
+use percute_core::problem::PlausibilityWarning;
+use percute_estimator::Reconstruction;
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
@@ -29,10 +29,10 @@ pub struct Warning {
 /// What the warnings look at.
 pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
-    pub(super) doubts: &'a [Doubt],
+    pub(super) plausibility_warnings: &'a [PlausibilityWarning],
     pub(super) drift: f64,
     pub(super) interrupted: bool,
-    pub(super) contact_force: ContactForce,
+    pub(super) reconstruction: Reconstruction,
     pub(super) kept_impulse: Option<f64>,
     pub(super) residual: &'a LargestResidual,
 }
@@ -45,17 +45,21 @@ pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
         kept_impulse(facts),
         no_contact(facts),
         resampled(facts),
-        mended(facts),
+        reoriented(facts),
     ]
     .into_iter()
     .flatten()
-    .chain(facts.doubts.iter().map(Warning::from))
+    .chain(facts.plausibility_warnings.iter().map(Warning::from))
     .collect()
 }
 
-impl From<&Doubt> for Warning {
-    fn from(doubt: &Doubt) -> Self {
-        Self { name: doubt.name, brief: doubt.brief.clone(), message: doubt.to_string() }
+impl From<&PlausibilityWarning> for Warning {
+    fn from(plausibility_warning: &PlausibilityWarning) -> Self {
+        Self {
+            name: plausibility_warning.name,
+            brief: plausibility_warning.brief.clone(),
+            message: plausibility_warning.to_string(),
+        }
     }
 }
 
@@ -91,14 +95,14 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
     let [least, most] = KEPT;
     let kept = facts.kept_impulse.filter(|kept| !(least..=most).contains(kept))?;
     let shown = percent(kept);
-    let advice = match facts.contact_force {
+    let advice = match facts.reconstruction {
         // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
-        ContactForce::Whole if kept < 1.0 => "the run ends while contact begins: let it last longer",
-        ContactForce::Whole => {
+        Reconstruction::Corrected if kept < 1.0 => "the run ends while contact begins: let it last longer",
+        Reconstruction::Corrected => {
             "reactions of the history pull, or are outside Coulomb's cone: is `friction` what it was made with?"
         }
-        ContactForce::Sharp | ContactForce::Paper => {
-            "refine the mesh or the steps where contact begins, or take `contact_force = \"whole\"`"
+        Reconstruction::Consistent | Reconstruction::Published => {
+            "refine the mesh or the steps where contact begins, or take `reconstruction = \"corrected\"`"
         }
     };
     if kept > most {
@@ -115,7 +119,8 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
-    let foreseen = facts.doubts.iter().any(|doubt| doubt.name == "never_touches");
+    let foreseen =
+        facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
     if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() || foreseen {
         return None;
     }
@@ -136,10 +141,10 @@ fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
 }
 
-fn mended(facts: &Facts<'_>) -> Option<Warning> {
-    let count = facts.problem.mended_elements;
+fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
+    let count = facts.problem.reoriented_elements;
     let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
-    if count == 0 { None } else { warning("mended_elements", format!("{count} elements turned round"), message) }
+    if count == 0 { None } else { warning("reoriented_elements", format!("{count} elements turned round"), message) }
 }
 
 /// An error that is sampled at the start and at the end only; told before the run, too.
@@ -153,9 +158,9 @@ pub(crate) fn few_samples(every: usize, steps: usize) -> Option<Warning> {
     Some(Warning { name: "few_samples", brief: "the error is sampled twice".to_string(), message })
 }
 
-/// What was noticed when the mesh was read.
-pub(crate) fn noticed<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Iterator<Item = Warning> {
-    mesh.notices().iter().map(|Notice { name, brief, message, .. }| {
+/// What was reported when the mesh was read.
+pub(crate) fn reported<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Iterator<Item = Warning> {
+    mesh.import_warnings().iter().map(|ImportWarning { name, brief, message, .. }| {
         let (brief, message) = (brief.clone(), message.clone());
         Warning { name, brief, message }
     })

@@ -1,6 +1,6 @@
 //! How much work a reproduction does.
 
-use percute_estimator::{Acceleration, ContactForce, Options};
+use percute_estimator::{Acceleration, Options, Reconstruction};
 
 /// How much of a part is computed, and on how many threads. The small effort computes some of the rows of the full one:
 /// those rows are the same, digit by digit.
@@ -32,8 +32,8 @@ impl Effort {
 
     /// Options of an estimate with these choices.
     #[must_use]
-    pub fn options(&self, contact_force: ContactForce, acceleration: Acceleration) -> Options {
-        Options { contact_force, acceleration, threads: self.threads, ..Options::default() }
+    pub fn options(&self, reconstruction: Reconstruction, acceleration: Acceleration) -> Options {
+        Options { reconstruction, acceleration, threads: self.threads, ..Options::default() }
     }
 
     /// Its name.

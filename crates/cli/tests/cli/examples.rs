@@ -8,7 +8,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder, bar_impact_error};
-use percute_estimator::{Acceleration, ContactForce, Estimator};
+use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::BarImpact;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -47,9 +47,9 @@ fn examples_run_with_every_option() {
     for name in cases {
         let case = std::fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap();
         let body = case.split("[estimate]").next().unwrap();
-        let pairs = ContactForce::ALL.iter().flat_map(|force| Acceleration::ALL.iter().map(move |a| (force, a)));
+        let pairs = Reconstruction::ALL.iter().flat_map(|force| Acceleration::ALL.iter().map(move |a| (force, a)));
         for (force, acceleration) in pairs {
-            let options = format!("contact_force = \"{force}\"\nacceleration = \"{acceleration}\"");
+            let options = format!("reconstruction = \"{force}\"\nacceleration = \"{acceleration}\"");
             let bench = Bench::new(&format!("{body}\n[estimate]\n{options}\nevery = 7\n"));
             for beside in std::fs::read_dir(folder()).unwrap().map(|f| f.unwrap().path()) {
                 if beside.extension().is_some_and(|e| e == "msh") {

@@ -54,8 +54,8 @@ fn without_a_file_the_result_is_the_same() {
 
 #[test]
 fn options_come_from_the_history_unless_the_command_line_has_them() {
-    let estimate = "contact_force = \"paper\"\nacceleration = \"weak\"\nevery = 3\n";
-    let case = BLOCK.replace("contact_force = \"whole\"\nevery = 1\n", estimate);
+    let estimate = "reconstruction = \"published\"\nacceleration = \"weak\"\nevery = 3\n";
+    let case = BLOCK.replace("reconstruction = \"corrected\"\nevery = 1\n", estimate);
     assert_ne!(case, BLOCK);
     let (chosen, plain) = (Bench::new(&case), Bench::new(BLOCK));
     let beside = result(&done(&chosen, &["run", "case.toml", "--json"]));
@@ -63,12 +63,12 @@ fn options_come_from_the_history_unless_the_command_line_has_them() {
     assert_eq!(result(&done(&chosen, &["estimate", "case.vtkhdf", "--json"])), beside);
     done(&plain, &["simulate", "case.toml"]);
     let arguments = ["estimate", "case.vtkhdf", "--json"];
-    let others = ["--contact-force", "paper", "--acceleration", "weak", "--every", "3"];
+    let others = ["--reconstruction", "published", "--acceleration", "weak", "--every", "3"];
     assert_eq!(result(&done(&plain, &[&arguments[..], &others[..]].concat())), beside);
     assert_ne!(result(&done(&plain, &arguments)), beside);
-    let output = plain.percute(&["estimate", "case.vtkhdf", "--contact-force", "blunt"]);
+    let output = plain.percute(&["estimate", "case.vtkhdf", "--reconstruction", "blunt"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("choose one of whole, sharp, paper"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("choose one of corrected, consistent, published"), "{}", stderr(&output));
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn the_json_document_has_its_keys() {
     assert_eq!(at(&document, "by_element").as_array().unwrap().len(), 40);
     assert_eq!(at(&document, "problem.elements"), 40);
     assert_eq!(at(&document, "problem.nodes"), 30);
-    assert_eq!(at(&document, "options.contact_force"), "whole");
+    assert_eq!(at(&document, "options.reconstruction"), "corrected");
     assert_eq!(at(&document, "interrupted"), false);
     assert_eq!(at(&document, "versions.percute"), env!("CARGO_PKG_VERSION"));
     let worst = at(&document, "worst_elements").as_array().unwrap();
@@ -82,8 +82,8 @@ fn the_json_document_agrees_with_the_case() {
     assert_eq!(at(&document, "options.window"), 7);
     assert_eq!(at(&document, "problem.mass").as_f64().map(|m| (m * 1e6).round()), Some(5.4e6));
     let document = json(ARRAYS, &[]);
-    assert_eq!(at(&document, "problem.mended_elements"), 1);
-    assert!(warnings(&document).contains(&"mended_elements".to_string()));
+    assert_eq!(at(&document, "problem.reoriented_elements"), 1);
+    assert!(warnings(&document).contains(&"reoriented_elements".to_string()));
     assert_eq!(at(&document, "steps"), 3);
 }
 

@@ -8,7 +8,7 @@ use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Options, Request};
+use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 use percute_testkit::{Random, strategy::rectangle};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -148,9 +148,9 @@ fn anything<const D: usize, const N: usize>(
 }
 
 fn options(random: &mut Random) -> Options {
-    let contact_force = ContactForce::ALL[random.bits() as usize % ContactForce::ALL.len()];
+    let reconstruction = Reconstruction::ALL[random.bits() as usize % Reconstruction::ALL.len()];
     let acceleration = Acceleration::ALL[random.bits() as usize % Acceleration::ALL.len()];
-    Options { contact_force, acceleration, every: 1 + random.bits() as usize % 1000, ..Options::default() }
+    Options { reconstruction, acceleration, every: 1 + random.bits() as usize % 1000, ..Options::default() }
 }
 
 /// Four different names of any letters, empty ones and control characters among them.

@@ -1,7 +1,7 @@
 //! Blocks: friction, momentum and uniform stress.
 
 use crate::rows::{NONE, check};
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 
 /// The shear wave crosses the block of H = 0.2 m in τ = H/√(G/ρ) = 0.63 ms at E = 0.2 GPa, G = E/2: sliding starts within 2τ, the distance after T
 /// is off by aTτ' with τ' < τ, the acceleration by 2aτ²/T² and the energy like the distance (with the microscopic slip of the corners, twice).
@@ -56,7 +56,7 @@ fn oblique() {
 /// vibrate on for 94 steps; measured 1.5e-12.
 #[test]
 fn patch() {
-    let choices = ContactForce::ALL.len() * Acceleration::ALL.len();
+    let choices = Reconstruction::ALL.len() * Acceleration::ALL.len();
     check("patch", &vec![("relative error", NONE, 1e-11); choices]);
 }
 

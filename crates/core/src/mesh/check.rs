@@ -223,7 +223,7 @@ pub(super) fn orient<const D: usize, const N: usize>(
     points: &[[f64; D]],
     cells: &mut [[NodeId; N]],
 ) -> Result<usize, MeshError> {
-    let mut mended = 0;
+    let mut reoriented = 0;
     for (element, cell) in cells.iter_mut().enumerate() {
         let corners = cell.map(|node| points[node.index()]);
         let (volume, diameter) = (signed_volume(&corners), diameter(&corners));
@@ -233,10 +233,10 @@ pub(super) fn orient<const D: usize, const N: usize>(
         }
         if volume < 0.0 {
             cell.swap(N - 2, N - 1);
-            mended += 1;
+            reoriented += 1;
         }
     }
-    Ok(mended)
+    Ok(reoriented)
 }
 
 pub(super) fn facet_groups<const D: usize>(

@@ -123,7 +123,7 @@ mod tests {
         for rings in [1, 2, 7] {
             let disc = TriangleMesh::disc(0.5, rings).unwrap();
             assert_eq!((disc.element_count(), disc.node_count()), (6 * rings * rings, 3 * rings * (rings + 1) + 1));
-            assert_eq!((disc.mended_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
+            assert_eq!((disc.reoriented_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
             let area: f64 =
                 (0..disc.element_count()).map(|e| disc.cell_geometry(crate::ids::ElementId::new(e)).volume).sum();
             let sides = 6.0 * rings as f64;

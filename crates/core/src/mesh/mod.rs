@@ -6,7 +6,7 @@
 mod check;
 mod generator;
 mod geometry;
-mod notice;
+mod import_warning;
 mod parts;
 mod refine;
 mod star;
@@ -14,7 +14,7 @@ mod topology;
 
 pub use check::MeshError;
 pub use geometry::CellGeometry;
-pub use notice::Notice;
+pub use import_warning::ImportWarning;
 pub use star::{Star, Stars, entry_and_exit};
 pub use topology::Facet;
 
@@ -43,16 +43,16 @@ pub struct Mesh<const D: usize, const N: usize> {
     facet_groups: BTreeMap<String, Vec<FacetId>>,
     element_groups: BTreeMap<String, Vec<ElementId>>,
     size: f64,
-    mended: usize,
+    reoriented: usize,
     parts: usize,
-    notices: Vec<Notice>,
+    import_warnings: Vec<ImportWarning>,
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
     /// Builds and checks a mesh.
     ///
     /// `points` are coordinates in metres, `cells` node numbers from 0. Negatively oriented
-    /// elements are turned round (see [`Mesh::mended_elements`]).
+    /// elements are turned round (see [`Mesh::reoriented_elements`]).
     ///
     /// # Errors
     /// Whatever makes the mesh unfit, with the numbers of the nodes or elements at fault.
@@ -66,7 +66,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let mut cells = check::cells(points.len(), cells)?;
         let size = geometry::bounding_box_diagonal(&points);
         check::duplicate_points(&points, size)?;
-        let mended = check::orient(&points, &mut cells)?;
+        let reoriented = check::orient(&points, &mut cells)?;
         let (facets, cell_facets) = topology::facets(&cells)?;
         let stars = Stars::new(points.len(), &cells, &facets, &cell_facets)?;
         let parts = parts::separate(&points, &cells, &facets, check::DUPLICATE * size)?;
@@ -81,9 +81,9 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             facet_groups,
             element_groups,
             size,
-            mended,
+            reoriented,
             parts,
-            notices: Vec::new(),
+            import_warnings: Vec::new(),
         })
     }
 
@@ -137,8 +137,8 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
 
     /// How many elements were given with the wrong orientation and turned round.
     #[must_use]
-    pub fn mended_elements(&self) -> usize {
-        self.mended
+    pub fn reoriented_elements(&self) -> usize {
+        self.reoriented
     }
 
     /// For each node the one that stands for its part: the first of it.
@@ -153,16 +153,16 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self.parts
     }
 
-    /// The same mesh with what was noticed when it was read.
+    /// The same mesh with what was reported when it was read.
     #[must_use]
-    pub fn with_notices(self, notices: Vec<Notice>) -> Self {
-        Self { notices, ..self }
+    pub fn with_import_warnings(self, import_warnings: Vec<ImportWarning>) -> Self {
+        Self { import_warnings, ..self }
     }
 
-    /// What was noticed when it was read.
+    /// What was reported when it was read.
     #[must_use]
-    pub fn notices(&self) -> &[Notice] {
-        &self.notices
+    pub fn import_warnings(&self) -> &[ImportWarning] {
+        &self.import_warnings
     }
 
     /// Number of nodes.

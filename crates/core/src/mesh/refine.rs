@@ -54,7 +54,7 @@ mod tests {
         let fine = coarse.refined().unwrap();
         assert_eq!(fine.node_count(), coarse.node_count() + coarse.facets().len());
         assert_eq!(fine.points()[..coarse.node_count()], *coarse.points());
-        assert_eq!((fine.element_count(), fine.mended_elements()), (4 * coarse.element_count(), 0));
+        assert_eq!((fine.element_count(), fine.reoriented_elements()), (4 * coarse.element_count(), 0));
         for e in 0..coarse.element_count() {
             let parent = coarse.cell_geometry(ElementId::new(e));
             let origin = coarse.cell_points(ElementId::new(e))[0];

@@ -1,6 +1,6 @@
 //! What can be wrong with a problem, where it is, and what to do.
 
-use super::doubt::short;
+use super::plausibility::short;
 use crate::load::TableError;
 use crate::material::MaterialError;
 use crate::obstacle::PlaneError;

@@ -2,15 +2,15 @@
 
 mod boundary;
 mod builder;
-mod doubt;
 mod error;
+mod plausibility;
 mod surface;
 
 pub use builder::{Builder, Initial, Statement};
-pub(crate) use doubt::short;
-pub use doubt::{Doubt, doubts};
 pub(crate) use error::facet;
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
+pub(crate) use plausibility::short;
+pub use plausibility::{PlausibilityWarning, plausibility_warnings};
 pub use surface::{ContactFacet, ContactNode, ContactSurface};
 
 use crate::ids::{ElementId, FacetId, NodeId};

@@ -130,13 +130,13 @@ fn groups_of_what_is_not_there() {
     assert_eq!(error, MeshError::NoSuchElement { group: "core".to_string(), element: 2, last: 1 });
 }
 
-/// Wrong orientation is mended, counted, and changes nothing else.
+/// Wrong orientation is reoriented, counted, and changes nothing else.
 #[test]
-fn orientation_is_mended() {
+fn orientation_is_corrected() {
     let mesh = triangles(&CORNERS[..4], &[[0, 2, 1], [0, 2, 3]]).unwrap();
-    assert_eq!(mesh.mended_elements(), 1);
+    assert_eq!(mesh.reoriented_elements(), 1);
     assert_eq!(mesh.cells()[0].map(|n| n.index()), [0, 1, 2]);
-    assert_eq!(bars(&[[1.0], [0.0]], &[[0, 1]]).unwrap().mended_elements(), 1);
+    assert_eq!(bars(&[[1.0], [0.0]], &[[0, 1]]).unwrap().reoriented_elements(), 1);
 }
 
 /// Two elements on the same side of the facet they share cover each other: the boundary between

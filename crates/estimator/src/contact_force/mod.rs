@@ -2,22 +2,22 @@
 //!
 //! A density lives on the candidate facets, linear on each and linear in time inside each step.
 //! An [`Interval`] holds it at both ends of a step; at an instant where the touching facets change,
-//! the `sharp` reading has one value before and another after.
+//! the `consistent` reading has one value before and another after.
 
-mod paper;
-mod sharp;
-mod stopping;
-mod tilt;
-mod whole;
+mod consistent;
+mod corrected;
+mod impulse_smoothing;
+mod moment_correction;
+mod published;
 
-use crate::options::{Ablation, ContactForce};
+use crate::options::{Ablation, Reconstruction};
 use crate::residual::{Residuals, worse};
-use paper::Paper;
+use corrected::Corrected;
+pub(crate) use corrected::Pressure;
+pub(crate) use impulse_smoothing::ImpulseSmoothing;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{ContactFacet, Problem};
-pub(crate) use stopping::Stopping;
-pub(crate) use whole::Pressure;
-use whole::Whole;
+use published::Published;
 
 /// Nodal values of a density on each candidate facet (Pa).
 pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
@@ -26,8 +26,8 @@ pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceStep<const D: usize> {
     pub(crate) reaction: Vec<[f64; D]>,
-    /// What the densities of `whole` are made of: the reactions, with the impulses that stop a node spread.
-    pub(crate) pressing: Vec<[f64; D]>,
+    /// What the densities of `corrected` are made of: the reactions, with the impulses that stop a node spread.
+    pub(crate) smoothed_reaction: Vec<[f64; D]>,
     pub(crate) touching: Vec<bool>,
 }
 
@@ -41,31 +41,33 @@ pub(crate) struct Interval<const D: usize> {
 /// Makes densities from reactions.
 #[derive(Clone, Debug)]
 pub(crate) enum Reading<const D: usize> {
-    Paper(Paper),
-    Sharp,
-    Whole(Whole<D>),
+    Published(Published),
+    Consistent,
+    Corrected(Corrected<D>),
 }
 
 impl<const D: usize> Reading<D> {
-    pub(crate) fn new<const N: usize>(choice: ContactForce, problem: &Problem<D, N>) -> Self {
+    pub(crate) fn new<const N: usize>(choice: Reconstruction, problem: &Problem<D, N>) -> Self {
         match choice {
-            ContactForce::Paper => Self::Paper(Paper::new(problem)),
-            ContactForce::Sharp => Self::Sharp,
-            ContactForce::Whole => Self::Whole(Whole::new(problem)),
+            Reconstruction::Published => Self::Published(Published::new(problem)),
+            Reconstruction::Consistent => Self::Consistent,
+            Reconstruction::Corrected => Self::Corrected(Corrected::new(problem)),
         }
     }
 
     /// The same, and where it is asked for without the moments of the reactions.
     pub(crate) fn without(self, ablation: Ablation) -> Self {
         match self {
-            Self::Whole(whole) if ablation == Ablation::Moment => Self::Whole(whole.untilted()),
+            Self::Corrected(whole) if ablation == Ablation::Moment => {
+                Self::Corrected(whole.without_moment_correction())
+            }
             other => other,
         }
     }
 
     /// Whether forces may act where a node does not touch.
     pub(crate) fn acts_off_contact(&self) -> bool {
-        matches!(self, Self::Whole(_))
+        matches!(self, Self::Corrected(_))
     }
 
     /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
@@ -79,17 +81,17 @@ impl<const D: usize> Reading<D> {
         after: Option<&SurfaceStep<D>>,
     ) -> Interval<D> {
         match self {
-            Self::Paper(paper) => Interval {
+            Self::Published(paper) => Interval {
                 start: before.map_or_else(
                     || none(problem),
                     |before| paper.densities(problem, &before.touching, now, Some(&next.touching)),
                 ),
                 end: paper.densities(problem, &now.touching, next, after.map(|a| a.touching.as_slice())),
             },
-            Self::Sharp => sharp::interval(problem, now, next),
-            Self::Whole(whole) => Interval {
-                start: whole.densities(problem, &now.pressing),
-                end: whole.densities(problem, &next.pressing),
+            Self::Consistent => consistent::interval(problem, now, next),
+            Self::Corrected(whole) => Interval {
+                start: whole.densities(problem, &now.smoothed_reaction),
+                end: whole.densities(problem, &next.smoothed_reaction),
             },
         }
     }

@@ -18,7 +18,7 @@ fn problem() -> TriangleProblem {
 /// Nodes 0 to 3 of five touch, pressed and pulled along the plane up to the cone.
 fn surface() -> SurfaceStep<2> {
     let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
-    SurfaceStep { pressing: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
+    SurfaceStep { smoothed_reaction: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
 }
 
 fn residuals(interval: &Interval<2>) -> Residuals {
@@ -30,7 +30,7 @@ fn residuals(interval: &Interval<2>) -> Residuals {
 fn readings() -> [Interval<2>; 2] {
     let problem = problem();
     let step = surface();
-    [ContactForce::Sharp, ContactForce::Paper]
+    [Reconstruction::Consistent, Reconstruction::Published]
         .map(|choice| Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step)))
 }
 
@@ -97,7 +97,7 @@ fn a_node_that_touches_alone_gets_no_force() {
     let problem = problem();
     let mut step = surface();
     step.touching = vec![false, true, false, false, false];
-    for choice in [ContactForce::Sharp, ContactForce::Paper] {
+    for choice in [Reconstruction::Consistent, Reconstruction::Published] {
         let interval = Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step));
         for density in interval.start.iter().chain(&interval.end).flatten() {
             assert_eq!(*density, [0.0; 2]);
@@ -109,9 +109,10 @@ fn a_node_that_touches_alone_gets_no_force() {
 #[test]
 fn a_phase_of_one_step_gets_no_force() {
     let problem = problem();
-    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], pressing: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off =
+        SurfaceStep { reaction: vec![[0.0; 2]; 5], smoothed_reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [&off, &surface(), &off];
-    for choice in [ContactForce::Sharp, ContactForce::Paper] {
+    for choice in [Reconstruction::Consistent, Reconstruction::Published] {
         let reading = Reading::new(choice, &problem);
         for (before, now, next, after) in [(None, 0, 1, Some(steps[2])), (Some(steps[0]), 1, 2, None)] {
             let interval = reading.interval(&problem, before, steps[now], steps[next], after);
@@ -122,7 +123,7 @@ fn a_phase_of_one_step_gets_no_force() {
 
 /// All five nodes touch and are pressed.
 fn pressed() -> SurfaceStep<2> {
-    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], pressing: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
+    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], smoothed_reaction: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
 }
 
 /// Whether there is force at any place, at the beginning and at the end of a step.
@@ -131,11 +132,12 @@ fn acts(interval: &Interval<2>) -> [bool; 2] {
 }
 
 /// Touching from t_1 to t_4, the paper's force is there at t_2 and t_3 only, [45]–[48]; with a phase
-/// that is still open at the last step it stays to the end. `sharp` has all of it.
+/// that is still open at the last step it stays to the end. `consistent` has all of it.
 #[test]
 fn force_begins_and_ends_with_contact() {
     let problem = problem();
-    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], pressing: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off =
+        || SurfaceStep { reaction: vec![[0.0; 2]; 5], smoothed_reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [off(), pressed(), pressed(), pressed(), pressed(), off()];
     let interval = |choice, n: usize, last: usize| {
         let before = n.checked_sub(1).map(|m| &steps[m]);
@@ -144,10 +146,10 @@ fn force_begins_and_ends_with_contact() {
     };
     let all = |choice, last: usize| (0..last).map(|n| interval(choice, n, last)).collect::<Vec<_>>();
     let (none, both) = ([false, false], [true, true]);
-    assert_eq!(all(ContactForce::Paper, 5), [none, [false, true], both, [true, false], none]);
-    assert_eq!(all(ContactForce::Paper, 4), [none, [false, true], both, both]);
-    assert_eq!(all(ContactForce::Paper, 2), [none, [false, true]]);
-    assert_eq!(all(ContactForce::Sharp, 5), [none, both, both, both, none]);
+    assert_eq!(all(Reconstruction::Published, 5), [none, [false, true], both, [true, false], none]);
+    assert_eq!(all(Reconstruction::Published, 4), [none, [false, true], both, both]);
+    assert_eq!(all(Reconstruction::Published, 2), [none, [false, true]]);
+    assert_eq!(all(Reconstruction::Consistent, 5), [none, both, both, both, none]);
 }
 
 /// In the paper's reading a node beside one that arrives or leaves loses its force; the corner, which
@@ -157,7 +159,7 @@ fn the_border_of_contact_has_no_force() {
     let problem = problem();
     let (now, mut before) = (pressed(), pressed());
     before.touching[3] = false;
-    let reading = Reading::new(ContactForce::Paper, &problem);
+    let reading = Reading::new(Reconstruction::Published, &problem);
     let interval = reading.interval(&problem, Some(&before), &now, &now, Some(&now));
     let forces = nodal_forces(&problem, &interval.start);
     assert_eq!(
@@ -169,7 +171,7 @@ fn the_border_of_contact_has_no_force() {
     assert!((interval.start[0][0][1] - 100.0 / 0.005).abs() < 1e-9);
 }
 
-/// Where the cone cuts nothing off, `sharp` has the nodal forces of the simulation: made from a density,
+/// Where the cone cuts nothing off, `consistent` has the nodal forces of the simulation: made from a density,
 /// they give it back.
 #[test]
 fn sharp_is_statically_equivalent() {
@@ -179,7 +181,7 @@ fn sharp_is_statically_equivalent() {
     let given: Vec<_> = problem.surface().facets().iter().map(|f| f.nodes.map(|k| nodal[k])).collect();
     let mut step = pressed();
     step.reaction = nodal_forces(&problem, &given);
-    let interval = Reading::new(ContactForce::Sharp, &problem).interval(&problem, None, &step, &step, None);
+    let interval = Reading::new(Reconstruction::Consistent, &problem).interval(&problem, None, &step, &step, None);
     for (made, given) in interval.start.iter().flatten().flatten().zip(given.iter().flatten().flatten()) {
         // Rounding of a tridiagonal solve with five unknowns of order 1e4.
         assert!((made - given).abs() < 1e-10, "{made} against {given}");
@@ -206,10 +208,11 @@ fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
 /// just arrived if `arriving`. All reactions are 1 N.
 fn paper_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let (problem, [left, right, middle]) = kinked(slope);
-    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], pressing: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
+    let now =
+        SurfaceStep { reaction: vec![[0.0, 1.0]; 3], smoothed_reaction: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
     let mut before = now.clone();
     before.touching[right] = !arriving;
-    let reading = Reading::new(ContactForce::Paper, &problem);
+    let reading = Reading::new(Reconstruction::Published, &problem);
     let density = reading.interval(&problem, Some(&before), &now, &now, Some(&now)).start;
     [left, right].map(|outer| {
         let f = problem.surface().facets().iter().position(|f| f.nodes.contains(&outer)).unwrap();
@@ -247,14 +250,14 @@ fn edges_that_meet_at_a_corner_are_not() {
     }
 }
 
-/// `whole` drops nothing: its resultant is that of the reactions, off contact too, and one instant has one value.
+/// `corrected` drops nothing: its resultant is that of the reactions, off contact too, and one instant has one value.
 #[test]
 fn the_whole_reaction_is_kept() {
     let problem = problem();
     let mut step = surface();
     // The last node brakes: it has a reaction before it touches.
-    step.pressing[4] = [1.0, 50.0];
-    let reading = Reading::new(ContactForce::Whole, &problem);
+    step.smoothed_reaction[4] = [1.0, 50.0];
+    let reading = Reading::new(Reconstruction::Corrected, &problem);
     let first = reading.interval(&problem, None, &surface(), &step, None);
     let second = reading.interval(&problem, None, &step, &surface(), None);
     assert_eq!(first.end, second.start);
@@ -262,11 +265,11 @@ fn the_whole_reaction_is_kept() {
     for c in 0..2 {
         let sum = |forces: &[[f64; 2]]| forces.iter().map(|f| f[c]).sum::<f64>();
         // Rounding of a dozen terms.
-        assert!((sum(&kept) - sum(&step.pressing)).abs() < 1e-12 * 600.0);
+        assert!((sum(&kept) - sum(&step.smoothed_reaction)).abs() < 1e-12 * 600.0);
     }
     assert!(residuals(&first).cone < 1e-14 && first.end[3][1][1] > 0.0);
     // A reaction out of the cone, as a foreign history may have, is projected.
-    step.pressing[0] = [0.0, -10.0];
+    step.smoothed_reaction[0] = [0.0, -10.0];
     let cut = reading.interval(&problem, None, &step, &step, None);
     assert_eq!(cut.start[0][0], [0.0; 2]);
 }

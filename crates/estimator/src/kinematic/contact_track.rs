@@ -19,7 +19,7 @@ pub(crate) struct ContactTrack {
     first_altered: usize,
     /// Whether contact is solved for; a prescribed node keeps its motion.
     free: bool,
-    rendezvous: f64,
+    onset: f64,
     at_knots: f64,
     between_knots: f64,
 }
@@ -47,7 +47,7 @@ impl ContactTrack {
             touching,
             first_altered: usize::MAX,
             free,
-            rendezvous: 0.0,
+            onset: 0.0,
             at_knots: 0.0,
             between_knots: 0.0,
         }
@@ -97,7 +97,7 @@ impl ContactTrack {
             let wanted = self.lengths.iter().zip(&self.wanted).map(|(h, v)| way(h, *v)).sum::<f64>();
             let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(wanted);
             let (_, end) = path[path.len() - 1];
-            self.rendezvous = worse(self.rendezvous, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
+            self.onset = worse(self.onset, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
         if arrives || !self.free || path.iter().zip(&self.wanted).any(|((v, _), wanted)| v != wanted) {
             self.first_altered = self.first_altered.min(self.known.len());
@@ -144,7 +144,7 @@ impl ContactTrack {
 
     /// Adds what this node leaves to the residuals.
     pub(crate) fn report(&self, residuals: &mut Residuals) {
-        residuals.rendezvous = worse(residuals.rendezvous, self.rendezvous);
+        residuals.onset = worse(residuals.onset, self.onset);
         residuals.penetration_at_knots = worse(residuals.penetration_at_knots, self.at_knots);
         residuals.penetration_between_knots = worse(residuals.penetration_between_knots, self.between_knots);
     }

@@ -36,7 +36,7 @@ thread_local! {
     static SHAPED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// The velocities nearest to the wanted ones under the rendezvous and a non-negative gap.
+/// The velocities nearest to the wanted ones under the onset and a non-negative gap.
 /// `start` is the solution without the gap condition.
 pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
     #[cfg(test)]

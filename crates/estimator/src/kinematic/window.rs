@@ -13,7 +13,7 @@ pub(super) struct Window<'a> {
     /// Normal velocity of the simulation at the knots after the first (m/s). If the window ends
     /// in contact, the last knot is not free and its value is ignored.
     pub(super) wanted: &'a [f64],
-    /// Whether the node arrives on the plane at rest at the last knot (the rendezvous).
+    /// Whether the node arrives on the plane at rest at the last knot (the onset).
     pub(super) arrives: bool,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Window<'a> {
 pub(super) type Path = Vec<(f64, f64)>;
 
 impl Window<'_> {
-    /// The velocity nearest to the wanted one that respects the rendezvous and does not penetrate
+    /// The velocity nearest to the wanted one that respects the onset and does not penetrate
     /// by more than `tolerance` (m).
     pub(super) fn solve(&self, tolerance: f64) -> Path {
         let velocity = self.shifted();
@@ -51,7 +51,7 @@ impl Window<'_> {
     }
 
     /// The solution of the equality problem: weights and trapezoidal lengths of free knots agree,
-    /// so that the rendezvous shifts all of them by the same amount.
+    /// so that the onset shifts all of them by the same amount.
     pub(super) fn shifted(&self) -> Vec<f64> {
         let mut velocity = self.wanted.to_vec();
         if !self.arrives {

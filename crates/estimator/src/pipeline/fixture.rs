@@ -1,7 +1,7 @@
 //! Small problems for the tests of this module, and their steps prepared.
 
 use super::prepare::Preparation;
-use crate::options::{ContactForce, Options};
+use crate::options::{Options, Reconstruction};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
@@ -66,21 +66,21 @@ pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
 pub(super) fn prepared<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    contact_force: ContactForce,
+    reconstruction: Reconstruction,
 ) -> Preparation<'p, 2, 3> {
-    prepared_until(problem, times, contact_force, times.step_count())
+    prepared_until(problem, times, reconstruction, times.step_count())
 }
 
 /// Its steps up to one of them.
 pub(super) fn prepared_until<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    contact_force: ContactForce,
+    reconstruction: Reconstruction,
     last: usize,
 ) -> Preparation<'p, 2, 3> {
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
-    let mut preparation = Preparation::new(problem, times, &Options { contact_force, ..Options::default() });
+    let mut preparation = Preparation::new(problem, times, &Options { reconstruction, ..Options::default() });
     for n in 0..=last {
         let step = history.step(n).unwrap();
         preparation.check(&step).unwrap();

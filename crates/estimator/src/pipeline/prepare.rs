@@ -4,8 +4,8 @@ mod impulse;
 mod interval;
 mod supports;
 
-use crate::companion::{Companion, kinetic_energy};
-use crate::contact_force::{Pressure, Reading, Stopping, SurfaceStep};
+use crate::auxiliary::{AuxiliarySolution, kinetic_energy};
+use crate::contact_force::{ImpulseSmoothing, Pressure, Reading, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
@@ -21,7 +21,7 @@ use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
 use supports::SupportCheck;
 
-/// A companion whose kinetic energy is so many times the largest energy of the simulation is unstable: its error would be a
+/// A auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error would be a
 /// thousand times what there is.
 const UNSTABLE: f64 = 1e6;
 
@@ -33,10 +33,10 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,
     loaded: LoadedFacets<'p, D, N>,
     reading: Reading<D>,
-    /// What the balance of the reading `whole` is built on.
-    companion: Option<Companion<D>>,
-    stopping: Option<Stopping<D>>,
-    /// Largest kinetic and strain energy of the simulation so far (J), for the companion.
+    /// What the balance of the reading `corrected` is built on.
+    auxiliary: Option<AuxiliarySolution<D>>,
+    stopping: Option<ImpulseSmoothing<D>>,
+    /// Largest kinetic and strain energy of the simulation so far (J), for the auxiliary solution.
     liveliest: f64,
     every: usize,
     motion: FreeMotion<D>,
@@ -56,16 +56,16 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
-        let reading = Reading::new(options.contact_force, problem).without(options.ablation);
+        let reading = Reading::new(options.reconstruction, problem).without(options.ablation);
         Self {
             problem,
             times,
             dynamics: Dynamics::new(problem, times),
             loaded: LoadedFacets::new(problem),
-            companion: (matches!(reading, Reading::Whole(_)) && options.ablation != Ablation::Companion)
-                .then(|| Companion::new(problem, options.ablation != Ablation::Correction)),
-            stopping: (reading.acts_off_contact() && options.ablation != Ablation::Stopping)
-                .then(|| Stopping::new(problem)),
+            auxiliary: (matches!(reading, Reading::Corrected(_)) && options.ablation != Ablation::AuxiliarySolution)
+                .then(|| AuxiliarySolution::new(problem, options.ablation != Ablation::Correction)),
+            stopping: (reading.acts_off_contact() && options.ablation != Ablation::ImpulseSmoothing)
+                .then(|| ImpulseSmoothing::new(problem)),
             liveliest: 0.0,
             reading,
             every: options.every,
@@ -108,7 +108,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
-            _ => self.check_companion(step),
+            _ => self.check_auxiliary(step),
         }
     }
 
@@ -169,12 +169,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let miss = self.supports.advance(self.problem, self.times, n, &knot);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
-        let pressing = match &mut self.stopping {
+        let smoothed_reaction = match &mut self.stopping {
             Some(stopping) => stopping.advance(self.problem, self.times, n, step.reaction, &acceleration),
             None => step.reaction.to_vec(),
         };
-        let (displacement, force) = self.source_of_balance(n, step.displacement, &pressing, force);
-        if self.companion.is_some() {
+        let (displacement, force) = self.source_of_balance(n, step.displacement, &smoothed_reaction, force);
+        if self.auxiliary.is_some() {
             self.liveliest = self.liveliest.max(strain + kinetic_energy(&knot.velocity, self.problem.mass()));
         }
         self.levels.push_back(Level {
@@ -182,7 +182,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             force,
             body_force: self.problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
-            surface: SurfaceStep { reaction: step.reaction.to_vec(), pressing, touching: step.touching.to_vec() },
+            surface: SurfaceStep {
+                reaction: step.reaction.to_vec(),
+                smoothed_reaction,
+                touching: step.touching.to_vec(),
+            },
             ..Level::new(n, mid, knot, self.problem.surface().facets().len())
         });
         if n == 0 {
@@ -192,15 +196,15 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
     }
 
-    /// Refuses to go on with a companion that has become unstable, as it does where a history of another scheme takes
+    /// Refuses to go on with a auxiliary solution that has become unstable, as it does where a history of another scheme takes
     /// steps above the critical one: a stable one has about the energy of the simulation, an unstable one soon any.
-    fn check_companion(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        let Some(companion) = &self.companion else { return Ok(()) };
-        let energy = companion.kinetic_energy(self.problem.mass());
+    fn check_auxiliary(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+        let Some(auxiliary) = &self.auxiliary else { return Ok(()) };
+        let energy = auxiliary.kinetic_energy(self.problem.mass());
         // A body that starts unstrained at rest has no energy before it is loaded.
         if self.liveliest > 0.0 && energy > UNSTABLE * self.liveliest {
             let longest_step = self.times.longest_step();
-            return Err(EstimateError::Companion { step: step.index, time: step.time, longest_step });
+            return Err(EstimateError::AuxiliarySolution { step: step.index, time: step.time, longest_step });
         }
         Ok(())
     }
@@ -233,7 +237,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         None
     }
 
-    /// M⁻¹ of these forces and of those of contact: a_n of the simulation, ã_n of the companion.
+    /// M⁻¹ of these forces and of those of contact: a_n of the simulation, ã_n of the auxiliary solution.
     fn total_acceleration(&self, force: &[[f64; D]], reaction: &[[f64; D]]) -> Vec<[f64; D]> {
         let mut acceleration = force.to_vec();
         for (contact, reaction) in self.problem.surface().nodes().iter().zip(reaction) {
@@ -250,23 +254,23 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The displacement whose stress is equilibrated, and its forces but contact: those of the simulation, or the
-    /// companion's, which then goes on to the next step.
+    /// auxiliary solution's, which then goes on to the next step.
     fn source_of_balance(
         &mut self,
         n: usize,
         displacement: &[[f64; D]],
-        pressing: &[[f64; D]],
+        smoothed_reaction: &[[f64; D]],
         mut force: Vec<[f64; D]>,
     ) -> Motion<D> {
-        let (Some(companion), Reading::Whole(whole)) = (&self.companion, &self.reading) else {
+        let (Some(auxiliary), Reading::Corrected(whole)) = (&self.auxiliary, &self.reading) else {
             return (displacement.to_vec(), force);
         };
-        let displacement = companion.displacement().to_vec();
+        let displacement = auxiliary.displacement().to_vec();
         self.dynamics.forces_without_contact(n, &displacement, &mut force);
-        let pull = interval::pull(self.problem, &whole.densities(self.problem, pressing));
+        let pull = interval::pull(self.problem, &whole.densities(self.problem, smoothed_reaction));
         let acceleration = self.total_acceleration(&force, &pull);
-        if let Some(companion) = &mut self.companion {
-            companion.advance(self.problem, &self.dynamics, self.times, n, &acceleration);
+        if let Some(auxiliary) = &mut self.auxiliary {
+            auxiliary.advance(self.problem, &self.dynamics, self.times, n, &acceleration);
         }
         (displacement, force)
     }

@@ -13,7 +13,7 @@ use crate::estimate::{Estimate, Sample};
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
 use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
-use crate::options::{Ablation, Acceleration, ContactForce, Options};
+use crate::options::{Ablation, Acceleration, Options, Reconstruction};
 use crate::residual::{Residuals, worse};
 use crate::traction::{Equilibration, LeastEnergy};
 use percute_core::ids::{ElementId, NodeId};
@@ -57,7 +57,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let steps = times.step_count() / options.every.max(1) + 1;
     let elements = problem.mesh().element_count();
     let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
-    let whole = D > 1 && options.contact_force == ContactForce::Whole;
+    let whole = D > 1 && options.reconstruction == Reconstruction::Corrected;
     let least_energy = if whole { LeastEnergy::<D>::memory(elements, levels, threads) } else { 0 };
     levels
         .saturating_mul(bytes_of_level(problem))
@@ -72,7 +72,7 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     equilibration: Equilibration<'p, D, N>,
-    /// What improves the tractions of the reading `whole`.
+    /// What improves the tractions of the reading `corrected`.
     least_energy: Option<LeastEnergy<D>>,
     choice: Acceleration,
     /// Number of intervals worked on at once.
@@ -97,7 +97,8 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
         let equilibration = Equilibration::new(problem);
-        let least_energy = options.contact_force == ContactForce::Whole && options.ablation != Ablation::LeastEnergy;
+        let least_energy =
+            options.reconstruction == Reconstruction::Corrected && options.ablation != Ablation::LeastEnergy;
         Self {
             problem,
             times,

@@ -3,7 +3,7 @@
 //!
 //! Forces stand for stresses: N = Sσ, Q = SF_DA. Node 0 faces the plane, node n is free.
 
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 
 /// A bar [0, L] of `elements` elements that flies at `speed` towards a plane at −`gap`; `steps`
 /// steps of `courant` h/c.
@@ -101,10 +101,10 @@ impl Bar {
     }
 
     /// N of the elements, and the acceleration that they alone give, which the balance is built on: the simulation's,
-    /// or for `whole` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
+    /// or for `corrected` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
     /// acceleration a, and less (Δt_c²/6)² (K/M)² a/36: on a uniform bar that is what is left of (h²/12c² − Δt²/12), and β.
-    fn sources(&self, history: &[Instant], reading: ContactForce) -> Vec<(Vec<f64>, Vec<f64>)> {
-        if reading != ContactForce::Whole {
+    fn sources(&self, history: &[Instant], reading: Reconstruction) -> Vec<(Vec<f64>, Vec<f64>)> {
+        if reading != Reconstruction::Corrected {
             return history.iter().map(|i| (i.force.clone(), i.free.clone())).collect();
         }
         let (n, dt) = (self.elements, self.step());
@@ -132,8 +132,8 @@ impl Bar {
         made
     }
 
-    /// What `whole` adds at each knot: Q·gap, and ∫R|w| up to there by the trapezoidal rule.
-    fn normal_law(&self, history: &[Instant], knots: &[Knot], reading: ContactForce) -> Vec<f64> {
+    /// What `corrected` adds at each knot: Q·gap, and ∫R|w| up to there by the trapezoidal rule.
+    fn normal_law(&self, history: &[Instant], knots: &[Knot], reading: Reconstruction) -> Vec<f64> {
         let pressing = self.pressing(history);
         // Linear in time over each step.
         let at = |force: &dyn Fn(usize) -> f64, k: usize| 0.5 * (force(k / 2) + force(k.div_ceil(2)));
@@ -143,7 +143,7 @@ impl Bar {
         let mut work = 0.0;
         let mut made = Vec::new();
         for (k, (u, v)) in knots.iter().enumerate() {
-            if reading != ContactForce::Whole {
+            if reading != Reconstruction::Corrected {
                 made.push(0.0);
                 continue;
             }
@@ -197,7 +197,7 @@ impl Bar {
         knots
     }
 
-    /// What `whole` presses with: of a reaction R, the part ma that stops node 0 goes on with weights 1 − s/τ until
+    /// What `corrected` presses with: of a reaction R, the part ma that stops node 0 goes on with weights 1 − s/τ until
     /// τ = m/(ρcS) = h/2c later.
     fn pressing(&self, history: &[Instant]) -> Vec<f64> {
         let (dt, tau) = (self.step(), 0.5 * self.element() / (self.young / self.density).sqrt());
@@ -216,16 +216,16 @@ impl Bar {
     }
 
     /// Q at the two ends of the step from t_n to t_{n+1}, method.md §4.
-    fn contact_force(&self, history: &[Instant], n: usize, reading: ContactForce) -> [f64; 2] {
+    fn contact_force(&self, history: &[Instant], n: usize, reading: Reconstruction) -> [f64; 2] {
         let touches = |k: usize| history[k].touching;
         let pushes = |k: usize| history[k].reaction.max(0.0);
         let pressing = self.pressing(history);
         // [45]–[48]: from one step after the first touch to one before the last.
         let keeps = |k: usize| k > 0 && touches(k - 1) && touches(k) && (k == self.steps || touches(k + 1));
         [n, n + 1].map(|k| match reading {
-            ContactForce::Paper if keeps(k) => pushes(k),
-            ContactForce::Sharp if touches(n) && touches(n + 1) => pushes(k),
-            ContactForce::Whole => pressing[k],
+            Reconstruction::Published if keeps(k) => pushes(k),
+            Reconstruction::Consistent if touches(n) && touches(n + 1) => pushes(k),
+            Reconstruction::Corrected => pressing[k],
             _ => 0.0,
         })
     }
@@ -263,7 +263,7 @@ impl Bar {
     }
 
     /// The whole estimate.
-    pub(crate) fn estimate(&self, reading: ContactForce, choice: Acceleration, every: usize) -> HandEstimate {
+    pub(crate) fn estimate(&self, reading: Reconstruction, choice: Acceleration, every: usize) -> HandEstimate {
         let (n, dt) = (self.elements, self.step());
         let history = self.simulate();
         let knots = self.kinematic(&history);

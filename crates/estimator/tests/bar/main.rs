@@ -17,7 +17,7 @@ use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Recorder, TrueError, bar_impact_error};
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options, Request};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request};
 use percute_exact::BarImpact;
 
 /// The bar of §7.1.4 of the paper; `fraction` is the gap in steps of flight. The run ends half a
@@ -60,21 +60,22 @@ fn estimate(bar: &Bar, options: Options) -> Estimate<1> {
 /// Estimates with the readings in [`READINGS`], and the true error \[60\].
 fn effectivity(bar: &Bar) -> ([Estimate<1>; 3], TrueError) {
     let (problem, times) = (problem(bar), grid(bar));
-    let estimator = |contact_force| {
-        let options = Options { contact_force, ..Options::default() };
+    let estimator = |reconstruction| {
+        let options = Options { reconstruction, ..Options::default() };
         Estimator::new(&problem, &times, options).unwrap()
     };
-    let [whole, sharp, paper] = READINGS.map(estimator);
-    let mut sink = (Recorder::new(&problem, &times), (whole, (sharp, paper)));
+    let [corrected, consistent, published] = READINGS.map(estimator);
+    let mut sink = (Recorder::new(&problem, &times), (corrected, (consistent, published)));
     simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
-    let (recorder, (whole, (sharp, paper))) = sink;
+    let (recorder, (corrected, (consistent, published))) = sink;
     let Bar { length, young, density, section, speed, gap, .. } = *bar;
     let exact = BarImpact { length, young, density, section, speed, gap };
     let error = bar_impact_error(&problem, &recorder.finish(), &exact).unwrap();
-    ([whole, sharp, paper].map(|e| e.finish().unwrap()), error)
+    ([corrected, consistent, published].map(|e| e.finish().unwrap()), error)
 }
 
-const READINGS: [ContactForce; 3] = [ContactForce::Whole, ContactForce::Sharp, ContactForce::Paper];
+const READINGS: [Reconstruction; 3] =
+    [Reconstruction::Corrected, Reconstruction::Consistent, Reconstruction::Published];
 
 #[test]
 fn the_program_agrees_with_the_computation_by_hand() {
@@ -90,13 +91,13 @@ fn the_program_agrees_with_the_computation_by_hand() {
         (9, 0.13, 1.4),
     ] {
         let bar = bar(elements, courant, fraction);
-        for &contact_force in ContactForce::ALL {
+        for &reconstruction in Reconstruction::ALL {
             for &acceleration in Acceleration::ALL {
                 for every in [1, 3] {
-                    let what = format!("{elements}, {courant}, {fraction}, {contact_force}, {acceleration}, {every}");
-                    let hand = bar.estimate(contact_force, acceleration, every);
+                    let what = format!("{elements}, {courant}, {fraction}, {reconstruction}, {acceleration}, {every}");
+                    let hand = bar.estimate(reconstruction, acceleration, every);
                     assert!(hand.admissible, "{what}: penetrates, by hand only the equality problem is solved");
-                    let ours = estimate(&bar, Options { contact_force, acceleration, every, ..Options::default() });
+                    let ours = estimate(&bar, Options { reconstruction, acceleration, every, ..Options::default() });
                     let pairs = [
                         (ours.error.sup, hand.sup),
                         (ours.error.mean, hand.mean),
@@ -114,9 +115,9 @@ fn the_program_agrees_with_the_computation_by_hand() {
 }
 
 /// e_sup/e_Ex and e_mean/e_Ex on the paper's grid, up to the first step past the rebound at
-/// t_c + 2L/c. The ranges of `sharp` and `paper` are those of an independent computation over 10 to 400
+/// t_c + 2L/c. The ranges of `consistent` and `published` are those of an independent computation over 10 to 400
 /// elements, Δt/Δt_c from 0.5 to 1 and gaps of all fractions of a step: 0.24 to 2.1 and 0.24 to 3.2 (the
-/// paper, with a gap that it does not give, has 0.7 to 1.8). That of `whole` is what comes out here, 0.844 to 1.585, with
+/// paper, with a gap that it does not give, has 0.7 to 1.8). That of `corrected` is what comes out here, 0.844 to 1.585, with
 /// which the computation by hand agrees; docs/verification.md has it on the whole grid.
 #[test]
 fn effectivities_against_the_exact_solution() {
@@ -180,10 +181,10 @@ fn the_true_error_converges_with_the_front() {
 fn a_gap_of_whole_steps_at_the_critical_step() {
     for fraction in [1.0, 2.0, 5.0] {
         let bar = bar(20, 1.0, fraction);
-        for &contact_force in ContactForce::ALL {
+        for &reconstruction in Reconstruction::ALL {
             for &acceleration in Acceleration::ALL {
-                let what = format!("{fraction}, {contact_force}, {acceleration}");
-                let all = estimate(&bar, Options { contact_force, acceleration, ..Options::default() });
+                let what = format!("{fraction}, {reconstruction}, {acceleration}");
+                let all = estimate(&bar, Options { reconstruction, acceleration, ..Options::default() });
                 let e = &all.error;
                 let measures = [e.sup, e.mean, e.relative_sup, e.relative_mean, e.reference_sup, e.reference_mean];
                 assert!(measures.iter().chain(&all.by_element).all(|x| x.is_finite()), "{what}: {e:?}");

@@ -9,7 +9,7 @@ use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::PI;
 
@@ -52,7 +52,7 @@ fn run<const D: usize, const N: usize>(
     let estimator = Estimator::new(
         problem,
         &times,
-        Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() },
+        Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
     )
     .unwrap();
     let mut sink = (History::new(&times), estimator);

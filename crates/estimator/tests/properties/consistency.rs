@@ -6,7 +6,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, Options};
+use percute_estimator::{Estimate, Options, Reconstruction};
 use percute_testkit::random_rectangle;
 
 /// Problems with friction, gravity and steps that change.
@@ -59,7 +59,7 @@ fn the_sup_is_the_largest_sample() {
 }
 
 /// η and its parts are energies. The contact part is an integral of what is nowhere negative: it grows, but for
-/// `whole`, where the energies of forces off contact come and go.
+/// `corrected`, where the energies of forces off contact come and go.
 #[test]
 fn parts_are_not_negative_and_times_increase() {
     for (options, estimate) in estimates() {
@@ -76,7 +76,7 @@ fn parts_are_not_negative_and_times_increase() {
             // Rounding of power sums of which the largest is that of the whole run.
             let rounding = 1e-14 * estimate.parts.total();
             let grows = pair[0].parts.contact <= pair[1].parts.contact + rounding;
-            assert!(grows || options.contact_force == ContactForce::Whole, "{options:?}: {pair:?}");
+            assert!(grows || options.reconstruction == Reconstruction::Corrected, "{options:?}: {pair:?}");
         }
         assert_eq!(estimate.over_time[estimate.over_time.len() - 1].time, estimate.end);
     }
@@ -92,14 +92,14 @@ fn table_block(nx: usize, ny: usize, count: usize) -> (TriangleProblem, TimeGrid
     (problem, TimeGrid::uniform(count as f64 * step, count).unwrap())
 }
 
-/// What `sharp` is for: it keeps more of the contact impulse, and its error is smaller.
+/// What `consistent` is for: it keeps more of the contact impulse, and its error is smaller.
 #[test]
-fn sharp_is_sharper_on_the_flat_block() {
+fn consistent_is_sharper_on_the_flat_block() {
     for (nx, ny, count) in [(5, 4, 11), (10, 8, 21), (20, 16, 42)] {
         let (problem, times) = table_block(nx, ny, count);
         let history = history(&problem, &times);
-        let made = |contact_force| estimate(&problem, &history, Options { contact_force, ..Options::default() });
-        let (sharp, paper) = (made(ContactForce::Sharp), made(ContactForce::Paper));
+        let made = |reconstruction| estimate(&problem, &history, Options { reconstruction, ..Options::default() });
+        let (sharp, paper) = (made(Reconstruction::Consistent), made(Reconstruction::Published));
         assert!(sharp.error.sup <= paper.error.sup && sharp.error.mean <= paper.error.mean, "{nx} × {ny}");
         let kept = [&sharp, &paper].map(|e| e.kept_impulse.unwrap());
         assert!(kept[1] <= kept[0], "{nx} × {ny}: {kept:?}");

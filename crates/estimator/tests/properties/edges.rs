@@ -9,7 +9,7 @@ use percute_core::observer::Progress;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, Options, Request, run};
+use percute_estimator::{Estimate, Options, Reconstruction, Request, run};
 use percute_testkit::{random_rectangle, rotated};
 use std::ops::ControlFlow;
 
@@ -23,8 +23,8 @@ fn impact() -> TriangleProblem {
     thrown(block(), [100.0, -300.0], plane).build().unwrap()
 }
 
-/// A block that falls on its corner: that node touches alone. `sharp` and `paper` drop its force, for no edge
-/// touches; `whole` keeps all of it and pays for the edges beside it, which are off the plane.
+/// A block that falls on its corner: that node touches alone. `consistent` and `published` drop its force, for no edge
+/// touches; `corrected` keeps all of it and pays for the edges beside it, which are off the plane.
 #[test]
 fn a_node_that_touches_alone() {
     let mesh = rotated(&TriangleMesh::rectangle(0.04, 0.04, 5, 5).unwrap(), std::f64::consts::FRAC_PI_4).unwrap();
@@ -37,7 +37,7 @@ fn a_node_that_touches_alone() {
     assert_eq!(most, Some(1));
     for options in all_choices() {
         let estimate = estimate(&problem, &history, options);
-        if options.contact_force == ContactForce::Whole {
+        if options.reconstruction == Reconstruction::Corrected {
             // Rounding of sums over a dozen steps.
             assert!((estimate.kept_impulse.unwrap() - 1.0).abs() < 1e-13 && estimate.parts.contact > 0.0);
             continue;

@@ -5,13 +5,13 @@ use percute_core::history::{History, StepSource};
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options, Request};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request};
 
 /// All readings of the contact force under each of the Γ_DA.
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
-    ContactForce::ALL.iter().flat_map(|&contact_force| {
+    Reconstruction::ALL.iter().flat_map(|&reconstruction| {
         Acceleration::ALL.iter().map(move |&acceleration| Options {
-            contact_force,
+            reconstruction,
             acceleration,
             threads: Some(1),
             ..Options::default()
@@ -65,7 +65,7 @@ pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Proble
         // Each `every` meets each reading; all 18 combinations would cost three times as much.
         for every in if k % 3 == 0 { vec![1, 2, 5] } else { vec![1] } {
             let options = Options { every, ..options };
-            let what = format!("{what}, {}, {}, every {every}", options.contact_force, options.acceleration);
+            let what = format!("{what}, {}, {}, every {every}", options.reconstruction, options.acceleration);
             let estimate = estimate(problem, &history, options);
             assert_admissible(&what, &estimate);
         }

@@ -7,7 +7,7 @@ use percute_core::history::{History, Step, StepError, StepSink};
 use percute_core::load::{Support, Table};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, Estimate, EstimateError, Estimator, Given, Options};
+use percute_estimator::{Estimate, EstimateError, Estimator, Given, Options, Reconstruction};
 use percute_testkit::random_rectangle;
 use std::f64::consts::PI;
 
@@ -177,7 +177,7 @@ fn accelerations_that_do_not_fit_are_refused() {
         (Some(&wrong), StepError::NotFinite { step: 1, field: "acceleration", position: 3 }),
         (None, StepError::Partly { step: 1, field: "acceleration", there: false }),
     ] {
-        let options = Options { contact_force: ContactForce::Paper, ..Options::default() };
+        let options = Options { reconstruction: Reconstruction::Published, ..Options::default() };
         let mut estimator = Estimator::new(&problem, &times, options).unwrap();
         estimator.push(&Step { acceleration: Some(&zero), ..history.step(0).unwrap() }).unwrap();
         let acceleration = second.map(Vec::as_slice);

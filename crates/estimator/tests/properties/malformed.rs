@@ -5,7 +5,7 @@ use crate::estimating::history;
 use percute_core::history::{SinkError, Step, StepError, StepSink};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ContactForce, EstimateError, Estimator, MOST_THREADS, Options};
+use percute_estimator::{EstimateError, Estimator, MOST_THREADS, Options, Reconstruction};
 use percute_testkit::random_rectangle;
 
 /// A step that can be spoilt.
@@ -194,18 +194,18 @@ fn steps_of_another_problem() {
     );
 }
 
-/// A history of which only every third instant was kept, as another scheme might take them: too long for the companion
-/// of `whole`, which says so, and no hindrance to `sharp`.
+/// A history of which only every third instant was kept, as another scheme might take them: too long for the auxiliary solution
+/// of `corrected`, which says so, and no hindrance to `consistent`.
 #[test]
-fn steps_too_long_for_the_companion() {
+fn steps_too_long_for_the_auxiliary_solution() {
     let problem = impact();
     let times = steps(&problem, 0.9, 240);
     let history = history(&problem, &times);
     let instants: Vec<f64> = times.instants().iter().copied().step_by(3).collect();
     let longest = instants[1];
     let thinned = TimeGrid::from_instants(instants).unwrap();
-    for reading in [ContactForce::Whole, ContactForce::Sharp] {
-        let options = Options { contact_force: reading, ..Options::default() };
+    for reading in [Reconstruction::Corrected, Reconstruction::Consistent] {
+        let options = Options { reconstruction: reading, ..Options::default() };
         let mut estimator = Estimator::new(&problem, &thinned, options).unwrap();
         let mut refused = None;
         for n in 0..=thinned.step_count() {
@@ -218,16 +218,16 @@ fn steps_too_long_for_the_companion() {
         }
         let told = refused.as_ref().map(ToString::to_string).unwrap_or_default();
         match refused {
-            Some(EstimateError::Companion { longest_step, step, .. }) => {
-                assert_eq!(reading, ContactForce::Whole);
+            Some(EstimateError::AuxiliarySolution { longest_step, step, .. }) => {
+                assert_eq!(reading, Reconstruction::Corrected);
                 // The shortest waves grow by some 20 in each step, their energy by 400: soon a million times what there is.
                 assert!(step < 20, "told at step {step}");
                 assert!(
-                    (longest_step / longest - 1.0).abs() < 1e-9 && told.contains("contact_force = \"sharp\""),
+                    (longest_step / longest - 1.0).abs() < 1e-9 && told.contains("reconstruction = \"consistent\""),
                     "{told}"
                 );
             }
-            other => assert!(other.is_none() && reading == ContactForce::Sharp, "{other:?}"),
+            other => assert!(other.is_none() && reading == Reconstruction::Consistent, "{other:?}"),
         }
         // What was right before can still be summed up.
         assert!(estimator.finish().is_ok());

@@ -8,7 +8,7 @@ use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{
-    AdmissibleFields, ContactForce, ElementMap, Estimate, EstimateError, Estimator, Options, Request, RequestError,
+    AdmissibleFields, ElementMap, Estimate, EstimateError, Estimator, Options, Reconstruction, Request, RequestError,
 };
 use percute_testkit::random_rectangle;
 
@@ -57,9 +57,9 @@ fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGr
             assert!(grows && map.kinetic.iter().chain(&map.elastic).all(|x| *x >= 0.0), "{options:?}");
             accumulated.clone_from(&map.accumulated);
         }
-        // The densities of `sharp` jump where the zone changes, those of `paper` never.
+        // The densities of `consistent` jump where the zone changes, those of `published` never.
         if options.every == 1 {
-            assert_eq!(jumps > 0, options.contact_force == ContactForce::Sharp, "{options:?}");
+            assert_eq!(jumps > 0, options.reconstruction == Reconstruction::Consistent, "{options:?}");
         }
         assert!(estimate.maps[0].accumulated.iter().all(|x| *x == 0.0));
         assert_eq!(estimate.maps[estimate.maps.len() - 1].error(estimate.end), estimate.by_element);

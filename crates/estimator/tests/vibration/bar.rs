@@ -9,7 +9,7 @@ use percute_core::dynamics::simulate;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::PI;
 
@@ -27,7 +27,11 @@ const MODE: BarMode = BarMode {
 const PERIODS: f64 = 3.0;
 
 fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>, Estimate<1>, f64) {
-    run_with(elements, courant, Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() })
+    run_with(
+        elements,
+        courant,
+        Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
+    )
 }
 
 fn run_with(elements: usize, courant: f64, options: Options) -> (Motion<1>, Estimate<1>, f64) {
@@ -173,19 +177,19 @@ fn order_two_in_time() {
     }
 }
 
-/// What the companion of `whole` is for: the phase that the simulation loses, which the balance of its own
+/// What the auxiliary solution of `corrected` is for: the phase that the simulation loses, which the balance of its own
 /// displacements loses too, and never tells, is seen.
 #[test]
 fn the_drift_of_the_phase_is_seen() {
     for (elements, courant) in [(20, 0.3), (40, 0.3), (40, 0.8)] {
-        let of = |contact_force| {
-            let (motion, estimate, _) = run_with(elements, courant, Options { contact_force, ..Options::default() });
+        let of = |reconstruction| {
+            let (motion, estimate, _) = run_with(elements, courant, Options { reconstruction, ..Options::default() });
             estimate.error.mean / distance(&motion, exact).1
         };
         let kh = MODE.wave_number() * MODE.length / elements as f64;
-        let (whole, sharp) = (of(ContactForce::Whole), of(ContactForce::Sharp));
+        let (whole, sharp) = (of(Reconstruction::Corrected), of(Reconstruction::Consistent));
         let told = format!("{elements}, {courant}: {whole} and {sharp}");
-        // The companion's own phase error, of relative order (kh)², is what is left of the drift.
+        // The auxiliary solution's own phase error, of relative order (kh)², is what is left of the drift.
         assert!((whole - 1.0).abs() < 0.6 * kh * kh, "{told}");
         // Its plateau over the true error, as above.
         let drift = kh * kh * (1.0 - courant * courant) * 2.0 * PI * PERIODS / 24.0;

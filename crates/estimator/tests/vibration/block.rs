@@ -9,7 +9,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Options};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
 use percute_exact::{BlockMode, Wave};
 use std::f64::consts::PI;
 
@@ -86,7 +86,7 @@ fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>,
         Estimator::new(
             problem,
             &times,
-            Options { contact_force: ContactForce::Sharp, acceleration, ..Options::default() },
+            Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
         )
         .unwrap()
     };

@@ -7,7 +7,7 @@ use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, ContactForce, Options, Request};
+use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 
 /// Estimates with every reading and option over 40 steps; e_sup (J^½) is at most 1e-12 of the root
 /// of an energy (J) of the motion: rounding of 1e-16, times the some hundred operations on a field
@@ -16,12 +16,12 @@ use percute_estimator::{Acceleration, ContactForce, Options, Request};
 fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, energy: f64) {
     let times = TimeGrid::uniform(40.0 * 0.9 * critical_time_step(problem), 40).unwrap();
     for acceleration in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
-        for &contact_force in ContactForce::ALL {
-            let options = Options { acceleration, contact_force, ..Options::default() };
+        for &reconstruction in Reconstruction::ALL {
+            let options = Options { acceleration, reconstruction, ..Options::default() };
             let (_, estimate) =
                 percute_estimator::run(problem, &times, options, &Request::default(), &mut Unobserved).unwrap();
             let error = estimate.error.sup / energy.sqrt();
-            assert!(error < 1e-12, "{acceleration}, {contact_force}: {error}");
+            assert!(error < 1e-12, "{acceleration}, {reconstruction}: {error}");
         }
     }
 }

@@ -5,7 +5,7 @@ use super::facets::{Boundary, boundary};
 use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
-use super::{MeshFile, MeshOf, notices};
+use super::{MeshFile, MeshOf, import_warnings};
 use percute_core::mesh::{Mesh, MeshError};
 use std::mem::take;
 
@@ -42,17 +42,17 @@ fn assemble<const D: usize, const N: usize>(
     let cells = kept.numbered(&located);
     let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?)?;
     let parts = raw.named(D, &members, |at| at);
-    let noticed = [
-        notices::dropped(&kept.dropped, D),
-        notices::doubled(&doubled),
-        points.and_then(|points| notices::points(raw, points)),
-        notices::inner(&inner, D),
-        notices::empty(raw, D, &groups, &inner, &parts),
+    let reported = [
+        import_warnings::dropped(&kept.dropped, D),
+        import_warnings::doubled(&doubled),
+        points.and_then(|points| import_warnings::points(raw, points)),
+        import_warnings::inner(&inner, D),
+        import_warnings::empty(raw, D, &groups, &inner, &parts),
     ];
     let mesh = Mesh::new(places, &cells, &groups, &parts).map_err(|error| refused(error, &kept, &elements))?;
     let element_tags = elements.iter().map(|element| element.tag).collect();
-    let large = notices::large(mesh.size(), scale);
-    let mesh = mesh.with_notices(noticed.into_iter().chain([large]).flatten().collect());
+    let large = import_warnings::large(mesh.size(), scale);
+    let mesh = mesh.with_import_warnings(reported.into_iter().chain([large]).flatten().collect());
     Ok(MeshOf { mesh, node_tags: kept.tags, element_tags })
 }
 

@@ -9,10 +9,10 @@ mod error;
 mod facets;
 mod groups;
 mod header;
+mod import_warnings;
 mod kind;
 mod names;
 mod nodes;
-mod notices;
 mod raw;
 mod sections;
 mod v2;
@@ -34,7 +34,7 @@ use std::path::Path;
 /// Metres per unit of length that a file may have: beyond any body, and far from where squares of lengths overflow.
 const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 
-/// A mesh as it was read. What was left out is among its notices.
+/// A mesh as it was read. What was left out is among its import warnings.
 #[derive(Clone, Debug)]
 pub struct MeshOf<const D: usize, const N: usize> {
     /// The mesh: nodes and elements in the order of their tags in the file.

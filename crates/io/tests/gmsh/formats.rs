@@ -24,7 +24,7 @@ fn a_block_of_two_materials_is_read_from_every_format() {
         assert!(near(area(mesh, "steel"), 8e-4) && near(area(mesh, "aluminium"), 12e-4), "{format}");
         assert_eq!(mesh.element_groups()["30"], mesh.element_groups()["steel"]);
         // The left part is clockwise in the file.
-        assert_eq!(mesh.mended_elements(), mesh.element_groups()["steel"].len());
+        assert_eq!(mesh.reoriented_elements(), mesh.element_groups()["steel"].len());
     }
 }
 
@@ -44,23 +44,26 @@ fn groups_of_curves_are_where_the_script_puts_them() {
                 assert_eq!(mesh.points()[node.index()][axis], value, "{format}: {group}");
             }
         }
-        let noticed: Vec<_> = mesh.notices().iter().map(|n| (n.name, names(&n.groups))).collect();
+        let reported: Vec<_> = mesh.import_warnings().iter().map(|n| (n.name, names(&n.groups))).collect();
         let expected =
             [("dropped_nodes", vec![]), ("points_left_out", vec!["probe"]), ("inner_facets", vec!["interface"])];
-        assert_eq!(noticed, expected, "{format}");
+        assert_eq!(reported, expected, "{format}");
         assert!(mesh.facet_groups()["interface"].is_empty());
     }
 }
 
 /// The block is 64 mm from corner to corner: who forgets the scale is asked.
 #[test]
-fn a_mesh_that_may_be_in_millimetres_is_noticed() {
-    let noticed = |scale: f64| {
+fn a_mesh_that_may_be_in_millimetres_is_reported() {
+    let reported = |scale: f64| {
         let mesh = plane(read(&file("block-4.1.msh"), scale).unwrap()).mesh;
-        mesh.notices().iter().find(|notice| notice.name == "large_mesh").map(|notice| notice.message.clone())
+        mesh.import_warnings()
+            .iter()
+            .find(|import_warning| import_warning.name == "large_mesh")
+            .map(|import_warning| import_warning.message.clone())
     };
-    assert!(noticed(1.0).is_some_and(|message| message.contains("is 64.031 m large") && message.contains("1e-3")));
-    assert_eq!((noticed(1e-3), noticed(0.999)), (None, None));
+    assert!(reported(1.0).is_some_and(|message| message.contains("is 64.031 m large") && message.contains("1e-3")));
+    assert_eq!((reported(1e-3), reported(0.999)), (None, None));
 }
 
 #[test]
@@ -102,8 +105,8 @@ fn a_bar_is_read_from_every_format() {
         // Differences of coordinates up to 0.12 m round to about 1e-17 m.
         assert!((length("left") - 0.04).abs() < 1e-15 && (length("right") - 0.06).abs() < 1e-15, "{format}");
         // The right line runs against x.
-        assert_eq!(mesh.mended_elements(), mesh.element_groups()["right"].len());
-        let noticed: Vec<_> = mesh.notices().iter().map(|n| (n.name, names(&n.groups))).collect();
-        assert_eq!(noticed, [("inner_facets", vec!["middle"])]);
+        assert_eq!(mesh.reoriented_elements(), mesh.element_groups()["right"].len());
+        let reported: Vec<_> = mesh.import_warnings().iter().map(|n| (n.name, names(&n.groups))).collect();
+        assert_eq!(reported, [("inner_facets", vec!["middle"])]);
     }
 }

@@ -134,13 +134,13 @@ fn doubled_elements_of_version_2_are_one() {
     let read = plane(of_bytes(file("2 8 1 3 2 1").as_bytes()).unwrap());
     assert_eq!((read.mesh.element_count(), read.element_tags), (1, vec![1]));
     assert_eq!(read.mesh.element_groups().keys().collect::<Vec<_>>(), ["7", "8"]);
-    assert!(read.mesh.notices().is_empty());
+    assert!(read.mesh.import_warnings().is_empty());
     for (second, groups) in [("2 7 1 1 2 3", &["7"][..]), ("2 8 2 3 1 2", &["7", "8"])] {
         let read = plane(of_bytes(file(second).as_bytes()).unwrap());
         assert_eq!((read.mesh.element_count(), read.element_tags), (1, vec![1]));
         assert_eq!(read.mesh.element_groups().keys().collect::<Vec<_>>(), groups);
         assert!(read.mesh.element_groups().values().all(|members| members.len() == 1));
-        let names: Vec<_> = read.mesh.notices().iter().map(|notice| notice.name).collect();
+        let names: Vec<_> = read.mesh.import_warnings().iter().map(|import_warning| import_warning.name).collect();
         assert_eq!(names, ["duplicate_elements"]);
     }
 }
@@ -165,8 +165,13 @@ fn elements_of_version_4_on_the_same_nodes_are_one() {
         let facet = read.mesh.facet_groups()[foot][0];
         assert_eq!(read.mesh.facets()[facet.index()].nodes.map(|node| node.index()), [0, 3]);
     }
-    let notice = read.mesh.notices().iter().find(|notice| notice.name == "duplicate_elements").unwrap();
-    assert!(notice.message.contains("1 element of the mesh file (tag 95) was left out"), "{}", notice.message);
+    let import_warning =
+        read.mesh.import_warnings().iter().find(|import_warning| import_warning.name == "duplicate_elements").unwrap();
+    assert!(
+        import_warning.message.contains("1 element of the mesh file (tag 95) was left out"),
+        "{}",
+        import_warning.message
+    );
 }
 
 #[test]

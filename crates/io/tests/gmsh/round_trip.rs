@@ -46,7 +46,7 @@ proptest! {
         for format in formats() {
             let read = plane(again(&mesh, format));
             assert_same(&read.mesh, &mesh);
-            prop_assert_eq!(read.mesh.mended_elements(), 0);
+            prop_assert_eq!(read.mesh.reoriented_elements(), 0);
         }
     }
 }

@@ -101,7 +101,7 @@ proptest! {
 
         let file = plane_file(&path);
         assert_same_mesh(file.mesh(), problem.mesh());
-        prop_assert_eq!(file.mesh().mended_elements(), 0);
+        prop_assert_eq!(file.mesh().reoriented_elements(), 0);
         prop_assert_eq!(bits(file.initial_displacement()), bits(problem.initial_displacement()));
         prop_assert_eq!(bits(file.initial_velocity()), bits(problem.initial_velocity()));
         prop_assert_eq!((file.statement(), file.case()), (STATEMENT, Some(&case())));

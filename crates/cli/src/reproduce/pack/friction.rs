@@ -17,7 +17,7 @@ const TILTED_PLANE: &str = include_str!("../../../../../examples/pack/tilted_pla
 
 const DENSITY: f64 = 1000.0;
 const GRAVITY: f64 = 9.81;
-/// Tilt of the plane (rad).
+/// MomentCorrection of the plane (rad).
 const TILT: f64 = std::f64::consts::FRAC_PI_6;
 /// Coefficients with which it slides and sticks: tan 30° is 0.577.
 const SLIDES: f64 = 0.3;

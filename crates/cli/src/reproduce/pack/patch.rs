@@ -6,10 +6,10 @@ use super::row::Expected::Within;
 use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::plane;
-use percute_estimator::{Acceleration, ContactForce, Options, Request};
+use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 
 /// Every reading with every Γ_DA, and one run in contact with one estimate.
-pub(super) const RUNS: usize = ContactForce::ALL.len() * Acceleration::ALL.len() + 2;
+pub(super) const RUNS: usize = Reconstruction::ALL.len() * Acceleration::ALL.len() + 2;
 
 /// Pressure and shear on the ground (Pa).
 const PRESSURE: f64 = 5e7;
@@ -28,11 +28,11 @@ pub(super) fn free(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
     let text = CaseText::new("patch", include_str!("../../../../../examples/pack/patch.toml"));
     let case = text.read_plane()?;
     let mut rows = Vec::new();
-    for &contact_force in ContactForce::ALL {
+    for &reconstruction in Reconstruction::ALL {
         for &acceleration in Acceleration::ALL {
-            let options = Options { contact_force, acceleration, ..Options::default() };
+            let options = Options { reconstruction, acceleration, ..Options::default() };
             let (_, estimate) = tally.estimate(1.0, &case.problem, &case.times, options, &Request::default())?;
-            let quantity = format!("relative error, `{contact_force}`, `{acceleration}`");
+            let quantity = format!("relative error, `{reconstruction}`, `{acceleration}`");
             rows.push(row(quantity, "", 0.0, estimate.error.relative_sup, 1e-10, ROUNDING));
         }
     }
@@ -66,7 +66,7 @@ pub(super) fn contact(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> 
         ),
         row("shear on the ground, likewise".into(), "Pa", -SHEAR, furthest(0, -SHEAR), 1e-9 * PRESSURE, ROUNDING),
         row(
-            format!("relative elastic error, `{}`", ContactForce::default()),
+            format!("relative elastic error, `{}`", Reconstruction::default()),
             "",
             0.0,
             (elastic / reference).sqrt(),
@@ -74,7 +74,7 @@ pub(super) fn contact(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> 
             ROUNDING,
         ),
         row(
-            format!("relative error, `{}`", ContactForce::default()),
+            format!("relative error, `{}`", Reconstruction::default()),
             "",
             0.0,
             estimate.error.relative_sup,

@@ -9,7 +9,7 @@ use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::ids::ElementId;
 use percute_core::observer::Observer;
 use percute_core::problem::TriangleProblem;
-use percute_estimator::{Acceleration, ContactForce, Estimate, Estimator, Request};
+use percute_estimator::{Acceleration, Estimate, Estimator, Reconstruction, Request};
 
 pub(super) const PART: Part =
     Part { key: "stress-maps", title: "The paper's figures 8 and 9: stress and error, element by element", make };
@@ -26,10 +26,10 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
     let Impact { problem, times, .. } = block.impact()?;
     let mut request = Request::evenly(&times, INSTANTS + 1, 1);
     request.steps.remove(0);
-    let weight = weight(&problem, &times) * ContactForce::ALL.len() as f64;
+    let weight = weight(&problem, &times) * Reconstruction::ALL.len() as f64;
     let tally = &mut Tally::new(PART.key, weight, observer);
     let mut estimators = Vec::new();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         let options = effort.options(reading, Acceleration::default());
         estimators.push(Estimator::new(&problem, &times, options)?.keeping(&request).map_err(ReproduceError::from)?);
     }
@@ -110,7 +110,7 @@ fn at(microseconds: f64) -> String {
 }
 
 fn introduce(section: &mut Section, block: &Block, estimates: &[Estimate<2>]) {
-    let errors = ContactForce::ALL.iter().zip(estimates).map(|(reading, estimate)| {
+    let errors = Reconstruction::ALL.iter().zip(estimates).map(|(reading, estimate)| {
         let [sup, mean] = [estimate.error.relative_sup, estimate.error.relative_mean].map(percent);
         format!("{sup} and {mean} with `{reading}`")
     });
@@ -175,7 +175,7 @@ fn error(section: &mut Section, drawn: &Drawn<'_>, estimates: &[Estimate<2>]) ->
     let mut table = drawn.table("stress-maps-error", caption.to_string(), "J^½", "[20]");
     let mut summary = summary();
     let mut most: f64 = 0.0;
-    for (reading, estimate) in ContactForce::ALL.iter().zip(estimates) {
+    for (reading, estimate) in Reconstruction::ALL.iter().zip(estimates) {
         let values: Vec<Vec<f64>> = estimate.maps.iter().map(|map| map.error(estimate.end)).collect();
         most = most.max(largest(&values));
         drawn.fill(&mut table, &reading.to_string(), &values);
@@ -183,7 +183,7 @@ fn error(section: &mut Section, drawn: &Drawn<'_>, estimates: &[Estimate<2>]) ->
             summary.push(summary_row(&reading.to_string(), *t, values));
         }
     }
-    for reading in ContactForce::ALL {
+    for reading in Reconstruction::ALL {
         let colours = Colours::ratio("accumulated e_E (J^½)", 0.01 * most, most);
         let svg = drawn.maps(&table, &reading.to_string(), colours).svg()?;
         let shares = summary.numbers("half of it in", &[("contact force", reading.to_string().into())]);

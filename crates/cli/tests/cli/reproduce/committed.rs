@@ -67,7 +67,7 @@ fn every_estimate_says_what_the_page_has() {
     for row in tables.values().flatten() {
         let number = |at: usize| row[at].parse::<f64>().unwrap();
         match row[..] {
-            [body, "whole", _, ..] if row.len() == 7 => {
+            [body, "corrected", _, ..] if row.len() == 7 => {
                 if body.contains("10°") {
                     corner = corner.max(number(4)).max(number(6));
                 } else {
@@ -75,7 +75,7 @@ fn every_estimate_says_what_the_page_has() {
                 }
             }
             // Slow impacts.
-            [body, "whole", _, over, ..] if row.len() == 6 => {
+            [body, "corrected", _, over, ..] if row.len() == 6 => {
                 if over.parse().is_ok_and(|over: f64| over >= 0.01) {
                     let highest = if body.contains("10°") { &mut corner } else { &mut most };
                     *highest = highest.max(number(4)).max(number(5));
@@ -83,19 +83,21 @@ fn every_estimate_says_what_the_page_has() {
                     slow = slow.max(number(5));
                 }
             }
-            ["sharp" | "paper", "closest", ..] if row.len() == 11 => others[0] = others[0].min(number(5)),
-            [_, "sharp" | "paper", "sup" | "mean", ..] if row.len() == 8 => others[1] = others[1].max(number(4)),
-            ["whole", "closest", _, "2.0", ..] if row.len() == 11 => {
+            ["consistent" | "published", "closest", ..] if row.len() == 11 => others[0] = others[0].min(number(5)),
+            [_, "consistent" | "published", "sup" | "mean", ..] if row.len() == 8 => {
+                others[1] = others[1].max(number(4))
+            }
+            ["corrected", "closest", _, "2.0", ..] if row.len() == 11 => {
                 (least, most) = (least.min(number(5)), most.max(number(7)));
             }
-            ["corner first", "whole", "sup" | "mean", ..] => corner = corner.max(number(4)),
-            [_, "whole", "sup" | "mean", ..] if row.len() == 8 => {
+            ["corner first", "corrected", "sup" | "mean", ..] => corner = corner.max(number(4)),
+            [_, "corrected", "sup" | "mean", ..] if row.len() == 8 => {
                 (least, most) = (least.min(number(3)), most.max(number(4)));
             }
             _ => {}
         }
     }
-    let said = percute::report::meaning(Some(percute_estimator::ContactForce::Whole));
+    let said = percute::report::meaning(Some(percute_estimator::Reconstruction::Corrected));
     // Rounded outward to what can be said.
     let down = |x: f64| (20.0 * x).floor() / 20.0;
     let up = |x: f64| (10.0 * x).ceil() / 10.0;
@@ -110,7 +112,7 @@ fn every_estimate_says_what_the_page_has() {
         "{slow}"
     );
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
-    for reading in [percute_estimator::ContactForce::Sharp, percute_estimator::ContactForce::Paper] {
+    for reading in [percute_estimator::Reconstruction::Consistent, percute_estimator::Reconstruction::Published] {
         let said = percute::report::meaning(Some(reading));
         let told = format!("in tests {:.2} to over 3 times the true error", others[0]);
         assert!(said.contains(&told) && others[1] > 3.0, "the page has {others:?}; said is: {said}");

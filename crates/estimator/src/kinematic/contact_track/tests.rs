@@ -112,14 +112,14 @@ fn open_at_the_end() {
 /// 1 % on one velocity of the arrival misses the plane by that much, and nothing else is wrong: the
 /// motion stays outside.
 #[test]
-fn a_missed_rendezvous_shows() {
+fn a_missed_onset_shows() {
     let mut track = track(4.0, -1.0);
     track.lengths = vec![HALF; 4];
     // 3.5 + 0.49 m instead of 4.
     track.record(vec![(-1.0, 2.5 + 0.5), (-1.0, 2.0), (-1.49, 0.755), (0.0, 0.01)], true);
     let found = residuals(&track);
-    assert!(found.rendezvous > 1e-3);
-    assert_eq!(found, Residuals { rendezvous: found.rendezvous, ..Residuals::default() });
+    assert!(found.onset > 1e-3);
+    assert_eq!(found, Residuals { onset: found.onset, ..Residuals::default() });
 }
 
 /// A knot 1 % of the body's size behind the plane.

@@ -20,7 +20,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
         self.before = Some(self.levels[first].surface.clone());
-        if let Reading::Whole(whole) = &self.reading {
+        if let Reading::Corrected(whole) = &self.reading {
             let pressures = whole.pressures(self.problem, &now.surface, &next.surface, &interval);
             self.levels[first + 1].pressures.push(pressures);
         }

@@ -1,7 +1,7 @@
 //! Residuals of the sequential part rise when its fields are changed.
 
 use super::*;
-use crate::options::ContactForce;
+use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
 use percute_core::problem::Initial;
 
@@ -39,7 +39,7 @@ fn wrong_initial_conditions_show() {
 #[test]
 fn a_missed_support_shows() {
     let (problem, times) = driven();
-    let mut preparation = prepared(&problem, &times, ContactForce::Sharp);
+    let mut preparation = prepared(&problem, &times, Reconstruction::Consistent);
     assert!(preparation.residuals.largest() < 1e-13);
     let last = times.step_count();
     let Some(level) = preparation.levels.back() else { panic!("no levels") };
@@ -62,7 +62,7 @@ fn a_missed_support_shows() {
 #[test]
 fn every_reading_is_checked_at_every_step() {
     let (problem, times) = impact();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, reading);
         assert!(preparation.residuals.largest() < 1e-13);
         assert!(preparation.impulse.kept > 0.0);
@@ -87,7 +87,7 @@ fn power(length: f64, friction: f64, force: [[f64; 2]; 2], sliding: [f64; 2]) ->
 #[test]
 fn the_contact_part_step_by_step() {
     let (problem, times) = sticking();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, reading);
         let levels = &preparation.levels;
         let (mut turning, mut inside) = (0, 0);
@@ -124,7 +124,7 @@ fn the_contact_part_step_by_step() {
 #[test]
 fn a_guided_node_keeps_its_tangential_motion() {
     let (problem, times) = guided();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, reading);
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();
@@ -146,11 +146,11 @@ fn a_guided_node_keeps_its_tangential_motion() {
 #[test]
 fn an_open_phase_has_its_force_at_the_last_step() {
     let (problem, times) = impact();
-    let whole = prepared(&problem, &times, ContactForce::Paper);
+    let whole = prepared(&problem, &times, Reconstruction::Published);
     let first = whole.levels.iter().position(|level| level.surface.touching.contains(&true)).unwrap();
     assert!(whole.levels[first].surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
     for (last, acts) in [(first, false), (first + 1, true), (first + 2, true)] {
-        let ended = prepared_until(&problem, &times, ContactForce::Paper, last);
+        let ended = prepared_until(&problem, &times, Reconstruction::Published, last);
         let pressed = |d: &crate::contact_force::Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
         let level = ended.levels.back().unwrap();
         assert_eq!((level.index, pressed(&level.density_before)), (last, acts));

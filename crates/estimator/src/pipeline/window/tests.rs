@@ -1,13 +1,13 @@
 //! Residuals of the parallel part rise when its fields are changed.
 
 use super::*;
-use crate::options::ContactForce;
+use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, impact, prepared};
 use crate::request::Request;
 
 /// The levels of a run with σ_h and fluxes, nothing changed yet.
 fn window<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> (Window<'p, 2, 3>, Preparation<'p, 2, 3>) {
-    let mut preparation = prepared(problem, times, ContactForce::Sharp);
+    let mut preparation = prepared(problem, times, Reconstruction::Consistent);
     let mut window = Window::new(problem, times, &Options::default(), Maps::new(Request::default(), problem).unwrap());
     while let Some(level) = preparation.next_ready(true) {
         window.levels.push(level);

@@ -5,7 +5,7 @@ use crate::reproduce::part::parallel::{in_order, threads};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError};
 use percute_core::observer::Observer;
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 
 /// N_s and α of the paper's figures 5 and 6: from 10 to 400 and from 0.5 to 1.
 const ELEMENTS: [usize; 7] = [10, 20, 40, 80, 160, 240, 400];
@@ -82,7 +82,7 @@ impl Grid {
     }
 
     /// The place of a reading with the default Γ_DA among the choices.
-    pub(super) fn choice(&self, reading: ContactForce) -> usize {
+    pub(super) fn choice(&self, reading: Reconstruction) -> usize {
         self.choices.iter().position(|choice| *choice == (reading, Acceleration::default())).unwrap_or(0)
     }
 

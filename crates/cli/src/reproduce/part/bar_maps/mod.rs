@@ -10,7 +10,7 @@ use crate::report::number::{percent, short};
 use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use grid::{ENDS, FRACTIONS, Grid, MEASURES};
 use percute_core::observer::Observer;
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 use study::{BAR, Setting, WHOLE};
 use summary::Summary;
 
@@ -116,7 +116,7 @@ fn middle() -> f64 {
 
 /// Where effectivities lie with each reading, default Γ_DA, over all ends and measures.
 fn ranges(grid: &Grid) -> String {
-    let one = |reading: &ContactForce| {
+    let one = |reading: &Reconstruction| {
         let choice = grid.choice(*reading);
         let parts = MEASURES.iter().enumerate().flat_map(|(m, measure)| {
             ENDS.iter().filter_map(move |&end| {
@@ -133,16 +133,16 @@ fn ranges(grid: &Grid) -> String {
     format!(
         "The paper finds effectivities from {} to {} and does not say of which measure. Over all runs and with Γ_DA `{}` they are: {}. {} The highest \
          means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
-         The low ends of `sharp` and `paper` come from fine meshes and small steps, where dispersion adds up behind the front: a measure \
-         whose balance is that of the simulation's own displacements does not see what has accumulated. `whole` balances a companion solution \
+         The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind the front: a measure \
+         whose balance is that of the simulation's own displacements does not see what has accumulated. `corrected` balances a auxiliary solution \
          with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c in the runs that go \
          on beyond the contact: there the simulation is at its limit of stability, and its shortest wave, once the release has \
-         excited it, grows with time. The companion's does not grow, but the release excites it as well, and about half of that is not seen. \
+         excited it, grows with time. The auxiliary's does not grow, but the release excites it as well, and about half of that is not seen. \
          {}",
         PAPER[0],
         PAPER[1],
         Acceleration::default(),
-        ContactForce::ALL.iter().map(one).collect::<Vec<_>>().join("; "),
+        Reconstruction::ALL.iter().map(one).collect::<Vec<_>>().join("; "),
         spread(grid),
         below_the_critical_step(grid),
     )
@@ -150,15 +150,15 @@ fn ranges(grid: &Grid) -> String {
 
 /// Whether the values of the default are less spread than those of the others.
 fn spread(grid: &Grid) -> String {
-    let ratio = |reading: ContactForce, m: usize, end: f64| {
+    let ratio = |reading: Reconstruction, m: usize, end: f64| {
         let summary = Summary::of(grid, grid.choice(reading), m, |s: &Setting| s.after_impact == end);
         summary.map_or(f64::NAN, |summary| summary.high.value / summary.low.value)
     };
-    let default = ContactForce::default();
+    let default = Reconstruction::default();
     let wider = MEASURES.iter().enumerate().flat_map(|(m, measure)| {
         ENDS.iter().filter_map(move |&end| {
             let own = ratio(default, m, end);
-            let others = ContactForce::ALL.iter().filter(|reading| **reading != default);
+            let others = Reconstruction::ALL.iter().filter(|reading| **reading != default);
             let least = others.map(|&reading| ratio(reading, m, end)).fold(f64::INFINITY, f64::min);
             (own > 0.5 * least).then(|| {
                 format!(
@@ -182,7 +182,7 @@ fn spread(grid: &Grid) -> String {
 
 /// The default in the long runs, but for those at the critical step.
 fn below_the_critical_step(grid: &Grid) -> String {
-    let default = ContactForce::default();
+    let default = Reconstruction::default();
     let choice = grid.choice(default);
     let end = ENDS.into_iter().fold(0.0, f64::max);
     let ranges = MEASURES.iter().enumerate().filter_map(|(m, measure)| {

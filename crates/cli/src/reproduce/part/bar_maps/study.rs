@@ -9,7 +9,7 @@ use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Recorder, bar_impact_error};
-use percute_estimator::{Acceleration, ContactForce, ErrorMeasures, Estimator, Options};
+use percute_estimator::{Acceleration, ErrorMeasures, Estimator, Options, Reconstruction};
 use percute_exact::BarImpact;
 
 /// The bar of the paper's §7.1.4, but for the gap, which the paper does not tell.
@@ -32,11 +32,11 @@ pub(in super::super) struct Setting {
 }
 
 /// A reading of the contact force with a choice of Γ_DA.
-pub(super) type Choice = (ContactForce, Acceleration);
+pub(super) type Choice = (Reconstruction, Acceleration);
 
 /// All of them, reading by reading.
 pub(super) fn choices() -> Vec<Choice> {
-    ContactForce::ALL
+    Reconstruction::ALL
         .iter()
         .flat_map(|&reading| Acceleration::ALL.iter().map(move |&option| (reading, option)))
         .collect()
@@ -79,8 +79,8 @@ impl Setting {
 
     /// Simulates, estimates with each choice on the thread that calls, and compares.
     pub(super) fn run(&self, choices: &[Choice], observer: &mut dyn Observer) -> Result<Outcome, ReproduceError> {
-        let options = |&(contact_force, acceleration): &Choice| Options {
-            contact_force,
+        let options = |&(reconstruction, acceleration): &Choice| Options {
+            reconstruction,
             acceleration,
             threads: Some(1),
             ..Options::default()

@@ -5,7 +5,7 @@ use super::grid::{ENDS, FRACTIONS, Grid, MEASURES, Value, range};
 use super::study::Setting;
 use crate::report::number::short;
 use crate::reproduce::table::{Cell, Column, Table};
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 
 /// What the values of some settings come to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,7 +104,7 @@ pub(super) fn by_fraction(grid: &Grid) -> Table {
     );
     let first = [Column::new("contact force"), Column::new("fraction").unit("steps").digits(1)];
     let mut table = Table::new("bar-maps-fractions", caption, first.into_iter().chain(columns()).collect());
-    for reading in ContactForce::ALL {
+    for reading in Reconstruction::ALL {
         let choice = grid.choices.iter().position(|choice| *choice == (*reading, Acceleration::default()));
         for fraction in FRACTIONS {
             let wanted = |s: &Setting| s.fraction == fraction && s.after_impact == ENDS[1];
@@ -130,7 +130,7 @@ mod tests {
         let grid = Grid {
             elements: &[1, 2, 3, 4],
             ratios: &[0.5],
-            choices: vec![(ContactForce::default(), Acceleration::default())],
+            choices: vec![(Reconstruction::default(), Acceleration::default())],
             settings: [1, 2, 3, 4].map(setting).to_vec(),
             outcomes: [1.0, 2.0, 4.0, 1.4].map(outcome).to_vec(),
         };

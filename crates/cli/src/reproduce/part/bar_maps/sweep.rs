@@ -8,7 +8,7 @@ use crate::reproduce::part::parallel::{in_order, threads};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError};
 use percute_core::observer::Observer;
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 
 /// N_s and α.
 pub(super) const ELEMENTS: usize = 80;
@@ -33,7 +33,7 @@ pub(super) fn table(
         after_impact: ENDS[1],
     };
     let settings: Vec<_> = RATIOS.iter().flat_map(|&ratio| TWENTIETHS.map(|k| setting(ratio, k))).collect();
-    let choices: Vec<Choice> = ContactForce::ALL.iter().map(|&reading| (reading, Acceleration::default())).collect();
+    let choices: Vec<Choice> = Reconstruction::ALL.iter().map(|&reading| (reading, Acceleration::default())).collect();
     let outcomes: Vec<Outcome> =
         in_order(stage, threads(effort.threads), &settings, observer, |setting, stop| setting.run(&choices, stop))?;
     let effectivity = MEASURES.map(|measure| Column::new(measure).digits(3));
@@ -52,12 +52,12 @@ pub(super) fn table(
 /// A panel for each measure and step, a curve for each reading.
 pub(super) fn figure(table: &Table) -> Result<String, ReproduceError> {
     let series = |measure: &str, ratio: f64| {
-        let curve = move |(k, reading): (usize, &ContactForce)| {
+        let curve = move |(k, reading): (usize, &Reconstruction)| {
             let rows = [(FORCE, Cell::from(reading.to_string())), (RATIO, ratio.into())];
             let points = table.numbers(FRACTION, &rows).into_iter().zip(table.numbers(measure, &rows));
             Series::new(reading.to_string(), points.map(|(x, y)| [x, y]).collect(), Hue::Own(k)).marked()
         };
-        ContactForce::ALL.iter().enumerate().map(curve).collect()
+        Reconstruction::ALL.iter().enumerate().map(curve).collect()
     };
     let panels = MEASURES.iter().flat_map(|measure| {
         RATIOS.map(|ratio| Panel { title: format!("{measure}, Δt/Δt_c = {ratio}"), series: series(measure, ratio) })

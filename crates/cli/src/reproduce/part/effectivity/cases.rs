@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::reproduce::part::effectivity::study::Found;
     use percute_core::observer::Unobserved;
-    use percute_estimator::ContactForce;
+    use percute_estimator::Reconstruction;
 
     /// Tables and figure find a case by its name; the small effort computes rows of the full one.
     #[test]
@@ -141,10 +141,12 @@ mod tests {
         let case = cases(&Effort::SMALL)[0];
         let found: Vec<Found> =
             case.run(&super::super::study::readings(), &mut Unobserved).unwrap().into_iter().flatten().collect();
-        let known =
-            [(ContactForce::Sharp, [[1.50, 1.51], [1.26, 1.26]]), (ContactForce::Paper, [[1.80, 1.83], [1.78, 1.65]])];
+        let known = [
+            (Reconstruction::Consistent, [[1.50, 1.51], [1.26, 1.26]]),
+            (Reconstruction::Published, [[1.80, 1.83], [1.78, 1.65]]),
+        ];
         for (reading, meshes) in known {
-            let r = ContactForce::ALL.iter().position(|other| *other == reading).unwrap();
+            let r = Reconstruction::ALL.iter().position(|other| *other == reading).unwrap();
             for (found, known) in found.iter().zip(meshes) {
                 for (value, known) in found.effectivity(r).into_iter().zip(known) {
                     // Rounded to 0.01; critical steps of both programs, good to 1e-3, move the instants of impact.

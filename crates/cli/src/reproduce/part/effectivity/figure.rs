@@ -7,7 +7,7 @@ use super::tables::{MEASURES, Result, on_mesh};
 use crate::reproduce::ReproduceError;
 use crate::reproduce::chart::{Axis, Band, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Table};
-use percute_estimator::ContactForce;
+use percute_estimator::Reconstruction;
 
 /// Where a good estimate lies.
 pub(super) const GOOD: [f64; 2] = [0.9, 1.5];
@@ -28,24 +28,24 @@ fn family(case: &Case) -> (usize, String) {
 
 /// A row of panels for each measure, a panel for each reading, a curve for each case.
 pub(super) fn draw(table: &Table, results: &[Result]) -> std::result::Result<String, ReproduceError> {
-    let curve = |case: &Case, reading: &ContactForce, measure: &str| {
+    let curve = |case: &Case, reading: &Reconstruction, measure: &str| {
         let rows = [("case", Cell::from(case.name())), ("contact force", reading.to_string().into())];
         let value = |mesh| table.numbers(&on_mesh(measure, mesh), &rows).first().copied().unwrap_or(f64::NAN);
         let points = ESTIMATED.iter().enumerate().map(|(mesh, &level)| [f64::from(1 << level), value(mesh)]);
         let (hue, name) = family(case);
         Series::new(name, points.collect(), Hue::Own(hue)).marked()
     };
-    let panel = |measure: &str, reading: &ContactForce| Panel {
+    let panel = |measure: &str, reading: &Reconstruction| Panel {
         title: format!("{reading}, {measure}"),
         series: results.iter().map(|(case, _)| curve(case, reading, measure)).collect(),
     };
     let panels =
-        MEASURES.iter().flat_map(|measure| ContactForce::ALL.iter().map(move |reading| panel(measure, reading)));
+        MEASURES.iter().flat_map(|measure| Reconstruction::ALL.iter().map(move |reading| panel(measure, reading)));
     let lines = Lines {
         x: Axis::log("times finer than mesh 1").marks(&[1.0, 2.0, 4.0, 8.0]),
         y: Axis::log("e/e_ref").marks(&MARKS),
         panels: panels.collect(),
-        columns: ContactForce::ALL.len().min(3),
+        columns: Reconstruction::ALL.len().min(3),
         bands: vec![Band { low: GOOD[0], high: GOOD[1] }],
     };
     Ok(lines.svg()?)

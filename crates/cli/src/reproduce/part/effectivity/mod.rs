@@ -15,7 +15,7 @@ use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use cases::{Kind, cases};
 use figure::GOOD;
 use percute_core::observer::Observer;
-use percute_estimator::{Acceleration, ContactForce};
+use percute_estimator::{Acceleration, Reconstruction};
 use study::STEP;
 
 pub(super) const PART: Part =
@@ -81,7 +81,7 @@ fn introduce(section: &mut Section) {
 
 /// Why a corner that touches alone is told too large, and what grows.
 fn outside(results: &[tables::Result]) -> String {
-    let r = ContactForce::ALL.iter().position(|reading| *reading == ContactForce::default()).unwrap_or(0);
+    let r = Reconstruction::ALL.iter().position(|reading| *reading == Reconstruction::default()).unwrap_or(0);
     let corner = results.iter().filter(|(case, _)| case.kind() == Kind::Corner);
     let shares = corner.filter_map(|(_, found)| Some(found.last()?.as_ref()?.contact[r]));
     let least = shares.fold(f64::INFINITY, f64::min);
@@ -90,7 +90,7 @@ fn outside(results: &[tables::Result]) -> String {
          along the edges beside the corner, and those are off the plane: on mesh 4 at least {} of η, where it is largest, is \
          the energy gap·F_n of this and the work of what arrives. A point force would have no gap, but no stress of finite \
          energy balances it. With the curved bodies each edge that comes to touch is such a corner for some steps. {}",
-        ContactForce::default(),
+        Reconstruction::default(),
         percent(least),
         growth(results, r),
     )

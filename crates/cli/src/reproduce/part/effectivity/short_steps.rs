@@ -24,8 +24,8 @@ type Attempt = (String, Options);
 
 /// The readings, and the default with reactions that are not spread in time.
 fn attempts() -> Vec<Attempt> {
-    let unspread = Options { ablation: Ablation::Stopping, threads: Some(1), ..Options::default() };
-    let readings = readings().into_iter().map(|options| (options.contact_force.to_string(), options));
+    let unspread = Options { ablation: Ablation::ImpulseSmoothing, threads: Some(1), ..Options::default() };
+    let readings = readings().into_iter().map(|options| (options.reconstruction.to_string(), options));
     readings.chain([("whole, not spread".to_string(), unspread)]).collect()
 }
 
@@ -96,9 +96,9 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     section.heading("Short steps");
     section.text(format!(
         "The simulation stops the mass of a node that arrives within a step: the shorter the step, the larger the force. The readings must not \
-         follow it, which for `whole` needs its impulses spread in time. The bar of figure 5, with impacts at {} fractions of a step and until t_c + 2L/c, against the exact solution; \
+         follow it, which for `corrected` needs its impulses spread in time. The bar of figure 5, with impacts at {} fractions of a step and until t_c + 2L/c, against the exact solution; \
          plane bodies on mesh {FEW} against the first reference. Spread over the time of a wave through the depth of the node, a force begins with twice the \
-         exact one: on the flat block the largest error of `whole`, which is then that of the impact, rises with shorter steps to a limit, and the mean does not.",
+         exact one: on the flat block the largest error of `corrected`, which is then that of the impact, rises with shorter steps to a limit, and the mean does not.",
         FRACTIONS.len(),
     ));
     section.figure(

@@ -8,7 +8,7 @@ use super::{Kind, PART};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError, Section};
 use percute_core::observer::Observer;
-use percute_estimator::ContactForce;
+use percute_estimator::Reconstruction;
 
 /// Parts of the speed and the gap of the cases.
 const PARTS: [f64; 4] = [1.0, 0.1, 0.01, 0.001];
@@ -49,7 +49,7 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
     for ((case, part), found) in runs.iter().zip(&found) {
         let speed = part * case.velocity[1].abs();
         let over = speed / case.problem(0)?.materials()[0].wave_speed();
-        for (r, reading) in ContactForce::ALL.iter().enumerate() {
+        for (r, reading) in Reconstruction::ALL.iter().enumerate() {
             let words = [case.name().into(), reading.to_string().into(), Cell::from(speed), over.into()];
             table.push(words.into_iter().chain(found.effectivity(r).map(Cell::from)));
         }
@@ -59,8 +59,8 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
         "Where all edges that touch lie in the plane, a slower impact is the same in another scale, and the effectivity does not change. \
          Where a corner or a curve touches, an edge beside the first node is off the plane by its slope, whatever the speed: a body that \
          is less deformed touches with a smaller part of it than the mesh has. The force on such an edge costs gap·F_n, which falls like the \
-         force, while the square of the true error falls like the square of the force. So `whole` grows like 1/√v at corners and points, \
-         and a mesh that is to resolve a slow impact must be as fine as its zone of contact. `sharp` and `paper`, which drop that force, come to \
+         force, while the square of the true error falls like the square of the force. So `corrected` grows like 1/√v at corners and points, \
+         and a mesh that is to resolve a slow impact must be as fine as its zone of contact. `consistent` and `published`, which drop that force, come to \
          a limit, for they lack its impulse in any case.",
     );
     section.table(table);

@@ -10,7 +10,7 @@ use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder};
-use percute_estimator::{ContactForce, ErrorMeasures, Estimator, Options};
+use percute_estimator::{ErrorMeasures, Estimator, Options, Reconstruction};
 
 /// Δt/Δt_c, exactly, of all runs but those that are there for short steps.
 pub(super) const STEP: f64 = 0.9;
@@ -19,8 +19,8 @@ pub(super) const ESTIMATED: [usize; 4] = [0, 1, 2, 3];
 
 /// The readings of the contact force, each on the thread that calls.
 pub(super) fn readings() -> Vec<Options> {
-    let options = |&contact_force| Options { contact_force, threads: Some(1), ..Options::default() };
-    ContactForce::ALL.iter().map(options).collect()
+    let options = |&reconstruction| Options { reconstruction, threads: Some(1), ..Options::default() };
+    Reconstruction::ALL.iter().map(options).collect()
 }
 
 /// One impact of an aluminium body (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³, as in the paper's §7.2).

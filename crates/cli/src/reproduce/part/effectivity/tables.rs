@@ -3,7 +3,7 @@
 use super::cases::Kind;
 use super::study::{Case, ESTIMATED, Found};
 use crate::reproduce::table::{Cell, Column, Table};
-use percute_estimator::ContactForce;
+use percute_estimator::Reconstruction;
 
 /// A case with what was found on each mesh.
 pub(super) type Result = (Case, Vec<Option<Found>>);
@@ -41,7 +41,7 @@ pub(super) fn effectivities(results: &[Result]) -> Table {
                    its plane for the steps of that mesh.";
     let mut table = Table::new("effectivity", caption, columns.chain(measured(|column| column.digits(3))).collect());
     for (case, found) in results {
-        for (r, reading) in ContactForce::ALL.iter().enumerate() {
+        for (r, reading) in Reconstruction::ALL.iter().enumerate() {
             let words = [case.kind().name().into(), case.name().into(), Cell::from(reading.to_string())];
             table.push(words.into_iter().chain(values(found, |found| Some(found.effectivity(r)))));
         }
@@ -124,7 +124,7 @@ pub(super) fn kinds(results: &[Result]) -> Table {
                    the value on mesh 4 exceeds that on mesh 2 in the case where it does so most (below 1: it falls in all).";
     let mut table = Table::new("effectivity-kinds", caption, columns);
     for kind in Kind::ALL {
-        for (r, reading) in ContactForce::ALL.iter().enumerate() {
+        for (r, reading) in Reconstruction::ALL.iter().enumerate() {
             for (m, measure) in MEASURES.into_iter().enumerate() {
                 let cases: Vec<Vec<f64>> = of_kind(results, kind, r, m);
                 let range = |from: usize| {
@@ -170,7 +170,7 @@ pub(super) fn runs(results: &[Result]) -> Table {
     let caption = "All runs: estimate, relative error, the part of the contact impulse that the admissible force keeps, and true error.";
     let mut table = Table::new("effectivity-runs", caption, columns).long();
     for (case, found) in results {
-        for (r, reading) in ContactForce::ALL.iter().enumerate() {
+        for (r, reading) in Reconstruction::ALL.iter().enumerate() {
             for found in found.iter().flatten() {
                 let e = &found.estimates[r];
                 let [sup, mean] = found.exact.last().copied().unwrap_or([f64::NAN; 2]);

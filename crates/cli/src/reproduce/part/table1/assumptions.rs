@@ -6,7 +6,7 @@ use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::part::block::{Block, Gap, mesh_name};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError, Section, Tally, weight};
-use percute_estimator::{Acceleration, ContactForce, Request};
+use percute_estimator::{Acceleration, Reconstruction, Request};
 
 /// Gaps in steps: fractions 0.1 to 0.9 of a step beyond a whole one. Below, a node may touch at the first step already.
 const GAPS: [f64; 5] = [1.1, 1.3, 1.5, 1.7, 1.9];
@@ -50,7 +50,7 @@ pub(super) fn add(
     tally: &mut Tally<'_>,
 ) -> Result<(), ReproduceError> {
     let mut table = table();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         for variant in variants {
             let mut errors = Vec::new();
             for row in rows {
@@ -92,7 +92,7 @@ fn table() -> Table {
 
 /// Says by how much each assumption moves the errors.
 fn text(table: &Table) -> String {
-    let spread = |reading: &ContactForce, assumption: &str| {
+    let spread = |reading: &Reconstruction, assumption: &str| {
         let rows = [("contact force", Cell::from(reading.to_string())), ("assumption", Cell::from(assumption))];
         let numbers = table.columns.iter().filter(|c| c.unit == "J^½").map(|c| table.numbers(&c.name, &rows));
         let ratio = |values: Vec<f64>| {
@@ -101,11 +101,11 @@ fn text(table: &Table) -> String {
         };
         numbers.map(ratio).fold(f64::NAN, f64::max)
     };
-    let one = |reading: &ContactForce| {
+    let one = |reading: &Reconstruction| {
         let by = ["gap", "T", "plane"].map(|assumption| percent(spread(reading, assumption)));
         format!("with `{reading}` by up to {} (gap), {} (T) and {} (plane hypothesis)", by[0], by[1], by[2])
     };
-    let all: Vec<String> = ContactForce::ALL.iter().map(one).collect();
+    let all: Vec<String> = Reconstruction::ALL.iter().map(one).collect();
     format!(
         "Where the impact falls inside a step, when the interval ends, and the plane hypothesis each move the errors: from \
          its least to its largest value, an error on one mesh moves {}.",
@@ -122,7 +122,7 @@ fn caption() -> String {
 }
 
 fn figure(table: &Table, rows: &[Row]) -> Result<String, ReproduceError> {
-    let panel = |reading: &ContactForce| {
+    let panel = |reading: &Reconstruction| {
         let picked = [("contact force", reading.to_string().into()), ("assumption", "gap".into())];
         let curve = |(k, row): (usize, &Row)| {
             let name = mesh_name(row.cells);
@@ -136,8 +136,8 @@ fn figure(table: &Table, rows: &[Row]) -> Result<String, ReproduceError> {
     let lines = Lines {
         x: Axis::linear("gap (steps)").marks(&GAPS),
         y: Axis::linear("e_sup (J^½)").from(0.0),
-        panels: ContactForce::ALL.iter().map(panel).collect(),
-        columns: ContactForce::ALL.len().min(3),
+        panels: Reconstruction::ALL.iter().map(panel).collect(),
+        columns: Reconstruction::ALL.len().min(3),
         bands: vec![],
     };
     Ok(lines.svg()?)

@@ -10,7 +10,7 @@ use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, Part, ReproduceError, Section, Tally, weight};
 use paper::{ROWS, Row, deviation};
 use percute_core::observer::Observer;
-use percute_estimator::{Acceleration, ContactForce, ErrorMeasures, Request};
+use percute_estimator::{Acceleration, ErrorMeasures, Reconstruction, Request};
 
 pub(super) const PART: Part =
     Part { key: "table1", title: "The paper's table 1: an oblique impact on four meshes", make };
@@ -20,7 +20,7 @@ const FEW: usize = 2;
 
 /// The measures of all meshes for one choice of options.
 struct Choice {
-    reading: ContactForce,
+    reading: Reconstruction,
     acceleration: Acceleration,
     errors: Vec<ErrorMeasures>,
 }
@@ -30,7 +30,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
     let impacts = rows.iter().map(|row| Block::new(row.cells).impact()).collect::<Result<Vec<_>, _>>()?;
     let variants = assumptions::variants();
     let own: f64 = impacts.iter().map(|i| weight(&i.problem, &i.times)).sum();
-    let runs = ContactForce::ALL.len() * (Acceleration::ALL.len() + variants.len());
+    let runs = Reconstruction::ALL.len() * (Acceleration::ALL.len() + variants.len());
     let tally = &mut Tally::new(PART.key, own * runs as f64, observer);
     let choices = choices(effort, &impacts, tally)?;
     let mut section = Section::new(PART.key, PART.title);
@@ -46,7 +46,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
 
 fn choices(effort: &Effort, impacts: &[Impact], tally: &mut Tally<'_>) -> Result<Vec<Choice>, ReproduceError> {
     let mut choices = Vec::new();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         for &acceleration in Acceleration::ALL {
             let mut errors = Vec::new();
             for Impact { problem, times, .. } in impacts {
@@ -65,10 +65,10 @@ fn introduce(section: &mut Section) {
         "An aluminium block of 50 × 40 mm strikes a plane at 400 m/s along it and 400 m/s towards it, with friction \
          (μ = {}); the step is {} of the critical one. The table has the largest error over time, e_sup [15], and the \
          mean, e_mean [16], for every reading of the contact force and every Γ_DA that percute offers, beside the \
-         paper's values. The paper's method is `paper`; the default is `{}` with `{}`.",
+         paper's values. The paper's method is `published`; the default is `{}` with `{}`.",
         base.friction,
         base.courant,
-        ContactForce::default(),
+        Reconstruction::default(),
         Acceleration::default(),
     ));
     section.text(format!(
@@ -84,12 +84,13 @@ fn conclude(section: &mut Section, choices: &[Choice], rows: &[Row]) {
         let errors: Vec<_> = choice.errors.iter().map(|e| [e.sup, e.mean]).collect();
         deviation(&errors).map(|off| (choice.acceleration, off))
     };
-    let paper: Vec<_> = choices.iter().filter(|c| c.reading == ContactForce::Paper).filter_map(|c| off(&c)).collect();
+    let paper: Vec<_> =
+        choices.iter().filter(|c| c.reading == Reconstruction::Published).filter_map(|c| off(&c)).collect();
     if let Some((nearest, least)) = paper.iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
         let others = paper.iter().filter(|(a, _)| a != nearest);
         let others: Vec<_> = others.map(|(a, off)| format!("{} with `{a}`", percent(*off))).collect();
         section.text(format!(
-            "With the reading `paper`, the eight absolute values differ from the paper's by {} (root mean square) with \
+            "With the reading `published`, the eight absolute values differ from the paper's by {} (root mean square) with \
              `{nearest}`, by {}.",
             percent(*least),
             others.join(" and by "),
@@ -158,16 +159,17 @@ fn caption() -> String {
 }
 
 fn figure(table: &Table) -> Result<String, ReproduceError> {
-    let curve = |name: String, column: &str, reading: ContactForce, hue: Hue| {
+    let curve = |name: String, column: &str, reading: Reconstruction, hue: Hue| {
         let rows =
             [("contact force", reading.to_string().into()), ("Γ_DA", Acceleration::default().to_string().into())];
         let points = table.numbers("elements", &rows).into_iter().zip(table.numbers(column, &rows));
         Series::new(name, points.map(|(x, y)| [x, y]).collect(), hue).marked()
     };
     let panel = |measure: &str| {
-        let readings = ContactForce::ALL.iter().enumerate();
+        let readings = Reconstruction::ALL.iter().enumerate();
         let ours = readings.map(|(k, &reading)| curve(reading.to_string(), measure, reading, Hue::Own(k)));
-        let paper = curve("the paper's table".into(), &format!("paper's {measure}"), ContactForce::default(), Hue::Ink);
+        let paper =
+            curve("the paper's table".into(), &format!("paper's {measure}"), Reconstruction::default(), Hue::Ink);
         Panel { title: measure.to_string(), series: ours.chain([paper.dashed()]).collect() }
     };
     let elements = table.numbers("elements", &[]);

@@ -7,7 +7,7 @@ use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, ReproduceError, Section, Tally};
-use percute_estimator::{Acceleration, ContactForce, Request};
+use percute_estimator::{Acceleration, Reconstruction, Request};
 
 /// Fractions of a step at which the impact falls.
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -34,7 +34,7 @@ pub(super) fn add(
     tally: &mut Tally<'_>,
 ) -> Result<(), ReproduceError> {
     let mut table = table();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         for (pair, Impact { problem, times, arrival }) in runs {
             let options = effort.options(reading, Acceleration::default());
             let weight = weight_of(problem, times);
@@ -71,7 +71,7 @@ fn table() -> Table {
 fn text(table: &Table, runs: &[Run]) -> String {
     let ratio = |pick: fn(f64, f64) -> f64| runs.iter().map(|([_, ratio], _)| *ratio).fold(f64::NAN, pick);
     let (large, small) = (ratio(f64::max), ratio(f64::min));
-    let one = |reading: &ContactForce| {
+    let one = |reading: &Reconstruction| {
         let range = |ratio: f64| {
             let rows = [("contact force", reading.to_string().into()), ("Δt/Δt_c", ratio.into())];
             let values = table.numbers("largest error", &rows);
@@ -80,7 +80,7 @@ fn text(table: &Table, runs: &[Run]) -> String {
         };
         format!("with `{reading}` {} at Δt/Δt_c = {large} and {} at {small}", range(large), range(small))
     };
-    let all: Vec<String> = ContactForce::ALL.iter().map(one).collect();
+    let all: Vec<String> = Reconstruction::ALL.iter().map(one).collect();
     format!(
         "In the step before contact, the nodes must be braked so that they end on the plane: a force that acts before there \
          is contact, and is not admissible. The velocity that it takes away does not shrink with the step, and how much of \
@@ -99,7 +99,7 @@ fn caption() -> String {
 }
 
 fn figure(table: &Table) -> Result<String, ReproduceError> {
-    let panel = |reading: &ContactForce| {
+    let panel = |reading: &Reconstruction| {
         let curve = |(k, fraction): (usize, &f64)| {
             let rows = [("contact force", reading.to_string().into()), ("fraction", (*fraction).into())];
             let points = table.numbers("Δt/Δt_c", &rows).into_iter().zip(table.numbers("largest error", &rows));
@@ -112,8 +112,8 @@ fn figure(table: &Table) -> Result<String, ReproduceError> {
     let lines = Lines {
         x: Axis::log("Δt/Δt_c").marks(&RATIOS),
         y: Axis::log("largest error (J^½)"),
-        panels: ContactForce::ALL.iter().map(panel).collect(),
-        columns: ContactForce::ALL.len().min(3),
+        panels: Reconstruction::ALL.iter().map(panel).collect(),
+        columns: Reconstruction::ALL.len().min(3),
         bands: vec![],
     };
     Ok(lines.svg()?)

@@ -12,7 +12,7 @@ use percute_core::mesh::BarMesh;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
-use percute_estimator::{Acceleration, ContactForce, Estimator};
+use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::{BarEnds, BarMode};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -80,7 +80,7 @@ pub(super) fn add(
 ) -> Result<(), ReproduceError> {
     let mut table = table();
     for bar in bars {
-        let options = effort.options(ContactForce::default(), Acceleration::default());
+        let options = effort.options(Reconstruction::default(), Acceleration::default());
         let estimator = Estimator::new(&bar.problem, &bar.times, options)?;
         let mut sink = (Recorder::new(&bar.problem, &bar.times), estimator);
         tally.simulate(weight_of(&bar.problem, &bar.times), &bar.problem, &bar.times, &mut sink)?;

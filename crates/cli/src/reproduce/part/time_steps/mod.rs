@@ -8,7 +8,7 @@ use super::block::{Block, Gap, Impact};
 use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, Part, ReproduceError, Section, Tally};
 use percute_core::observer::Observer;
-use percute_estimator::ContactForce;
+use percute_estimator::Reconstruction;
 
 pub(super) const PART: Part = Part { key: "time-steps", title: "The paper's figure 10: the error and the step", make };
 
@@ -32,7 +32,7 @@ fn block(ratio: f64, fraction: f64) -> Block {
 /// The weight of runs that are estimated with each reading.
 fn weight<T>(runs: &[(T, Impact)]) -> f64 {
     let one = |(_, impact): &(T, Impact)| weight_of(&impact.problem, &impact.times);
-    runs.iter().map(one).sum::<f64>() * ContactForce::ALL.len() as f64
+    runs.iter().map(one).sum::<f64>() * Reconstruction::ALL.len() as f64
 }
 
 fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, ReproduceError> {

@@ -7,7 +7,7 @@ use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, ReproduceError, Section, Tally};
-use percute_estimator::{Acceleration, ContactForce, Estimate, Request, Sample};
+use percute_estimator::{Acceleration, Estimate, Reconstruction, Request, Sample};
 
 /// The fraction of a step at which the impact falls.
 const FRACTION: f64 = 0.3;
@@ -31,7 +31,7 @@ pub(super) fn add(
     tally: &mut Tally<'_>,
 ) -> Result<(), ReproduceError> {
     let (mut over_time, mut sup) = tables();
-    for &reading in ContactForce::ALL {
+    for &reading in Reconstruction::ALL {
         for (ratio, Impact { problem, times, arrival }) in runs {
             let options = effort.options(reading, Acceleration::default());
             let weight = weight_of(problem, times);
@@ -113,7 +113,7 @@ fn over_time_caption() -> String {
 
 fn over_time_figure(table: &Table, runs: &[Run]) -> Result<String, ReproduceError> {
     let drawn: Vec<f64> = DRAWN.into_iter().filter(|ratio| runs.iter().any(|(other, _)| other == ratio)).collect();
-    let panel = |reading: &ContactForce| {
+    let panel = |reading: &Reconstruction| {
         let curve = |(k, &ratio): (usize, &f64)| {
             let rows = [("contact force", reading.to_string().into()), ("Δt/Δt_c", ratio.into())];
             let points = table.numbers("t − t_impact", &rows).into_iter().zip(table.numbers("√η", &rows));
@@ -125,8 +125,8 @@ fn over_time_figure(table: &Table, runs: &[Run]) -> Result<String, ReproduceErro
     let lines = Lines {
         x: Axis::linear("t − t_impact (µs)"),
         y: Axis::linear("√η (J^½)").from(0.0),
-        panels: ContactForce::ALL.iter().map(panel).collect(),
-        columns: ContactForce::ALL.len().min(3),
+        panels: Reconstruction::ALL.iter().map(panel).collect(),
+        columns: Reconstruction::ALL.len().min(3),
         bands: vec![],
     };
     Ok(lines.svg()?)
@@ -140,12 +140,12 @@ fn sup_caption() -> String {
 }
 
 fn sup_figure(table: &Table) -> Result<String, ReproduceError> {
-    let curve = |name: String, column: &str, reading: &ContactForce, hue: Hue| {
+    let curve = |name: String, column: &str, reading: &Reconstruction, hue: Hue| {
         let rows = [("contact force", reading.to_string().into())];
         let points = table.numbers("Δt/Δt_c", &rows).into_iter().zip(table.numbers(column, &rows));
         Series::new(name, points.map(|(x, y)| [x, y]).collect(), hue).marked()
     };
-    let both = |(k, reading): (usize, &ContactForce)| {
+    let both = |(k, reading): (usize, &Reconstruction)| {
         let whole = curve(format!("{reading}, e_sup"), "e_sup", reading, Hue::Own(k));
         let later = curve(format!("{reading}, without the impact"), "largest later", reading, Hue::Own(k));
         [whole, later.dashed()]
@@ -155,7 +155,7 @@ fn sup_figure(table: &Table) -> Result<String, ReproduceError> {
         y: Axis::linear("error (J^½)").from(0.0),
         panels: vec![Panel {
             title: String::new(),
-            series: ContactForce::ALL.iter().enumerate().flat_map(both).collect(),
+            series: Reconstruction::ALL.iter().enumerate().flat_map(both).collect(),
         }],
         columns: 1,
         bands: vec![],
@@ -166,7 +166,7 @@ fn sup_figure(table: &Table) -> Result<String, ReproduceError> {
 /// Says what the smallest steps change.
 fn conclude(section: &mut Section, table: &Table, runs: &[Run]) {
     let [.., (before, _), (least, _)] = runs else { return };
-    let one = |reading: &ContactForce| {
+    let one = |reading: &Reconstruction| {
         let at = |column: &str, ratio: f64| {
             let rows = [("contact force", reading.to_string().into()), ("Δt/Δt_c", ratio.into())];
             table.numbers(column, &rows).first().copied().unwrap_or(f64::NAN)
@@ -181,7 +181,7 @@ fn conclude(section: &mut Section, table: &Table, runs: &[Run]) {
             short(at("largest at impact", *least), 4),
         )
     };
-    let all: Vec<String> = ContactForce::ALL.iter().map(one).collect();
+    let all: Vec<String> = Reconstruction::ALL.iter().map(one).collect();
     section.text(format!(
         "The paper sees the error fall more and more slowly and names two causes that do not depend on the step: the moment \
          of impact, and the lumped mass. Here, from Δt/Δt_c = {before} to {least}, {}. What comes of the moment of impact and \

@@ -13,7 +13,7 @@ use crate::reproduce::chart::{Axis, Band, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use percute_core::observer::Observer;
-use percute_estimator::{Ablation, ContactForce, Options};
+use percute_estimator::{Ablation, Options, Reconstruction};
 
 pub(super) const PART: Part =
     Part { key: "tried", title: "What each part of the default is for, and what failed", make };
@@ -22,25 +22,25 @@ pub(super) const PART: Part =
 struct Attempt {
     name: &'static str,
     what: &'static str,
-    contact_force: ContactForce,
+    reconstruction: Reconstruction,
     ablation: Ablation,
 }
 
 const fn of_whole(name: &'static str, what: &'static str, ablation: Ablation) -> Attempt {
-    Attempt { name, what, contact_force: ContactForce::Whole, ablation }
+    Attempt { name, what, reconstruction: Reconstruction::Corrected, ablation }
 }
 
 const ATTEMPTS: [Attempt; 9] = [
-    of_whole("whole", "the default with all its parts", Ablation::None),
+    of_whole("corrected", "the default with all its parts", Ablation::None),
     of_whole(
-        "no companion",
+        "no auxiliary solution",
         "the balance of the simulation's own displacements: what the nodal forces of the density and the reactions differ by \
          becomes acceleration [55], and drifts; and the dispersion that has built up is not seen",
-        Ablation::Companion,
+        Ablation::AuxiliarySolution,
     ),
     of_whole(
-        "companion as dispersive",
-        "a companion without its two corrections: nothing drifts, but waves of the simulation and of the balance are late \
+        "auxiliary solution as dispersive",
+        "a auxiliary without its two corrections: nothing drifts, but waves of the simulation and of the balance are late \
          together, and the estimate loses them on fine meshes with small steps",
         Ablation::Correction,
     ),
@@ -69,19 +69,24 @@ const ATTEMPTS: [Attempt; 9] = [
         Ablation::DoubledWork,
     ),
     Attempt {
-        name: "sharp",
+        name: "consistent",
         what: "forces on touching edges only",
-        contact_force: ContactForce::Sharp,
+        reconstruction: Reconstruction::Consistent,
         ablation: Ablation::None,
     },
-    Attempt { name: "paper", what: "the paper's forces", contact_force: ContactForce::Paper, ablation: Ablation::None },
+    Attempt {
+        name: "published",
+        what: "the paper's forces",
+        reconstruction: Reconstruction::Published,
+        ablation: Ablation::None,
+    },
 ];
 
 impl Attempt {
     /// On the thread that calls.
     fn options(&self) -> Options {
-        let Self { contact_force, ablation, .. } = *self;
-        Options { contact_force, ablation, threads: Some(1), ..Options::default() }
+        let Self { reconstruction, ablation, .. } = *self;
+        Options { reconstruction, ablation, threads: Some(1), ..Options::default() }
     }
 }
 
@@ -103,7 +108,7 @@ fn make(effort: &Effort, observer: &mut dyn Observer) -> Result<Section, Reprodu
         in_order(PART.key, threads(effort.threads), &bodies, observer, |case, stop| case.run(&options, stop))?;
     let mut section = Section::new(PART.key, PART.title);
     section.text(
-        "The default `whole` is made of several parts (see the page on readings). Here each is left out in turn, and the other \
+        "The default `corrected` is made of several parts (see the page on readings). Here each is left out in turn, and the other \
          readings stand beside it: e/e_Ex on a part of the grid of bars, and e/e_ref on plane bodies.",
     );
     ATTEMPTS.iter().for_each(|attempt| section.text(format!("`{}`: {}.", attempt.name, attempt.what)));

@@ -8,7 +8,7 @@ const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Lengths and neighbours, fixed in time.
 #[derive(Clone, Debug)]
-pub(crate) struct Paper {
+pub(crate) struct Published {
     /// For each node of each candidate facet.
     ends: Vec<Vec<End>>,
 }
@@ -24,7 +24,7 @@ struct End {
     neighbours: Vec<usize>,
 }
 
-impl Paper {
+impl Published {
     pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
         let facets = problem.surface().facets();
         let normals: Vec<_> = facets.iter().map(|f| problem.mesh().facet_normal(f.facet).0).collect();

@@ -10,7 +10,7 @@ use std::fmt;
 
 /// Something that may be meant, but more likely is not.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Doubt {
+pub struct PlausibilityWarning {
     /// Where.
     pub place: Place,
     /// Its name, for programs.
@@ -21,7 +21,7 @@ pub struct Doubt {
     pub message: String,
 }
 
-impl fmt::Display for Doubt {
+impl fmt::Display for PlausibilityWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.place, self.message)
     }
@@ -29,18 +29,33 @@ impl fmt::Display for Doubt {
 
 /// Everything that is doubtful about a run, known before any step of it.
 #[must_use]
-pub fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
-    let mut all = units::doubts(problem);
-    // What follows from the speed of waves says nothing where that is in doubt.
-    let mixed = all.iter().any(|doubt| doubt.name == "units" && ["mesh", "material"].contains(&doubt.place.table));
-    let others = motion::doubts(problem, times).into_iter().chain(time::doubts(problem, times));
-    all.extend(others.filter(|doubt| !mixed || !["supersonic", "single_step"].contains(&doubt.name)));
+pub fn plausibility_warnings<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Vec<PlausibilityWarning> {
+    let mut all = units::plausibility_warnings(problem);
+    // What follows from the speed of waves says nothing where that is in plausibility warning.
+    let mixed = all.iter().any(|plausibility_warning| {
+        plausibility_warning.name == "units" && ["mesh", "material"].contains(&plausibility_warning.place.table)
+    });
+    let others =
+        motion::plausibility_warnings(problem, times).into_iter().chain(time::plausibility_warnings(problem, times));
+    all.extend(
+        others.filter(|plausibility_warning| {
+            !mixed || !["supersonic", "single_step"].contains(&plausibility_warning.name)
+        }),
+    );
     all
 }
 
-/// A doubt about a key.
-fn doubt(place: Place, name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Doubt {
-    Doubt { place, name, brief: brief.into(), message: message.into() }
+/// A plausibility warning about a key.
+fn plausibility_warning(
+    place: Place,
+    name: &'static str,
+    brief: impl Into<String>,
+    message: impl Into<String>,
+) -> PlausibilityWarning {
+    PlausibilityWarning { place, name, brief: brief.into(), message: message.into() }
 }
 
 /// The place of a key in a table of which there may be several.

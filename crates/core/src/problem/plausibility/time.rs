@@ -1,6 +1,6 @@
 //! Runs of one step or of millions, and tables that do not change while they last.
 
-use super::{Doubt, at, doubt, short};
+use super::{PlausibilityWarning, at, plausibility_warning, short};
 use crate::load::Table;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -12,8 +12,11 @@ const UNUSED: f64 = 0.01;
 /// If it is so many times as long as the run: one that is only cut short is meant.
 const LONGER: f64 = 100.0;
 
-pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
-    let mut all: Vec<Doubt> = steps(times.step_count(), times.end()).into_iter().collect();
+pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Vec<PlausibilityWarning> {
+    let mut all: Vec<PlausibilityWarning> = steps(times.step_count(), times.end()).into_iter().collect();
     let stated = problem.statement();
     let supports = stated
         .supports
@@ -24,26 +27,31 @@ pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, ti
     let forces = stated.body_forces.iter().enumerate().map(|(i, f)| (at("body_force", Some(i), "time"), &f.value));
     for (place, table) in supports.chain(tractions).chain(forces) {
         all.extend(unused(table, times.end()).map(|message| {
-            doubt(place, "unused_table", format!("{}: hardly changes before `end`", place.table), message)
+            plausibility_warning(
+                place,
+                "unused_table",
+                format!("{}: hardly changes before `end`", place.table),
+                message,
+            )
         }));
     }
     all
 }
 
-fn steps(count: usize, end: f64) -> Option<Doubt> {
+fn steps(count: usize, end: f64) -> Option<PlausibilityWarning> {
     let place = at("time", None, "end");
     let shown = short(end);
     if count == 1 {
         let message = format!(
             "is {shown} s, no more than one time step: nothing can happen in it; is it in seconds, and are lengths in metres?"
         );
-        return Some(doubt(place, "single_step", "a run of one step", message));
+        return Some(plausibility_warning(place, "single_step", "a run of one step", message));
     }
     if count <= MANY_STEPS {
         return None;
     }
     let message = format!("is {shown} s, which takes {count} steps: is it as meant, and in seconds?");
-    Some(doubt(place, "many_steps", format!("{count} steps"), message))
+    Some(plausibility_warning(place, "many_steps", format!("{count} steps"), message))
 }
 
 /// What is the matter with a table that changes after the end only.
@@ -70,7 +78,7 @@ mod tests {
 
     #[test]
     fn runs_of_one_step_and_of_more_than_a_million_are_doubted() {
-        let name = |count| steps(count, 1.0).map(|doubt| doubt.name);
+        let name = |count| steps(count, 1.0).map(|plausibility_warning| plausibility_warning.name);
         assert_eq!([1, 2, MANY_STEPS, MANY_STEPS + 1].map(name), [Some("single_step"), None, None, Some("many_steps")]);
     }
 

@@ -7,23 +7,23 @@ use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_testkit::{Random, random_rectangle};
 use std::f64::consts::PI;
 
-/// All displacements of a companion under no contact.
+/// All displacements of a auxiliary solution under no contact.
 fn motion<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     corrected: bool,
 ) -> Vec<Vec<[f64; D]>> {
     let dynamics = Dynamics::new(problem, times);
-    let mut companion = Companion::new(problem, corrected);
+    let mut auxiliary = AuxiliarySolution::new(problem, corrected);
     let mut motion = Vec::new();
     for n in 0..=times.step_count() {
-        motion.push(companion.displacement().to_vec());
-        let mut acceleration = companion.displacement().to_vec();
-        dynamics.forces_without_contact(n, companion.displacement(), &mut acceleration);
+        motion.push(auxiliary.displacement().to_vec());
+        let mut acceleration = auxiliary.displacement().to_vec();
+        dynamics.forces_without_contact(n, auxiliary.displacement(), &mut acceleration);
         for (a, inverse) in acceleration.iter_mut().zip(dynamics.inverse_mass()) {
             (0..D).for_each(|c| a[c] *= inverse);
         }
-        companion.advance(problem, &dynamics, times, n, &acceleration);
+        auxiliary.advance(problem, &dynamics, times, n, &acceleration);
     }
     motion
 }
@@ -68,7 +68,7 @@ fn dispersion_is_of_fourth_order() {
 }
 
 /// At the critical step of a uniform bar the simulation's shortest wave grows by as much in each step, and so does what takes its
-/// steps; the companion's swings, with sin²(ωΔt/2) = 1 − β(2/3)².
+/// steps; the auxiliary solution's swings, with sin²(ωΔt/2) = 1 − β(2/3)².
 #[test]
 fn the_shortest_wave_of_a_bar_does_not_grow() {
     let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
@@ -81,9 +81,9 @@ fn the_shortest_wave_of_a_bar_does_not_grow() {
     let times = TimeGrid::uniform(10.0, 10 * ELEMENTS).unwrap();
     let dt = times.step(0);
     let omega = 2.0 / dt * (1.0 - 4.0 / 9.0 / 36.0_f64).sqrt().asin();
-    let (alike, companion) = (motion(&problem, &times, false), motion(&problem, &times, true));
-    for (n, (plain, u)) in alike.iter().zip(&companion).enumerate() {
-        // (−1)ⁿ⁻¹nΔt, and the same wave with velocity 1 at t_½ as the companion has it.
+    let (alike, auxiliary) = (motion(&problem, &times, false), motion(&problem, &times, true));
+    for (n, (plain, u)) in alike.iter().zip(&auxiliary).enumerate() {
+        // (−1)ⁿ⁻¹nΔt, and the same wave with velocity 1 at t_½ as the auxiliary solution has it.
         let grown = plain[0][0].abs();
         assert!((grown - n as f64 * dt).abs() < 1e-10 * (1.0 + grown), "step {n}: {grown}");
         let swings = dt * (omega * dt * n as f64).sin() / (omega * dt).sin();
@@ -160,7 +160,7 @@ fn a_translation_is_not_touched() {
     }
 }
 
-/// Supports keep their motion: the companion moves as prescribed, like the simulation.
+/// Supports keep their motion: the auxiliary solution moves as prescribed, like the simulation.
 #[test]
 fn supports_move_as_prescribed() {
     let problem = held_bar();

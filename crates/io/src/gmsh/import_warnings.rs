@@ -3,7 +3,7 @@
 use super::groups::{Sorted, quoted};
 use super::header::Version;
 use super::raw::Raw;
-use percute_core::mesh::Notice;
+use percute_core::mesh::ImportWarning;
 use std::collections::BTreeMap;
 
 /// Tags that a message names.
@@ -12,7 +12,7 @@ const SHOWN: usize = 5;
 const LARGE: f64 = 10.0;
 
 /// Nodes that no element uses.
-pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
+pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<ImportWarning> {
     if tags.is_empty() {
         return None;
     }
@@ -24,11 +24,16 @@ pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<Notice> {
     };
     let element = if dimension == 2 { "triangle" } else { "bar" };
     let message = format!("{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses {them}");
-    Some(Notice { name: "dropped_nodes", brief: format!("{count} unused {nodes} left out"), message, groups: vec![] })
+    Some(ImportWarning {
+        name: "dropped_nodes",
+        brief: format!("{count} unused {nodes} left out"),
+        message,
+        groups: vec![],
+    })
 }
 
 /// Elements on the nodes of others.
-pub(super) fn doubled(tags: &[u64]) -> Option<Notice> {
+pub(super) fn doubled(tags: &[u64]) -> Option<ImportWarning> {
     if tags.is_empty() {
         return None;
     }
@@ -40,7 +45,7 @@ pub(super) fn doubled(tags: &[u64]) -> Option<Notice> {
     };
     let message = format!("{count} {elements} of the mesh file ({tag} {shown}) {were} left out: {each}");
     let brief = format!("{count} {elements} that {were} there already left out");
-    Some(Notice { name: "duplicate_elements", brief, message, groups: vec![] })
+    Some(ImportWarning { name: "duplicate_elements", brief, message, groups: vec![] })
 }
 
 fn shown(tags: &[u64]) -> String {
@@ -52,18 +57,18 @@ fn shown(tags: &[u64]) -> String {
 }
 
 /// Physical groups of points, in a plane mesh.
-pub(super) fn points(raw: &Raw, points: &Sorted<1>) -> Option<Notice> {
+pub(super) fn points(raw: &Raw, points: &Sorted<1>) -> Option<ImportWarning> {
     let groups: Vec<_> = points.members.keys().map(|&tag| raw.name(0, tag)).collect();
     let message = format!(
         "{} of points {} left out: in a plane mesh, curves and surfaces can be named, points cannot",
         quoted(&groups),
         were(&groups)
     );
-    notice("points_left_out", "groups of points left out", message, groups)
+    import_warning("points_left_out", "groups of points left out", message, groups)
 }
 
 /// Parts of physical groups that lie inside the body.
-pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option<Notice> {
+pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option<ImportWarning> {
     let groups: Vec<_> = inner.keys().cloned().collect();
     let count: usize = inner.values().sum();
     let (edge, edges, of) = if dimension == 2 { ("edge", "edges", "curves") } else { ("point", "points", "points") };
@@ -73,7 +78,7 @@ pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option
          can be held, loaded or touched",
         quoted(&groups)
     );
-    notice("inner_facets", "parts of groups inside the body left out", message, groups)
+    import_warning("inner_facets", "parts of groups inside the body left out", message, groups)
 }
 
 /// Physical groups that have a name but no elements.
@@ -83,7 +88,7 @@ pub(super) fn empty<T, U>(
     facets: &BTreeMap<String, Vec<T>>,
     inner: &BTreeMap<String, usize>,
     parts: &BTreeMap<String, Vec<U>>,
-) -> Option<Notice> {
+) -> Option<ImportWarning> {
     let no_facets = facets.iter().filter(|(name, all)| all.is_empty() && !inner.contains_key(*name));
     let no_parts = parts.iter().filter(|(_, all)| all.is_empty());
     let mut groups: Vec<_> =
@@ -97,18 +102,18 @@ pub(super) fn empty<T, U>(
         Version::V41 => "in Gmsh, does each name parts of the geometry that are there and meshed?",
     };
     let message = format!("{} {} no elements in the mesh file: {reason}", quoted(&groups), has(&groups));
-    notice("empty_groups", "groups without elements", message, groups)
+    import_warning("empty_groups", "groups without elements", message, groups)
 }
 
 /// A body so large that its unit of length is more likely the millimetre; no `scale` was given.
-pub(super) fn large(size: f64, scale: f64) -> Option<Notice> {
+pub(super) fn large(size: f64, scale: f64) -> Option<ImportWarning> {
     if scale != 1.0 || size <= LARGE {
         return None;
     }
     let message = format!(
         "the mesh in the file is {size:.3} m large, corner to corner: if its lengths are in millimetres, give `scale` = 1e-3"
     );
-    Some(Notice {
+    Some(ImportWarning {
         name: "large_mesh",
         brief: format!("mesh of {size:.4} m: if that is millimetres, give scale = 1e-3"),
         message,
@@ -116,8 +121,8 @@ pub(super) fn large(size: f64, scale: f64) -> Option<Notice> {
     })
 }
 
-fn notice(name: &'static str, brief: &str, message: String, groups: Vec<String>) -> Option<Notice> {
-    if groups.is_empty() { None } else { Some(Notice { name, brief: brief.to_string(), message, groups }) }
+fn import_warning(name: &'static str, brief: &str, message: String, groups: Vec<String>) -> Option<ImportWarning> {
+    if groups.is_empty() { None } else { Some(ImportWarning { name, brief: brief.to_string(), message, groups }) }
 }
 
 fn were(groups: &[String]) -> &'static str {

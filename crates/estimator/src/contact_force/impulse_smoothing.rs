@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 
 /// What is still to come at each node of the contact surface.
 #[derive(Clone, Debug)]
-pub(crate) struct Stopping<const D: usize> {
+pub(crate) struct ImpulseSmoothing<const D: usize> {
     /// τ (s).
     time: Vec<f64>,
     pending: Vec<VecDeque<Pending<D>>>,
@@ -31,7 +31,7 @@ struct Pending<const D: usize> {
     impulse: [f64; D],
 }
 
-impl<const D: usize> Stopping<D> {
+impl<const D: usize> ImpulseSmoothing<D> {
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         let (mesh, nodes) = (problem.mesh(), problem.surface().nodes());
         // ρcℓ.
@@ -118,7 +118,7 @@ mod tests {
     /// Forces of some steps, from reactions at the end of the bar and the accelerations of its node.
     fn forces(times: &TimeGrid, steps: &[(f64, f64)]) -> Vec<f64> {
         let problem = bar();
-        let mut stopping = Stopping::new(&problem);
+        let mut stopping = ImpulseSmoothing::new(&problem);
         let one = |(n, &(reaction, acceleration)): (usize, &(f64, f64))| {
             let all = [[acceleration], [0.0], [0.0]];
             stopping.advance(&problem, times, n, &[[reaction]], &all)[0][0]

@@ -1,6 +1,6 @@
 //! Numbers that look like those of other units.
 
-use super::{Doubt, at, doubt, short};
+use super::{PlausibilityWarning, at, plausibility_warning, short};
 use crate::load::BodyForce;
 use crate::material::{Elastic, Hypothesis};
 use crate::problem::Problem;
@@ -30,11 +30,13 @@ const ROUGH: f64 = 2.0;
 /// From here on triangles in plane strain are far too stiff.
 const INCOMPRESSIBLE: f64 = 0.49;
 
-pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Doubt> {
+pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+) -> Vec<PlausibilityWarning> {
     let size = problem.mesh().size();
     // The reader of mesh files has said so, with the key that mends it.
-    let noticed = problem.mesh().notices().iter().any(|notice| notice.name == "large_mesh");
-    let mut all: Vec<Doubt> = size_of_body(size).filter(|_| !noticed).into_iter().collect();
+    let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");
+    let mut all: Vec<PlausibilityWarning> = size_of_body(size).filter(|_| !reported).into_iter().collect();
     for (index, material) in problem.materials().iter().enumerate() {
         all.extend([density(material, index), stiffness(material, size, index)].into_iter().flatten().take(1));
         all.extend(extent(material, size, index));
@@ -47,15 +49,15 @@ pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>) ->
     all
 }
 
-fn units(table: &'static str, index: Option<usize>, key: &'static str, message: String) -> Option<Doubt> {
+fn units(table: &'static str, index: Option<usize>, key: &'static str, message: String) -> Option<PlausibilityWarning> {
     let brief = match key {
         "" => format!("{table}: did you mix units?"),
         key => format!("{table}, {key}: did you mix units?"),
     };
-    Some(doubt(at(table, index, key), "units", brief, message))
+    Some(plausibility_warning(at(table, index, key), "units", brief, message))
 }
 
-fn size_of_body(size: f64) -> Option<Doubt> {
+fn size_of_body(size: f64) -> Option<PlausibilityWarning> {
     if size <= LARGE {
         return None;
     }
@@ -65,7 +67,7 @@ fn size_of_body(size: f64) -> Option<Doubt> {
     units("mesh", None, "", message)
 }
 
-fn density(material: &Elastic, index: usize) -> Option<Doubt> {
+fn density(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
     let density = material.density();
     if is_normalised(material) || (LIGHT..=HEAVY).contains(&density) {
         return None;
@@ -88,7 +90,7 @@ fn is_normalised(material: &Elastic) -> bool {
     material.density() == 1.0 && material.young() <= 1e4
 }
 
-fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
+fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<PlausibilityWarning> {
     // Along a bar: waves in a plane body that hardly changes its volume are as fast as you like.
     let (young, speed) = (material.young(), (material.young() / material.density()).sqrt());
     if is_normalised(material) {
@@ -121,7 +123,7 @@ fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
     units("material", Some(index), "young", message)
 }
 
-fn extent(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
+fn extent(material: &Elastic, size: f64, index: usize) -> Option<PlausibilityWarning> {
     let (extent, length) = (material.extent(), short(size));
     let shown = short(extent);
     if material.hypothesis() == Hypothesis::Bar {
@@ -144,7 +146,7 @@ fn extent(material: &Elastic, size: f64, index: usize) -> Option<Doubt> {
     units("material", Some(index), "thickness", message)
 }
 
-fn locking(material: &Elastic, index: usize) -> Option<Doubt> {
+fn locking(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
     let poisson = material.poisson();
     if material.hypothesis() != Hypothesis::PlaneStrain || poisson <= INCOMPRESSIBLE {
         return None;
@@ -153,13 +155,18 @@ fn locking(material: &Elastic, index: usize) -> Option<Doubt> {
         "is {poisson}: linear triangles in plane strain lock when the material hardly changes its volume; up to \
          {INCOMPRESSIBLE} results can be trusted"
     );
-    Some(doubt(at("material", Some(index), "poisson"), "locking", "material, poisson: triangles will lock", message))
+    Some(plausibility_warning(
+        at("material", Some(index), "poisson"),
+        "locking",
+        "material, poisson: triangles will lock",
+        message,
+    ))
 }
 
 /// Accelerations of gravity in the two digits in which they are written (m/s²).
 const GRAVITY: [f64; 2] = [9.75, 10.0];
 
-fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> Option<Doubt> {
+fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> Option<PlausibilityWarning> {
     let largest = force.value.value().iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
     // In what is lighter than water by as much, this may be a force.
     if !(GRAVITY[0]..=GRAVITY[1]).contains(&largest) || density < 10.0 * GRAVITY[1] {
@@ -172,7 +179,7 @@ fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> O
     units("body_force", Some(index), "value", message)
 }
 
-fn friction(friction: f64, index: usize) -> Option<Doubt> {
+fn friction(friction: f64, index: usize) -> Option<PlausibilityWarning> {
     if friction <= ROUGH {
         return None;
     }
@@ -181,5 +188,10 @@ fn friction(friction: f64, index: usize) -> Option<Doubt> {
         short(friction),
         short(0.01 * friction)
     );
-    Some(doubt(at("obstacle", Some(index), "friction"), "friction", "friction above 2: in percent?", message))
+    Some(plausibility_warning(
+        at("obstacle", Some(index), "friction"),
+        "friction",
+        "friction above 2: in percent?",
+        message,
+    ))
 }

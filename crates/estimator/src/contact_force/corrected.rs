@@ -1,15 +1,15 @@
 //! The whole reaction as a density on all candidate facets of its node.
 
-use super::tilt::Tilt;
+use super::moment_correction::MomentCorrection;
 use super::{Densities, Interval, SurfaceStep, none};
 use percute_core::problem::{ContactFacet, ContactNode, Problem};
 
 /// What is fixed in time.
 #[derive(Clone, Debug)]
-pub(crate) struct Whole<const D: usize> {
+pub(crate) struct Corrected<const D: usize> {
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
-    tilt: Tilt<D>,
+    moment_correction: MomentCorrection<D>,
 }
 
 /// Normal pressures (Pa) at the nodes of a facet at one instant.
@@ -29,29 +29,34 @@ impl<const D: usize> Pressure<D> {
     }
 }
 
-impl<const D: usize> Whole<D> {
+impl<const D: usize> Corrected<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self { tributary: problem.surface().tributary_areas(), tilt: Tilt::new(problem) }
+        Self { tributary: problem.surface().tributary_areas(), moment_correction: MomentCorrection::new(problem) }
     }
 
     /// The same with densities whose moment is not that of the reactions.
-    pub(super) fn untilted(self) -> Self {
-        Self { tilt: Tilt::none(), ..self }
+    pub(super) fn without_moment_correction(self) -> Self {
+        Self { moment_correction: MomentCorrection::none(), ..self }
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// facet, tilted so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    pub(crate) fn densities<const N: usize>(&self, problem: &Problem<D, N>, pressing: &[[f64; D]]) -> Densities<D> {
+    pub(crate) fn densities<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        smoothed_reaction: &[[f64; D]],
+    ) -> Densities<D> {
         let mut densities = none(problem);
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
             problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let mut pressing: Vec<[f64; D]> = problem.surface().nodes().iter().zip(pressing).map(held).collect();
-        self.tilt.apply(&mut pressing);
+        let mut smoothed_reaction: Vec<[f64; D]> =
+            problem.surface().nodes().iter().zip(smoothed_reaction).map(held).collect();
+        self.moment_correction.apply(&mut smoothed_reaction);
         for (facet, density) in problem.surface().facets().iter().zip(&mut densities) {
-            *density = facet.nodes.map(|k| pressing[k].map(|r| r / self.tributary[k]));
+            *density = facet.nodes.map(|k| smoothed_reaction[k].map(|r| r / self.tributary[k]));
         }
         densities
     }

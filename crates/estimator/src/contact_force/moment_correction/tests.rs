@@ -1,6 +1,6 @@
-use super::Tilt;
+use super::MomentCorrection;
 use crate::contact_force::{Reading, nodal_forces};
-use crate::options::ContactForce;
+use crate::options::Reconstruction;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
@@ -38,9 +38,9 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
     sums
 }
 
-/// The nodal forces that `whole` makes of reactions.
+/// The nodal forces that `corrected` makes of reactions.
 fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let Reading::Whole(whole) = Reading::new(ContactForce::Whole, problem) else { panic!("another reading") };
+    let Reading::Corrected(whole) = Reading::new(Reconstruction::Corrected, problem) else { panic!("another reading") };
     nodal_forces(problem, &whole.densities(problem, reaction))
 }
 
@@ -81,7 +81,7 @@ fn resultant_and_moment_are_those_of_the_reactions() {
             (0..10).filter(|&at| !first(at)).for_each(|at| reaction[at] = [0.0; 2]);
         }
         let mut tilted = reaction.clone();
-        Tilt::new(&problem).apply(&mut tilted);
+        MomentCorrection::new(&problem).apply(&mut tilted);
         assert!(admissible(&problem, &tilted), "{seed}: {tilted:?}");
         let (given, found) = (balance(&problem, &reaction), balance(&problem, &made(&problem, &reaction)));
         for (given, found) in given.iter().zip(&found) {
@@ -106,7 +106,7 @@ fn no_frame_is_special() {
                 in_frame(&problem, n, t)
             })
             .collect();
-        Tilt::new(&problem).apply(&mut forces);
+        MomentCorrection::new(&problem).apply(&mut forces);
         let normal = *problem.obstacles()[0].normal();
         let own = |f: &[f64; 2]| [f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]];
         let mut all: Vec<(usize, [f64; 2])> =
@@ -133,7 +133,7 @@ fn what_cannot_be_had_is_had_in_part() {
     let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
     (reaction[at(0)], reaction[at(2)]) = ([0.3, 1.0], [0.0, 0.1]);
     let mut tilted = reaction.clone();
-    Tilt::new(&problem).apply(&mut tilted);
+    MomentCorrection::new(&problem).apply(&mut tilted);
     assert!(admissible(&problem, &tilted));
     // All on the first node, friction too.
     assert!((0..2).all(|c| (tilted[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{tilted:?}");
@@ -154,7 +154,7 @@ fn a_node_alone_is_left_as_it_is() {
         let mut reaction = vec![[0.0; 2]; 10];
         reaction[k] = in_frame(&problem, 2.0, 0.3);
         let mut tilted = reaction.clone();
-        Tilt::new(&problem).apply(&mut tilted);
+        MomentCorrection::new(&problem).apply(&mut tilted);
         assert_eq!(tilted, reaction);
     }
 }

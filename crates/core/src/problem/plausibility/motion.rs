@@ -1,6 +1,6 @@
 //! A body that cannot touch before the end, does not move at all, or moves faster than waves.
 
-use super::{Doubt, at, doubt, short};
+use super::{PlausibilityWarning, at, plausibility_warning, short};
 use crate::obstacle::dot;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -10,10 +10,13 @@ const SAME: f64 = 1e-9;
 /// A plane so many times the size of the body away is more likely one in other units.
 const FAR: f64 = 10.0;
 
-pub(super) fn doubts<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<Doubt> {
-    let mut all: Vec<Doubt> = [initial_speed(problem), at_rest(problem)].into_iter().flatten().collect();
+pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Vec<PlausibilityWarning> {
+    let mut all: Vec<PlausibilityWarning> = [initial_speed(problem), at_rest(problem)].into_iter().flatten().collect();
     all.extend(support_speed(problem));
-    if all.iter().all(|doubt| doubt.name != "at_rest") {
+    if all.iter().all(|plausibility_warning| plausibility_warning.name != "at_rest") {
         all.extend(no_touch(problem, times));
     }
     all
@@ -34,24 +37,24 @@ fn too_fast(speed: f64, waves: f64) -> Option<(String, String)> {
     Some((format!("a speed of {shown} m/s, above that of waves"), message))
 }
 
-fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
     let speed = |v: &[f64; D]| dot(v, v).sqrt();
     let largest = problem.initial_velocity().iter().map(speed).fold(0.0, f64::max);
     let (brief, message) = too_fast(largest, wave_speed(problem))?;
-    Some(doubt(at("initial", None, "velocity"), "supersonic", brief, message))
+    Some(plausibility_warning(at("initial", None, "velocity"), "supersonic", brief, message))
 }
 
-fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
     let waves = wave_speed(problem);
     problem.statement().supports.iter().enumerate().find_map(|(index, support)| {
         let largest = support.velocity.as_ref()?.value().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         let (brief, message) = too_fast(largest, waves)?;
-        Some(doubt(at("support", Some(index), "velocity"), "supersonic", brief, message))
+        Some(plausibility_warning(at("support", Some(index), "velocity"), "supersonic", brief, message))
     })
 }
 
 /// Whether nothing will ever move: no velocity, no load, no moving support, and no strain that is released.
-fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Doubt> {
+fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
     let still = |field: &[[f64; D]]| field.iter().flatten().all(|x| *x == 0.0);
     let moving = problem.motions().iter().any(|motion| motion.acting_components()[0]);
     if problem.is_loaded() || moving || !still(problem.initial_velocity()) || !still(problem.initial_displacement()) {
@@ -59,7 +62,7 @@ fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Do
     }
     let message = "nothing moves: there is no initial velocity, no load and no support that moves; give the body a velocity \
                    (m/s), or say what drives it";
-    Some(doubt(at("initial", None, "velocity"), "at_rest", "nothing moves", message))
+    Some(plausibility_warning(at("initial", None, "velocity"), "at_rest", "nothing moves", message))
 }
 
 /// How a body moves that is not strained until it touches: velocity (m/s) and acceleration (m/s²).
@@ -115,7 +118,7 @@ struct Approach {
 
 /// A body in flight that reaches no plane before the end, or whose plane is very far. Once it touches one, nobody knows
 /// where it goes.
-fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<Doubt> {
+fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
     let flight = flight(problem)?;
     let approach = |(obstacle, plane): (usize, &crate::obstacle::Plane<D>)| {
         let gap = problem.initial_gap(obstacle).max(0.0);
@@ -146,7 +149,7 @@ fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
     if root > 0.0 { 2.0 * gap / root } else { f64::INFINITY }
 }
 
-fn never(first: &Approach, end: f64) -> Option<Doubt> {
+fn never(first: &Approach, end: f64) -> Option<PlausibilityWarning> {
     let Approach { obstacle, gap, speed, time } = *first;
     let (gap, towards, end) = (short(gap), short(speed), short(end));
     if time.is_finite() {
@@ -156,7 +159,7 @@ fn never(first: &Approach, end: f64) -> Option<Doubt> {
              ends at {end} s: run to a later `end`, start nearer, or check the units of gap and velocity"
         );
         let brief = format!("no contact before {when} s");
-        return Some(doubt(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
+        return Some(plausibility_warning(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
     }
     let away = short(-speed);
     let message = if speed < 0.0 {
@@ -166,10 +169,15 @@ fn never(first: &Approach, end: f64) -> Option<Doubt> {
             "moves the body no nearer to the plane, which is {gap} m away: it never touches; give it a velocity towards it"
         )
     };
-    Some(doubt(at("initial", None, "velocity"), "never_touches", "the body never touches the plane", message))
+    Some(plausibility_warning(
+        at("initial", None, "velocity"),
+        "never_touches",
+        "the body never touches the plane",
+        message,
+    ))
 }
 
-fn far(first: &Approach, size: f64) -> Option<Doubt> {
+fn far(first: &Approach, size: f64) -> Option<PlausibilityWarning> {
     let Approach { obstacle, gap, time, .. } = *first;
     if gap <= FAR * size {
         return None;
@@ -179,7 +187,12 @@ fn far(first: &Approach, size: f64) -> Option<Doubt> {
         "the plane is {gap} m away from a body of {size} m, which takes {time} s to reach it: is the point in metres? Start \
          nearer to save the steps before contact"
     );
-    Some(doubt(at("obstacle", Some(obstacle), "point"), "far_plane", format!("a gap of {gap} m"), message))
+    Some(plausibility_warning(
+        at("obstacle", Some(obstacle), "point"),
+        "far_plane",
+        format!("a gap of {gap} m"),
+        message,
+    ))
 }
 
 #[cfg(test)]

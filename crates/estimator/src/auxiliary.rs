@@ -1,7 +1,7 @@
 //! A second solution of the motion, under the admissible contact force and with less dispersion.
 //!
 //! Fields that balance the simulation's own displacements repeat its dispersion and hide it: ahead of a local
-//! measure, waves of the simulation and waves of the balance are late together. The companion is what the
+//! measure, waves of the simulation and waves of the balance are late together. The auxiliary solution is what the
 //! balance is built on instead. It starts like the simulation and takes the steps of the same scheme, but
 //! under the nodal forces of F_DA, and with the acceleration
 //!
@@ -19,7 +19,7 @@ use percute_core::time::TimeGrid;
 
 /// Displacement and half-step velocity, advanced beside the simulation's steps.
 #[derive(Clone, Debug)]
-pub(crate) struct Companion<const D: usize> {
+pub(crate) struct AuxiliarySolution<const D: usize> {
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
     correction: Vec<[f64; D]>,
@@ -36,7 +36,7 @@ const FEW: usize = 8;
 /// Relative difference from which on a step is longer than another.
 const LONGER: f64 = 1e-3;
 
-impl<const D: usize> Companion<D> {
+impl<const D: usize> AuxiliarySolution<D> {
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
         Self {
             displacement: problem.initial_displacement().to_vec(),
@@ -116,7 +116,7 @@ impl<const D: usize> Companion<D> {
 /// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from 0.97 of
 /// the critical step on. With it, p is at most ⅓, and x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: stable wherever the simulation
 /// is. In 1D it would be so without: but there the simulation takes the critical step exactly, its shortest wave grows with
-/// time once it is excited, and a companion that does the same does not see it. 1/36 keeps it from that, at the
+/// time once it is excited, and a auxiliary solution that does the same does not see it. 1/36 keeps it from that, at the
 /// price of a larger estimate at that step. It changes errors of the order that is left anyway.
 fn damping<const D: usize>() -> f64 {
     if D == 1 {

@@ -38,11 +38,11 @@ struct Place {
 
 /// Gives reactions as forces whose densities have their moment.
 #[derive(Clone, Debug)]
-pub(super) struct Tilt<const D: usize> {
+pub(super) struct MomentCorrection<const D: usize> {
     groups: Vec<Group<D>>,
 }
 
-impl<const D: usize> Tilt<D> {
+impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         if D != 2 {
             return Self::none();
