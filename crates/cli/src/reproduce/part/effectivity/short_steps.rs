@@ -26,7 +26,7 @@ type Attempt = (String, Options);
 fn attempts() -> Vec<Attempt> {
     let unspread = Options { ablation: Ablation::ImpulseSmoothing, threads: Some(1), ..Options::default() };
     let readings = readings().into_iter().map(|options| (options.reconstruction.to_string(), options));
-    readings.chain([("whole, not spread".to_string(), unspread)]).collect()
+    readings.chain([("corrected, not spread".to_string(), unspread)]).collect()
 }
 
 /// A body.
