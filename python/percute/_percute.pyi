@@ -57,6 +57,7 @@ class _Outputs(TypedDict):
 
 @final
 class Progress:
+    def __new__(cls, stage: str, done: int, total: int) -> Progress: ...
     @property
     def stage(self) -> str: ...
     @property

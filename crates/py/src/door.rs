@@ -8,6 +8,7 @@ use crate::errors::percute_error;
 use percute_core::observer::{Observer, Progress};
 use pyo3::prelude::*;
 use std::any::Any;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -22,8 +23,8 @@ const GRACE: Duration = Duration::from_millis(200);
 /// How far a computation is, as a progress callback gets it.
 #[pyclass(frozen, get_all, name = "Progress", module = "percute")]
 pub(crate) struct ProgressNow {
-    /// What is being done: "simulating", "estimating", or the name of a part of the evidence.
-    stage: &'static str,
+    /// What is being done: "simulating", "estimating", or the name of a study.
+    stage: Cow<'static, str>,
     /// Steps done.
     done: usize,
     /// Steps in all.
@@ -32,6 +33,11 @@ pub(crate) struct ProgressNow {
 
 #[pymethods]
 impl ProgressNow {
+    #[new]
+    fn new(stage: String, done: usize, total: usize) -> Self {
+        Self { stage: stage.into(), done, total }
+    }
+
     fn __repr__(&self) -> String {
         format!("Progress(stage='{}', done={}, total={})", self.stage, self.done, self.total)
     }
@@ -124,7 +130,7 @@ fn tell_progress(tell: Option<&Bound<'_, PyAny>>, errand: &Errand, told: &mut Op
     let (Some(tell), Some(now)) = (tell, errand.progress()) else { return Ok(()) };
     if *told != Some(now) {
         *told = Some(now);
-        tell.call1((ProgressNow { stage: now.stage, done: now.done, total: now.total },))?;
+        tell.call1((ProgressNow { stage: now.stage.into(), done: now.done, total: now.total },))?;
     }
     Ok(())
 }
