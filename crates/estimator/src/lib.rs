@@ -7,24 +7,23 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur en
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
-mod auxiliary;
-mod contact_force;
 mod element;
 mod error;
 mod estimate;
 mod inertia;
 mod kinematic;
-mod level;
 mod loaded;
 mod map;
 mod measure;
 mod options;
 mod pipeline;
+mod reconstruction;
 pub mod reference;
 mod replay;
 mod request;
 mod residual;
 mod stress;
+mod time_level;
 mod traction;
 
 pub use error::{EstimateError, RunError};

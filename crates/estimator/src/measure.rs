@@ -3,11 +3,12 @@
 use crate::element::Element;
 use crate::inertia::{Inertia, mass_product};
 use crate::kinematic::ElementMotion;
-use crate::level::{Level, Side};
 use crate::options::Acceleration;
+use crate::reconstruction::{Form, MOMENTS};
 use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node};
-use crate::traction::{Equilibration, Form, MOMENTS};
+use crate::time_level::{Side, TimeLevel};
+use crate::traction::Equilibration;
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::problem::Problem;
@@ -118,7 +119,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn balanced(
         &self,
         equilibration: &Equilibration<'_, D, N>,
-        level: &Level<D>,
+        level: &TimeLevel<D>,
         contact: &[Option<usize>; N],
         side: Side,
     ) -> Balanced<D, N> {
@@ -178,7 +179,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
     /// the stress of the displacement that is equilibrated.
-    pub(crate) fn moment_slope(&self, equilibration: &Equilibration<'_, D, N>, level: &Level<D>) -> [f64; MOMENTS] {
+    pub(crate) fn moment_slope(&self, equilibration: &Equilibration<'_, D, N>, level: &TimeLevel<D>) -> [f64; MOMENTS] {
         let mut loading = self.balanced(equilibration, level, &[None; N], Side::After).loading;
         self.subtract_tractions(&level.stress[self.id.index()], &mut loading);
         self.slope_of(&loading)
@@ -235,7 +236,11 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// Means of σ_DA and of Γ_DA/ρ over the element, on the side `After`.
-    pub(crate) fn means(&self, equilibration: &Equilibration<'_, D, N>, level: &Level<D>) -> ([[f64; D]; D], [f64; D]) {
+    pub(crate) fn means(
+        &self,
+        equilibration: &Equilibration<'_, D, N>,
+        level: &TimeLevel<D>,
+    ) -> ([[f64; D]; D], [f64; D]) {
         let balanced = self.balanced(equilibration, level, &[None; N], Side::After);
         let inertia = self.inertia.apply(&self.element.gather(&level.acceleration));
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);

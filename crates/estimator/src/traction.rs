@@ -6,18 +6,16 @@
 //! chosen so that the moments are nearest to those of the averaged finite-element traction. That is
 //! the pseudo-inverse of the star matrix, in as many operations as the star has facets.
 
-mod least_energy;
-mod walk;
+mod star_solver;
 
-use crate::contact_force::Densities;
 use crate::element::Element;
-use crate::level::{Level, Side};
 use crate::loaded::LoadedFacets;
-pub(crate) use least_energy::{Form, LeastEnergy, MOMENTS};
+use crate::reconstruction::Densities;
+use crate::time_level::{Side, TimeLevel};
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::mesh::Star;
 use percute_core::problem::Problem;
-use walk::{Ends, Walk};
+use star_solver::{Ends, StarSolver};
 
 /// Facet without prescribed moments.
 const FREE: u32 = u32::MAX;
@@ -34,7 +32,7 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     slots: Vec<u32>,
     /// Number of loaded facets.
     loaded: usize,
-    /// Where the links of each contact node's star begin in [`Level::flux_before`].
+    /// Where the links of each contact node's star begin in [`TimeLevel::flux_before`].
     pub(crate) contact_links: Vec<usize>,
 }
 
@@ -66,7 +64,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.
     #[inline]
-    fn known_moment(&self, level: &Level<D>, densities: &Densities<D>, facet: FacetId, node: NodeId) -> [f64; D] {
+    fn known_moment(&self, level: &TimeLevel<D>, densities: &Densities<D>, facet: FacetId, node: NodeId) -> [f64; D] {
         let slot = self.slots[facet.index()];
         if slot == FREE {
             return [0.0; D];
@@ -85,7 +83,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     /// it (and enters, with the other sign, the one after it).
     pub(crate) fn solve_star(
         &self,
-        level: &Level<D>,
+        level: &TimeLevel<D>,
         node: NodeId,
         acceleration: &[f64; D],
         densities: &Densities<D>,
@@ -93,7 +91,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     ) -> Compatibility {
         let star = self.problem.mesh().stars().star(node);
         let ends = self.ends(level, densities, node, &star);
-        let walk = Walk { all: self, level, node, acceleration, elements: star.elements, ends: &ends };
+        let walk = StarSolver { all: self, level, node, acceleration, elements: star.elements, ends: &ends };
         let mut scale: f64 = 0.0;
         let lack = walk.along(flux, &mut scale);
         let miss = ends.close(&lack, flux);
@@ -105,7 +103,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
 
     /// What the first and the last link of a walk know of their moments.
     #[inline]
-    fn ends(&self, level: &Level<D>, densities: &Densities<D>, node: NodeId, star: &Star<'_>) -> Ends<D> {
+    fn ends(&self, level: &TimeLevel<D>, densities: &Densities<D>, node: NodeId, star: &Star<'_>) -> Ends<D> {
         let closed = star.is_closed();
         let links = [star.links[0], star.links[star.elements.len()]].map(|link| link.filter(|_| !closed));
         let known = |link: Option<FacetId>| link.map_or([0.0; D], |f| self.known_moment(level, densities, f, node));
@@ -117,7 +115,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     ///
     /// The terms of ∫σ_h∇φ_i are themselves sums, modulus times displacement gradient, that cancel in a
     /// turning body. They are looked at only where what is left of them does not explain the miss.
-    pub(crate) fn star_residual(&self, star: Compatibility, level: &Level<D>, node: NodeId) -> f64 {
+    pub(crate) fn star_residual(&self, star: Compatibility, level: &TimeLevel<D>, node: NodeId) -> f64 {
         let relative = |scale: f64| if star.miss == 0.0 { 0.0 } else { star.miss / scale };
         let scale = star.scale.max(1e-12 * level.force_scale);
         if relative(scale) <= EXPLAINED {
@@ -138,7 +136,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     #[inline]
     pub(crate) fn flux_around<'l>(
         &self,
-        level: &'l Level<D>,
+        level: &'l TimeLevel<D>,
         data: &Element<D, N>,
         i: usize,
         contact: Option<usize>,

@@ -4,11 +4,11 @@
 use super::BLOCK;
 use crate::element::Element;
 use crate::kinematic::{ContactTrack, settle};
-use crate::level::Level;
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::request::{Request, RequestError};
+use crate::time_level::TimeLevel;
 use crate::traction::Equilibration;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -59,7 +59,7 @@ impl<const D: usize> Maps<D> {
         instants: &[f64],
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
-        levels: &[Level<D>],
+        levels: &[TimeLevel<D>],
     ) {
         let zeros = vec![0.0; equilibration.elements.len()];
         for level in levels {
@@ -120,7 +120,7 @@ fn fields<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     equilibration: &Equilibration<'_, D, N>,
     choice: Acceleration,
-    level: &Level<D>,
+    level: &TimeLevel<D>,
 ) -> AdmissibleFields<D> {
     let elements = &equilibration.elements;
     let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];

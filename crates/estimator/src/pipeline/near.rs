@@ -1,18 +1,16 @@
 //! Elements with a candidate node of contact: their tractions may have two values at an instant,
 //! and their motion is known only when their nodes' next contact is.
 
-mod normal_law;
-
 use super::maps::{Contribution, Maps};
 use super::totals::trapezoid;
 use crate::element::Element;
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
-use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
 use crate::options::Acceleration;
+use crate::reconstruction::{FacetPressures, NormalMisfit};
 use crate::residual::{Residuals, worse};
+use crate::time_level::{Side, TimeLevel};
 use crate::traction::Equilibration;
-use normal_law::{NormalMisfit, Pressed};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -49,7 +47,7 @@ struct Waiting<const D: usize, const N: usize> {
     /// Which nodes touch at the beginning and at the end.
     touching: [[bool; N]; 2],
     /// What presses on its candidate facets, where that may be off contact.
-    pressed: Vec<Pressed<D>>,
+    pressed: Vec<FacetPressures<D>>,
 }
 
 /// One such element.
@@ -118,7 +116,7 @@ pub(crate) struct Context<'a, 'p, const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> NearElement<D, N> {
     /// Takes in the intervals between consecutive levels, then works off those whose motion is
     /// known.
-    pub(crate) fn advance(&mut self, context: &Context<'_, '_, D, N>, levels: &[Level<D>]) {
+    pub(crate) fn advance(&mut self, context: &Context<'_, '_, D, N>, levels: &[TimeLevel<D>]) {
         let element = &context.equilibration.elements[self.element.index()];
         let measure = ElementMeasure::new(context.problem, element, self.element, context.choice);
         if self.start.is_none() {
@@ -138,8 +136,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         context: &Context<'_, '_, D, N>,
         measure: &ElementMeasure<'_, D, N>,
         element: &Element<D, N>,
-        from: &Level<D>,
-        to: &Level<D>,
+        from: &TimeLevel<D>,
+        to: &TimeLevel<D>,
     ) {
         let balanced = |level, side| measure.balanced(context.equilibration, level, &self.contact, side);
         let (start, end) = (balanced(from, Side::After), balanced(to, Side::Before));
@@ -157,7 +155,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let touching = [from, to].map(|l| self.contact.map(|at| at.is_some_and(|at| l.surface.touching[at])));
         let pressed = |&facet: &usize| {
             let steps: Vec<_> = to.pressures.iter().map(|step| step[facet]).collect();
-            Pressed { facet, first: from.index, steps }
+            FacetPressures { facet, first: from.index, steps }
         };
         let facets = if to.pressures.is_empty() { &[][..] } else { &self.facets };
         let pressed = facets.iter().map(pressed).collect();

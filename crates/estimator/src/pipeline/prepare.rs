@@ -4,15 +4,14 @@ mod impulse;
 mod interval;
 mod supports;
 
-use crate::auxiliary::{AuxiliarySolution, kinetic_energy};
-use crate::contact_force::{ImpulseSmoothing, Pressure, Reading, SurfaceStep};
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
-use crate::level::Level;
 use crate::loaded::LoadedFacets;
 use crate::options::{Ablation, Options};
+use crate::reconstruction::{AuxiliarySolution, ImpulseSmoothing, Pressure, Reading, SurfaceStep, kinetic_energy};
 use crate::residual::{Residuals, worse};
+use crate::time_level::TimeLevel;
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{Step, StepCheck};
@@ -43,7 +42,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     tracks: Vec<ContactTrack>,
     supports: SupportCheck,
     /// Levels not yet handed on; `ready` of them are complete.
-    levels: VecDeque<Level<D>>,
+    levels: VecDeque<TimeLevel<D>>,
     ready: usize,
     /// Normal pressures of the steps since the last sampled level that was handed on.
     pressures: Vec<Vec<[Pressure<D>; 2]>>,
@@ -177,7 +176,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         if self.auxiliary.is_some() {
             self.liveliest = self.liveliest.max(strain + kinetic_energy(&knot.velocity, self.problem.mass()));
         }
-        self.levels.push_back(Level {
+        self.levels.push_back(TimeLevel {
             displacement,
             force,
             body_force: self.problem.body_force_at(self.times.instants()[n]),
@@ -187,7 +186,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 smoothed_reaction,
                 touching: step.touching.to_vec(),
             },
-            ..Level::new(n, mid, knot, self.problem.surface().facets().len())
+            ..TimeLevel::new(n, mid, knot, self.problem.surface().facets().len())
         });
         if n == 0 {
             self.start();
@@ -223,7 +222,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their pressures.
-    pub(super) fn next_ready(&mut self, last: bool) -> Option<Level<D>> {
+    pub(super) fn next_ready(&mut self, last: bool) -> Option<TimeLevel<D>> {
         while self.ready > 0 {
             self.ready -= 1;
             let mut level = self.levels.pop_front()?;

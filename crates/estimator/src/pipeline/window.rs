@@ -11,11 +11,12 @@ use super::totals::{self, FarSums, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
 use crate::kinematic::{ContactTrack, ElementMotion, Knot};
-use crate::level::{Level, Side};
 use crate::measure::{Balanced, ElementError, ElementMeasure};
 use crate::options::{Ablation, Acceleration, Options, Reconstruction};
+use crate::reconstruction::TractionMinimisation;
 use crate::residual::{Residuals, worse};
-use crate::traction::{Equilibration, LeastEnergy};
+use crate::time_level::{Side, TimeLevel};
+use crate::traction::Equilibration;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -58,10 +59,10 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let elements = problem.mesh().element_count();
     let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
     let whole = D > 1 && options.reconstruction == Reconstruction::Corrected;
-    let least_energy = if whole { LeastEnergy::<D>::memory(elements, levels, threads) } else { 0 };
+    let minimisation = if whole { TractionMinimisation::<D>::memory(elements, levels, threads) } else { 0 };
     levels
         .saturating_mul(bytes_of_level(problem))
-        .saturating_add(least_energy)
+        .saturating_add(minimisation)
         .saturating_add(element.saturating_mul(elements))
         .saturating_add(step.saturating_mul(steps))
 }
@@ -73,11 +74,11 @@ pub(crate) struct Window<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     equilibration: Equilibration<'p, D, N>,
     /// What improves the tractions of the reading `corrected`.
-    least_energy: Option<LeastEnergy<D>>,
+    minimisation: Option<TractionMinimisation<D>>,
     choice: Acceleration,
     /// Number of intervals worked on at once.
     size: usize,
-    levels: Vec<Level<D>>,
+    levels: Vec<TimeLevel<D>>,
     /// Whether the first level was the last of the window before.
     carried: bool,
     /// Weight of the work of normal forces off contact.
@@ -97,12 +98,12 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
         let equilibration = Equilibration::new(problem);
-        let least_energy =
+        let minimisation =
             options.reconstruction == Reconstruction::Corrected && options.ablation != Ablation::LeastEnergy;
         Self {
             problem,
             times,
-            least_energy: if least_energy { LeastEnergy::new(problem, &equilibration.elements) } else { None },
+            minimisation: if minimisation { TractionMinimisation::new(problem, &equilibration.elements) } else { None },
             equilibration,
             choice: options.acceleration,
             size: size(problem, options),
@@ -123,7 +124,7 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
     }
 
     /// Takes in a level; works when the window is full.
-    pub(super) fn push(&mut self, pool: &ThreadPool, level: Level<D>, tracks: &[ContactTrack]) {
+    pub(super) fn push(&mut self, pool: &ThreadPool, level: TimeLevel<D>, tracks: &[ContactTrack]) {
         self.levels.push(level);
         if self.levels.len() > self.size {
             self.work(pool, tracks);
@@ -148,8 +149,8 @@ impl<'p, const D: usize, const N: usize> Window<'p, D, N> {
         pool.install(|| {
             self.stresses(first);
             self.stars(first);
-            if let Some(least_energy) = &self.least_energy {
-                least_energy.improve(self.problem, &self.equilibration, self.choice, &mut self.levels[first..]);
+            if let Some(minimisation) = &self.minimisation {
+                minimisation.improve(self.problem, &self.equilibration, self.choice, &mut self.levels[first..]);
             }
             let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
             self.maps.begin(problem, times.instants(), equilibration, choice, &self.levels[first..]);
@@ -269,7 +270,7 @@ struct Shared<'a, 'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     equilibration: &'a Equilibration<'p, D, N>,
     choice: Acceleration,
-    levels: &'a [Level<D>],
+    levels: &'a [TimeLevel<D>],
     first: usize,
     times: &'p TimeGrid,
     maps: &'a Maps<D>,
@@ -342,7 +343,7 @@ fn largest_force<const D: usize, const N: usize>(
 fn contact_stars<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     equilibration: &Equilibration<'_, D, N>,
-    level: &mut Level<D>,
+    level: &mut TimeLevel<D>,
 ) -> f64 {
     let mut flux = vec![[0.0; D]; equilibration.contact_links.last().copied().unwrap_or(0)];
     let mut worst: f64 = 0.0;

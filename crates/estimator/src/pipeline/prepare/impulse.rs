@@ -1,6 +1,6 @@
 //! How much of the simulation's contact impulse the admissible force keeps.
 
-use crate::contact_force::{self, Interval};
+use crate::reconstruction::{self, Interval};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
@@ -24,7 +24,7 @@ impl Impulse {
         reaction: &[[f64; D]],
     ) {
         let [start, end] =
-            [&interval.start, &interval.end].map(|d| normal_sum(problem, &contact_force::nodal_forces(problem, d)));
+            [&interval.start, &interval.end].map(|d| normal_sum(problem, &reconstruction::nodal_forces(problem, d)));
         self.kept += 0.5 * times.step(n) * (start + end);
         self.whole += times.velocity_step(n) * normal_sum(problem, reaction);
     }

@@ -1,9 +1,9 @@
 //! What becomes known over a step: F_DA, then ã, ∫ã dt and the contact part of η.
 
 use super::Preparation;
-use crate::contact_force::{self, Densities, Interval, Reading};
 use crate::kinematic::Knot;
-use crate::level::Level;
+use crate::reconstruction::{self, Densities, Interval, Reading};
+use crate::time_level::TimeLevel;
 use percute_core::problem::Problem;
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
@@ -17,7 +17,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let interval = self.reading.interval(self.problem, before, &now.surface, &next.surface, after);
         let off_contact = self.reading.acts_off_contact();
         let residuals = &mut self.residuals;
-        contact_force::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
+        reconstruction::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
         self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
         self.before = Some(self.levels[first].surface.clone());
         if let Reading::Corrected(whole) = &self.reading {
@@ -34,7 +34,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     fn set_accelerations(&mut self, first: usize, interval: Interval<D>) {
         let surface = self.problem.surface().nodes();
         let inverse_mass = self.dynamics.inverse_mass();
-        let corrected = |level: &Level<D>, densities| -> Vec<[f64; D]> {
+        let corrected = |level: &TimeLevel<D>, densities| -> Vec<[f64; D]> {
             let each = surface.iter().zip(pull(self.problem, densities)).map(|(contact, force)| {
                 let i = contact.node.index();
                 std::array::from_fn(|c| (level.force[i][c] + force[c]) * inverse_mass[i])
@@ -92,7 +92,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             (0..D).for_each(|p| (0..D).for_each(|c| middle[p][c] = 0.5 * (start[p][c] + end[p][c])));
             let power = |knot: &Knot<D>, density| {
                 let velocity = facet.nodes.map(|k| knot.velocity[problem.surface().nodes()[k].node.index()]);
-                contact_force::misfit_power(problem, facet, density, &velocity)
+                reconstruction::misfit_power(problem, facet, density, &velocity)
             };
             let (a, b) = (power(&now.knot, start), power(&next.knot, end));
             let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &middle));
@@ -107,7 +107,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
 /// What moves each node of the contact surface under a density: its nodal force (N), but for the tangential
 /// part at a guided node, whose tangential motion is prescribed, whatever pulls at it.
 pub(super) fn pull<const D: usize, const N: usize>(problem: &Problem<D, N>, densities: &Densities<D>) -> Vec<[f64; D]> {
-    let mut forces = contact_force::nodal_forces(problem, densities);
+    let mut forces = reconstruction::nodal_forces(problem, densities);
     for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
         let plane = &problem.obstacles()[contact.obstacle];
         *force = plane.normal().map(|n| n * plane.split(force).0);

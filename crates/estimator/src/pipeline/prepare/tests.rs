@@ -128,8 +128,8 @@ fn a_guided_node_keeps_its_tangential_motion() {
         let preparation = prepared(&problem, &times, reading);
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();
-        let pulled = |d: &crate::contact_force::Densities<2>| {
-            let force = crate::contact_force::nodal_forces(&problem, d)[at];
+        let pulled = |d: &crate::reconstruction::Densities<2>| {
+            let force = crate::reconstruction::nodal_forces(&problem, d)[at];
             usize::from(force[0] != 0.0 && force[1] > 0.0)
         };
         let count: usize =
@@ -151,7 +151,7 @@ fn an_open_phase_has_its_force_at_the_last_step() {
     assert!(whole.levels[first].surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
     for (last, acts) in [(first, false), (first + 1, true), (first + 2, true)] {
         let ended = prepared_until(&problem, &times, Reconstruction::Published, last);
-        let pressed = |d: &crate::contact_force::Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
+        let pressed = |d: &crate::reconstruction::Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
         let level = ended.levels.back().unwrap();
         assert_eq!((level.index, pressed(&level.density_before)), (last, acts));
     }

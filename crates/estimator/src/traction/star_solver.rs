@@ -1,8 +1,8 @@
 //! One star problem, walked from facet to facet.
 
 use super::Equilibration;
-use crate::level::Level;
 use crate::residual::worse;
+use crate::time_level::TimeLevel;
 use percute_core::ids::{ElementId, NodeId};
 
 /// The two ends of a walk around a node.
@@ -50,16 +50,16 @@ impl<const D: usize> Ends<D> {
 }
 
 /// A walk through the elements around a node.
-pub(super) struct Walk<'a, 'p, const D: usize, const N: usize> {
+pub(super) struct StarSolver<'a, 'p, const D: usize, const N: usize> {
     pub(super) all: &'a Equilibration<'p, D, N>,
-    pub(super) level: &'a Level<D>,
+    pub(super) level: &'a TimeLevel<D>,
     pub(super) node: NodeId,
     pub(super) acceleration: &'a [f64; D],
     pub(super) elements: &'a [ElementId],
     pub(super) ends: &'a Ends<D>,
 }
 
-impl<const D: usize, const N: usize> Walk<'_, '_, D, N> {
+impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
     /// Finds the moments on all links with one choice of the constant. Returns by how much those
     /// without a known one, all together, fall short of the averaged finite-element traction.
     #[inline]

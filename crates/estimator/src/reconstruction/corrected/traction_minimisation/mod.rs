@@ -12,9 +12,9 @@ mod basis;
 mod descent;
 
 use crate::element::Element;
-use crate::level::Level;
 use crate::measure::ElementMeasure;
 use crate::options::Acceleration;
+use crate::time_level::TimeLevel;
 use crate::traction::Equilibration;
 use basis::Basis;
 use percute_core::ids::ElementId;
@@ -40,12 +40,12 @@ pub(super) type Lanes = [f64; LANES];
 
 /// What is fixed in time.
 #[derive(Debug)]
-pub(crate) struct LeastEnergy<const D: usize> {
+pub(crate) struct TractionMinimisation<const D: usize> {
     basis: Basis<D>,
     forms: Vec<Form>,
 }
 
-impl<const D: usize> LeastEnergy<D> {
+impl<const D: usize> TractionMinimisation<D> {
     /// Prepares all elements. In 1D there is nothing to choose.
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, elements: &[Element<D, N>]) -> Option<Self> {
         if D == 1 {
@@ -75,7 +75,7 @@ impl<const D: usize> LeastEnergy<D> {
         problem: &Problem<D, N>,
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
-        levels: &mut [Level<D>],
+        levels: &mut [TimeLevel<D>],
     ) {
         let count = levels.len();
         let mut slopes = vec![[0.0; MOMENTS]; count * equilibration.elements.len()];

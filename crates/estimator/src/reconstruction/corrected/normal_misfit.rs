@@ -7,33 +7,33 @@
 //! reactions: what stops a node within a step takes its energy, even where F_DA spreads the impulse over a time in which
 //! the node rests.
 
-use crate::contact_force::{Pressure, gap_energy, normal_power};
 use crate::kinematic::ContactTrack;
+use crate::reconstruction::{Pressure, gap_energy, normal_power};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
 /// Normal pressures on one candidate facet at the beginning and the end of each step of an interval between samples.
 #[derive(Clone, Debug)]
-pub(super) struct Pressed<const D: usize> {
+pub(crate) struct FacetPressures<const D: usize> {
     /// Position among the candidate facets.
-    pub(super) facet: usize,
+    pub(crate) facet: usize,
     /// First step of the interval.
-    pub(super) first: usize,
-    pub(super) steps: Vec<[Pressure<D>; 2]>,
+    pub(crate) first: usize,
+    pub(crate) steps: Vec<[Pressure<D>; 2]>,
 }
 
 /// Energies of an interval (J): at its beginning, middle and end.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct NormalMisfit {
+pub(crate) struct NormalMisfit {
     /// ∫F_n gap.
-    pub(super) energy: [f64; 3],
+    pub(crate) energy: [f64; 3],
     /// ∫∫F_n|w_n| dt since its beginning; the middle is that of its first step.
-    pub(super) work: [f64; 3],
+    pub(crate) work: [f64; 3],
 }
 
 impl NormalMisfit {
     /// Adds another facet's.
-    pub(super) fn add(&mut self, other: &Self) {
+    pub(crate) fn add(&mut self, other: &Self) {
         for k in 0..3 {
             self.energy[k] += other.energy[k];
             self.work[k] += other.work[k];
@@ -41,9 +41,9 @@ impl NormalMisfit {
     }
 }
 
-impl<const D: usize> Pressed<D> {
+impl<const D: usize> FacetPressures<D> {
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all knots.
-    pub(super) fn misfit<const N: usize>(
+    pub(crate) fn misfit<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         times: &TimeGrid,

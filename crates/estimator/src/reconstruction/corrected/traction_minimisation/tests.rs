@@ -15,8 +15,8 @@ fn problem() -> TriangleProblem {
         .unwrap()
 }
 
-fn prepared(problem: &TriangleProblem) -> LeastEnergy<2> {
-    LeastEnergy::new(problem, &elements(problem)).unwrap()
+fn prepared(problem: &TriangleProblem) -> TractionMinimisation<2> {
+    TractionMinimisation::new(problem, &elements(problem)).unwrap()
 }
 
 fn random_modes(basis: &Basis<2>, random: &mut Random) -> Modes {
@@ -33,7 +33,11 @@ fn random_moments(basis: &Basis<2>, random: &mut Random) -> Vec<FacetMoments<2>>
 }
 
 /// Slopes of all elements as a random quadratic energy has them at its start.
-fn random_slopes(problem: &TriangleProblem, all: &LeastEnergy<2>, random: &mut Random) -> Vec<[Lanes; MOMENTS]> {
+fn random_slopes(
+    problem: &TriangleProblem,
+    all: &TractionMinimisation<2>,
+    random: &mut Random,
+) -> Vec<[Lanes; MOMENTS]> {
     let apart = random_moments(&all.basis, random);
     let slope = |e: usize| basis::apply(&all.forms[e], &all.basis.of_element(e, &apart));
     (0..problem.mesh().element_count()).map(slope).collect()

@@ -1,7 +1,7 @@
 //! All nodal and element fields at one instant t_n.
 
-use crate::contact_force::{Densities, Pressure, SurfaceStep};
 use crate::kinematic::Knot;
+use crate::reconstruction::{Densities, Pressure, SurfaceStep};
 
 /// Which value at an instant where contact changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub(crate) enum Side {
 /// The fields of one instant, filled as they become known: first the motion, then the contact force
 /// on both sides and ã, then stress and tractions.
 #[derive(Clone, Debug)]
-pub(crate) struct Level<const D: usize> {
+pub(crate) struct TimeLevel<const D: usize> {
     /// n.
     pub(crate) index: usize,
     pub(crate) knot: Knot<D>,
@@ -49,7 +49,7 @@ pub(crate) struct Level<const D: usize> {
     pub(crate) flux_before: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Level<D> {
+impl<const D: usize> TimeLevel<D> {
     /// A level of which the motion alone is known.
     pub(crate) fn new(index: usize, mid: Option<Knot<D>>, knot: Knot<D>, contact_facets: usize) -> Self {
         let none = vec![[[0.0; D]; D]; contact_facets];

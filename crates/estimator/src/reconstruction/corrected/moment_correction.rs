@@ -7,7 +7,7 @@
 //! the forces weigh, affine along the plane, and 0 where that would be negative. Friction goes with its normal force, and what
 //! its sum lacks then is shared out where the cone has room, of which there is always enough.
 
-use super::{along, tangent};
+use crate::reconstruction::{along, tangent};
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 

@@ -6,15 +6,15 @@
 
 mod consistent;
 mod corrected;
-mod impulse_smoothing;
-mod moment_correction;
 mod published;
 
 use crate::options::{Ablation, Reconstruction};
 use crate::residual::{Residuals, worse};
 use corrected::Corrected;
-pub(crate) use corrected::Pressure;
-pub(crate) use impulse_smoothing::ImpulseSmoothing;
+pub(crate) use corrected::{
+    AuxiliarySolution, FacetPressures, Form, ImpulseSmoothing, MOMENTS, NormalMisfit, Pressure, TractionMinimisation,
+    kinetic_energy,
+};
 use percute_core::obstacle::Plane;
 use percute_core::problem::{ContactFacet, Problem};
 use published::Published;

@@ -1,6 +1,17 @@
 //! The whole reaction as a density on all candidate facets of its node.
 
-use super::moment_correction::MomentCorrection;
+mod auxiliary_solution;
+mod impulse_smoothing;
+mod moment_correction;
+mod normal_misfit;
+mod traction_minimisation;
+
+pub(crate) use auxiliary_solution::{AuxiliarySolution, kinetic_energy};
+pub(crate) use impulse_smoothing::ImpulseSmoothing;
+use moment_correction::MomentCorrection;
+pub(crate) use normal_misfit::{FacetPressures, NormalMisfit};
+pub(crate) use traction_minimisation::{Form, MOMENTS, TractionMinimisation};
+
 use super::{Densities, Interval, SurfaceStep, none};
 use percute_core::problem::{ContactFacet, ContactNode, Problem};
 

@@ -1,6 +1,6 @@
 use super::MomentCorrection;
-use crate::contact_force::{Reading, nodal_forces};
 use crate::options::Reconstruction;
+use crate::reconstruction::{Reading, nodal_forces};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
