@@ -33,7 +33,7 @@ from percute.errors import (
 from percute.estimation import Estimate, estimate
 from percute.evidence import reproduce
 from percute.files import open, run
-from percute.history import Balance, History, simulate
+from percute.history import Balance, History, simulate, true_errors
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.records import ElementMap, OverTime, Parts, WorstElement
@@ -75,4 +75,5 @@ __all__ = [
     "reproduce",
     "run",
     "simulate",
+    "true_errors",
 ]

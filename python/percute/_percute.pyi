@@ -21,6 +21,8 @@ __all__ = [
     "__version__",
     "command",
     "plausibility_warnings",
+    "errors_against_history",
+    "errors_against_simulation",
     "estimate",
     "is_estimate",
     "meaning",
@@ -36,6 +38,8 @@ __version__: str
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 _Tell = Callable[[Progress], object] | None
+_Times = tuple[float | None, float | None, float | None, Sequence[float] | None]
+_TrueError = tuple[float, float, dict[str, _Floats]]
 
 class _Measures(TypedDict):
     sup: float
@@ -73,6 +77,7 @@ class MeshData:
     def disc(radius: float, rings: int) -> MeshData: ...
     @staticmethod
     def bar(length: float, elements: int) -> MeshData: ...
+    def refined(self, times: int) -> MeshData: ...
     @staticmethod
     def from_arrays(
         points: _Floats, cells: _Integers, groups: dict[str, _Integers], elements: dict[str, _Integers]
@@ -215,18 +220,18 @@ class BarImpactData:
     def velocity(self, x: _Floats, t: _Floats) -> _Floats: ...
     def normal_force(self, x: _Floats, t: _Floats) -> _Floats: ...
     def contact_force(self, x: _Floats, t: _Floats) -> _Floats: ...
-    def error(self, history: HistoryData) -> tuple[float, float, dict[str, _Floats]]: ...
+    def error(self, history: HistoryData) -> _TrueError: ...
 
 def command(arguments: Sequence[str]) -> int: ...
 def meaning(reconstruction: str) -> str: ...
 def plausibility_warnings(
     problem: ProblemData,
-    times: tuple[float | None, float | None, float | None, Sequence[float] | None],
+    times: _Times,
     in_memory: bool,
 ) -> list[str]: ...
 def simulate(
     problem: ProblemData,
-    times: tuple[float | None, float | None, float | None, Sequence[float] | None],
+    times: _Times,
     store: str | PathLike[str] | None,
     overwrite: bool,
     progress: _Tell,
@@ -244,10 +249,15 @@ def reproduce(
     threads: int | None,
     progress: _Tell,
 ) -> Path: ...
+def errors_against_history(histories: Sequence[HistoryData], reference: HistoryData) -> list[_TrueError]: ...
+def errors_against_simulation(
+    histories: Sequence[HistoryData], problem: ProblemData, times: _Times, progress: _Tell
+) -> list[_TrueError]: ...
 def estimate(
     history: HistoryData,
     reconstruction: str,
     acceleration: str,
+    ablation: str,
     every: int,
     threads: int | None,
     window: int | None,

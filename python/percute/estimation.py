@@ -26,6 +26,8 @@ from percute.stored import StoredEstimate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from percute.exact import Effectivity, TrueError
+
 __all__ = ["Estimate", "estimate"]
 
 
@@ -179,6 +181,19 @@ class Estimate:
         reconstruction, acceleration, every = self._data.options()
         return MappingProxyType({"reconstruction": reconstruction, "acceleration": acceleration, "every": every})
 
+    def effectivity(self, error: TrueError) -> Effectivity:
+        """Give the effectivity index: the estimated over the true error, of the largest and of the mean error.
+
+        Parameters
+        ----------
+        error : percute.exact.TrueError
+            The true error of the same history, as `History.error` and `percute.exact` give it.
+        """
+        from percute.exact import Effectivity, TrueError
+
+        true = instance("error", error, TrueError)
+        return Effectivity(sup=self.sup / true.sup, mean=self.mean / true.mean)
+
     def worst_elements(self, n: int = 5) -> list[WorstElement]:
         """Give the ``n`` elements that contribute most, largest first."""
         count = whole("n", n, least=0)
@@ -320,6 +335,7 @@ def estimate(
     instants: int | ArrayLike | None = None,
     fields: bool = False,
     progress: ProgressOption = None,
+    _ablation: str = "none",
 ) -> Estimate:
     """Estimate the constitutive relation error of a history.
 
@@ -362,6 +378,8 @@ def estimate(
     options = (
         stated[0] if reconstruction is None else text("reconstruction", reconstruction),
         stated[1] if acceleration is None else text("acceleration", acceleration),
+        # The default without one of its parts: for the evidence of the purpose of each.
+        text("_ablation", _ablation),
         stated[2] if every is None else whole("every", every),
     )
     work = pace(threads, window)

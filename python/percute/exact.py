@@ -129,8 +129,7 @@ class BarImpact:
         measured = history if history is not None else estimate.history
         if measured is None:
             raise InputError("`history` is missing: an estimate from a file does not hold it")
-        true = self.error(measured)
-        return Effectivity(sup=estimate.sup / true.sup, mean=estimate.mean / true.mean)
+        return estimate.effectivity(self.error(measured))
 
     def _at(self, values: Any, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
         places, instants = _together(

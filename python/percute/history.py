@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import encodable, flag, instance, numbers, optional_number, warn
+from percute.checks import encodable, flag, instance, items, numbers, optional_number, warn
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
@@ -24,7 +24,9 @@ from percute.progress import ProgressOption, shown
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Balance", "History", "simulate"]
+    from percute.exact import TrueError
+
+__all__ = ["Balance", "History", "simulate", "true_errors"]
 
 MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction": np.dtype("<f8"), "touching": np.dtype("u1")}
 
@@ -189,6 +191,29 @@ class History:
         """What contact did, at each node and in all; computed when first asked for."""
         return Contact._of(self._data.contact(), self.problem.mesh)
 
+    def error(self, reference: History) -> TrueError:
+        """Give the true error of this history, as far as a finer one tells it.
+
+        Parameters
+        ----------
+        reference : History
+            A simulation of the same problem, at least as long, on a mesh in which this one is nested, such as
+            `Mesh.refined`. Between its instants it is interpolated linearly. Where it needs too much memory, take
+            `percute.true_errors`.
+
+        Returns
+        -------
+        percute.exact.TrueError
+            The energy norm of the difference at the instants of this history, exact in space.
+
+        Raises
+        ------
+        InputError
+            The meshes are not nested, or the reference ends too early.
+        """
+        other = instance("reference", reference, History)
+        return _errors(_percute.errors_against_history([self._data], other._data))[0]
+
     @property
     def complete(self) -> bool:
         """Whether all steps that were planned are there."""
@@ -321,6 +346,52 @@ def simulate(
     with shown(progress) as tell, history_of_the_exception(problem):
         data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))
+
+
+def true_errors(
+    histories: Iterable[History],
+    problem: Problem,
+    *,
+    end: float | None = None,
+    courant: float | None = None,
+    step: float | None = None,
+    steps: ArrayLike | None = None,
+    progress: ProgressOption = None,
+) -> list[TrueError]:
+    """Simulate a problem on a fine mesh and give the true errors of histories of coarser ones against it.
+
+    It gives what `History.error` gives for each, without keeping the steps of the reference.
+
+    Parameters
+    ----------
+    histories : iterable of History
+        Simulations of the same problem on meshes that are nested in that of ``problem``.
+    problem : Problem
+        The reference.
+    end, courant, step, steps, progress
+        As for `simulate`.
+
+    Returns
+    -------
+    list of percute.exact.TrueError
+
+    Raises
+    ------
+    InputError
+        An argument is wrong, the meshes are not nested, or the reference ends too early.
+    """
+    coarse = [history._data for history in items("histories", histories, History)]
+    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
+    times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
+    with shown(progress) as tell:
+        found = _percute.errors_against_simulation(coarse, instance("problem", problem, Problem)._data, times, tell)
+    return _errors(found)
+
+
+def _errors(found: list[Any]) -> list[TrueError]:
+    from percute.exact import TrueError
+
+    return [TrueError(sup=sup, mean=mean, **over_time) for sup, mean, over_time in found]
 
 
 def absolute(file: str | os.PathLike[str] | None) -> str | None:

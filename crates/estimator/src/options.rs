@@ -131,6 +131,17 @@ macro_rules! named {
 }
 
 named!(Reconstruction: Corrected = "corrected", Consistent = "consistent", Published = "published");
+named!(
+    Ablation:
+        None = "none",
+        AuxiliarySolution = "auxiliary solution",
+        Correction = "correction",
+        ImpulseSmoothing = "impulse smoothing",
+        Moment = "moment",
+        LeastEnergy = "least energy",
+        NormalWork = "normal work",
+        DoubledWork = "doubled work"
+);
 named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
 
 #[cfg(test)]

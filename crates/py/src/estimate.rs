@@ -87,6 +87,7 @@ pub(crate) fn estimate(
     history: &HistoryData,
     reconstruction: &str,
     acceleration: &str,
+    ablation: &str,
     every: usize,
     threads: Option<usize>,
     window: Option<usize>,
@@ -94,7 +95,8 @@ pub(crate) fn estimate(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
-    let options = Options { threads, window, ..options(py, reconstruction, acceleration, every)? };
+    let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, &format!("`_ablation`: {error}")))?;
+    let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, every)? };
     let instants = instants.map(Instants::from);
     Ok(EstimateData {
         made: match &history.run {

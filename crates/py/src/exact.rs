@@ -2,14 +2,14 @@
 
 use crate::any::Any;
 use crate::history::HistoryData;
+use crate::reference::{Told, told};
 use crate::run::{Run, Stoppable};
-use crate::{door, errors, view};
+use crate::{door, errors};
 use numpy::{PyArray1, PyReadonlyArray1};
 use percute_core::history::StepSource;
-use percute_estimator::reference::{Recorder, ReferenceError, TrueError, TrueErrorSample, bar_impact_error};
+use percute_estimator::reference::{Recorder, ReferenceError, TrueError, bar_impact_error};
 use percute_exact::BarImpact;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// The exact solution of a bar that strikes a plane.
@@ -97,20 +97,14 @@ impl BarImpactData {
     }
 
     /// The true error of a history: sup, mean, and time, kinetic and elastic part at each instant.
-    fn error<'py>(&self, py: Python<'py>, history: &HistoryData) -> PyResult<(f64, f64, Bound<'py, PyDict>)> {
+    fn error<'py>(&self, py: Python<'py>, history: &HistoryData) -> PyResult<Told<'py>> {
         let Any::Bar(run) = &history.run else {
             return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
         };
         let (run, exact) = (run.clone(), self.exact);
         let outcome = door::through(py, None, move |watch| true_error(&run, &exact, watch))?;
         let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
-        let quantities: view::Columns<TrueErrorSample, 4> =
-            [("time", |s| s.time), ("kinetic", |s| s.kinetic), ("elastic", |s| s.elastic), ("total", |s| s.total())];
-        let columns = PyDict::new(py);
-        for (name, quantity) in quantities {
-            columns.set_item(name, view::column(py, &error.over_time, quantity))?;
-        }
-        Ok((error.sup, error.mean, columns))
+        told(py, &error)
     }
 }
 

@@ -11,6 +11,7 @@ mod exact;
 mod history;
 mod mesh;
 mod problem;
+mod reference;
 mod reproduce;
 mod restore;
 mod run;
@@ -40,6 +41,8 @@ mod _percute {
     use super::mesh::MeshData;
     #[pymodule_export]
     use super::problem::ProblemData;
+    #[pymodule_export]
+    use super::reference::{errors_against_history, errors_against_simulation};
     #[pymodule_export]
     use super::reproduce::reproduce;
     #[pymodule_export]

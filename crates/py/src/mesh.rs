@@ -1,6 +1,6 @@
 //! Meshes.
 
-use crate::any::{Any, AnyMesh, each};
+use crate::any::{Any, AnyMesh, each, map};
 use crate::{door, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
@@ -39,6 +39,18 @@ impl MeshData {
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
         let mesh = door::through(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
         Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+    }
+
+    /// The mesh with each element cut into halves (a bar) or quarters, so many times.
+    fn refined(&self, py: Python<'_>, times: usize) -> PyResult<Self> {
+        let mut mesh = self.mesh.clone();
+        for _ in 0..times {
+            mesh = map!(mesh, mesh => {
+                let finer = door::through(py, None, move |_| mesh.refined())?;
+                Arc::new(finer.map_err(|e| errors::mesh(py, &e))?)
+            });
+        }
+        Ok(Self { mesh })
     }
 
     /// A mesh from contiguous arrays whose shapes have been checked.

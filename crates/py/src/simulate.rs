@@ -28,7 +28,7 @@ use thiserror::Error;
 type Kind<'a, const D: usize, const N: usize> = (Refused<'a>, fn(Arc<Run<D, N>>) -> AnyRun);
 
 /// How the instants are stated: end, courant, step, steps.
-type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
+pub(crate) type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
 
 /// Simulates. What is raised on the way has what was done as its `history`: the data, or the file.
 #[pyfunction]

@@ -1,6 +1,31 @@
 //! Nested finer meshes.
 
-use super::{ElementGroups, FacetGroups, MeshError, TriangleMesh};
+use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
+use crate::ids::{ElementId, FacetId};
+
+impl BarMesh {
+    /// The mesh with each element cut in two.
+    ///
+    /// Nodes keep their numbers, and the middle of element e becomes node `node_count() + e`; element e becomes the elements
+    /// 2 e and 2 e + 1; groups name the same ends and elements as before.
+    ///
+    /// # Errors
+    /// A mesh so fine that middles cannot be told from ends, or with more nodes than there are numbers.
+    pub fn refined(&self) -> Result<Self, MeshError> {
+        let (mut points, mut cells) = (self.points.clone(), Vec::with_capacity(2 * self.element_count()));
+        for cell in &self.cells {
+            let [a, b] = cell.map(|node| node.index());
+            cells.extend([[a, points.len()], [points.len(), b]]);
+            points.push([0.5 * (points[a][0] + points[b][0])]);
+        }
+        let ends = |group: &Vec<FacetId>| group.iter().flat_map(|f| self.facets[f.index()].nodes).map(|n| [n.index()]).collect();
+        let halves = |group: &Vec<ElementId>| group.iter().flat_map(|e| [2 * e.index(), 2 * e.index() + 1]).collect();
+        let facets: FacetGroups<1> = self.facet_groups.iter().map(|(name, group)| (name.clone(), ends(group))).collect();
+        let elements: ElementGroups =
+            self.element_groups.iter().map(|(name, group)| (name.clone(), halves(group))).collect();
+        Self::new(points, &cells, &facets, &elements)
+    }
+}
 
 impl TriangleMesh {
     /// The mesh with each triangle cut into four by the middles of its edges, for true errors against a nested mesh.
