@@ -2,19 +2,41 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import instance, number, numbers
+from percute.checks import instance, number, numbers, text, whole, wrong
 from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History
+from percute.statement import Elastic
 
-__all__ = ["BarImpact", "Effectivity", "TrueError", "bar_impact"]
+__all__ = [
+    "BarImpact",
+    "BarMode",
+    "BarRamp",
+    "BlockMode",
+    "BouncingBar",
+    "ClampedRod",
+    "Effectivity",
+    "RigidSlide",
+    "TrueError",
+    "bar_impact",
+]
+
+UNITS = {
+    "length": "m", "young": "Pa", "density": "kg/m³", "section": "m²", "speed": "m/s", "gap": "m", "gravity": "m/s²", "height": "m",
+    "distance": "m", "rate": "Pa/s", "amplitude": "m", "width": "m", "mass": "kg", "limit": "N",
+}  # fmt: skip
+"""Arguments that must be positive."""
+POINTS = 8
+"""Points of an element at which an error is measured. A jump inside an element is placed to 1/16 of it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -48,72 +70,94 @@ class Effectivity:
     """Of the mean error."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class BarImpact:
-    """A uniform bar on [0, L] that flies in -x against a rigid plane at x = -gap; see `bar_impact`.
+class _Exact:
+    """A closed-form solution: it checks its arguments; the extension has the formulas."""
 
-    Source: Louf, Gallimard and Pelle, §7.1. On the wave front itself, fields have their values behind it.
-    """
+    _data: _percute.ExactData
+
+    def __post_init__(self) -> None:
+        for name, unit in UNITS.items():
+            if hasattr(self, name):
+                value = number(name, getattr(self, name), unit=unit)
+                if not 0 < value < np.inf:
+                    raise InputError(f"`{name}` is {value:g} {unit}; it must be positive and finite")
+                object.__setattr__(self, name, value)
+        data = self._make(*(getattr(self, each) for each in self._arguments()))
+        object.__setattr__(self, "_data", data)
+        for name, value in data.constants.items():
+            object.__setattr__(self, name, value)
+
+    def _arguments(self) -> list[str]:
+        return [each.name for each in fields(self) if each.init]  # type: ignore[arg-type]
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        raise NotImplementedError
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(type(self), **{name: getattr(self, name) for name in self._arguments()}), ()
+
+    def _evaluate(self, name: str, **at: ArrayLike) -> NDArray[np.float64]:
+        """Evaluate a function at places and instants, broadcast against each other."""
+        given = [numbers(each, value, most=32, finite=True) for each, value in at.items()]
+        try:
+            rows = np.stack(np.broadcast_arrays(*given), axis=-1)
+        except ValueError:
+            shapes = ", ".join(f"`{each}` has the shape {value.shape}" for each, value in zip(at, given, strict=True))
+            raise InputError(f"{shapes}; they cannot be broadcast") from None
+        return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(rows.shape[:-1])
+
+
+class _Bar(_Exact):
+    """An exact solution of a uniform bar on [0, L]. On a wave front, fields have their values behind it."""
 
     length: float
     young: float
     density: float
     section: float
-    speed: float
-    gap: float
-    _data: _percute.BarImpactData = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        names = ("length", "young", "density", "section", "speed", "gap")
-        values = [number(name, getattr(self, name)) for name in names]
-        object.__setattr__(self, "_data", _percute.BarImpactData(*values))
-        for name, value in zip(names, values, strict=True):
-            object.__setattr__(self, name, value)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self.length, self.young, self.density, self.section, self.speed, self.gap)
-
-    @property
-    def wave_speed(self) -> float:
-        """c = √(E/ρ) (m/s)."""
-        return self._data.wave_speed
-
-    @property
-    def impact_time(self) -> float:
-        """When it strikes (s)."""
-        return self._data.impact_time
-
-    @property
-    def release_time(self) -> float:
-        """When it leaves the plane, 2L/c later (s)."""
-        return self._data.release_time
 
     def displacement(self, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
         """Displacement at the places ``x`` in [0, L] (m) and instants ``t`` (s), broadcast against each other (m)."""
-        return self._at(self._data.displacement, x, t)
+        return self._at("displacement", x, t)
 
     def velocity(self, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
         """Velocity (m/s), likewise."""
-        return self._at(self._data.velocity, x, t)
+        return self._at("velocity", x, t)
 
     def normal_force(self, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
         """Normal force (N), tension positive, likewise."""
-        return self._at(self._data.normal_force, x, t)
-
-    def contact_force(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Force of the plane on the bar (N) at the instants ``t`` (s)."""
-        return self._at(self._data.contact_force, 0.0, t)
+        return self._at("normal_force", x, t)
 
     def error(self, history: History) -> TrueError:
         """Give the true error of a simulation of this very bar, eq. [60].
+
+        Integrals over elements are sums over their parts.
 
         Raises
         ------
         InputError
             If it is a simulation of another one.
         """
-        sup, mean, over_time = self._data.error(instance("history", history, History)._data)
-        return TrueError(sup=sup, mean=mean, **over_time)
+        mesh = instance("history", history, History).problem.mesh
+        if mesh.dimension != 1:
+            raise InputError("`history` is that of a plane body; the exact solution is that of a bar")
+        if abs(mesh.size / self.length - 1) > 1e-9:
+            raise InputError(f"`history` is that of a bar of length {mesh.size:g} m, and the exact bar has length {self.length:g} m")
+        ends = mesh.points[mesh.cells, 0]
+        size = ends[:, 1] - ends[:, 0]
+        s = (np.arange(POINTS) + 0.5) / POINTS
+        x = ends[:, :1] + s * size[:, None]
+        stiffness, inertia = self.young * self.section, self.density * self.section
+        part = 0.5 / POINTS * size[:, None]
+        kinetic, elastic = np.empty((2, len(history)))
+        for n, t in enumerate(history.time):
+            u, v = (values[n][mesh.cells, 0] for values in (history.displacement, history.velocity))
+            force = stiffness * np.diff(u) / size[:, None]
+            kinetic[n] = np.sum(part * inertia * (v[:, :1] + s * np.diff(v) - self.velocity(x, t)) ** 2)
+            elastic[n] = np.sum(part * (force - self.normal_force(x, t)) ** 2) / stiffness
+        total = kinetic + elastic
+        mean = np.sum(np.diff(history.time) * (total[1:] + total[:-1])) / (2 * history.time[-1])
+        sup, mean = float(np.sqrt(total.max())), float(np.sqrt(mean))
+        return TrueError(sup=sup, mean=mean, time=history.time, kinetic=kinetic, elastic=elastic, total=total)
 
     def effectivity(self, estimate: Estimate, history: History | None = None) -> Effectivity:
         """Give the estimated over the true error, for the largest and the mean one.
@@ -131,23 +175,241 @@ class BarImpact:
             raise InputError("`history` is missing: an estimate from a file does not hold it")
         return estimate.effectivity(self.error(measured))
 
-    def _at(self, values: Any, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
-        places, instants = _together(
-            numbers("x", x, most=32, finite=True), numbers("t", t, most=32, finite=True)
-        )
-        found: NDArray[np.float64] = values(places.ravel(), instants.ravel())
-        return found.reshape(places.shape)
+    def _at(self, name: str, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
+        places = numbers("x", x, most=32, finite=True)
+        outside = (places < 0) | (places > self.length)
+        if outside.any():
+            raise InputError(f"`x` holds {places[outside][0]:g} m; it must lie in the bar, from 0 to {self.length:g} m")
+        return self._evaluate(name, x=places, t=t)
 
 
-def _together(x: NDArray[np.float64], t: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-    try:
-        return np.broadcast_arrays(x, t)
-    except ValueError:
-        raise InputError(f"`x` has the shape {x.shape} and `t` {t.shape}; they cannot be broadcast") from None
+class _StruckBar(_Bar):
+    """A bar whose end at x = 0 touches an obstacle."""
+
+    def contact_force(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Force of the obstacle on the bar (N) at the instants ``t`` (s)."""
+        return -self.normal_force(0.0, t)
 
 
-def _rebuild(*values: float) -> BarImpact:
-    return bar_impact(**dict(zip(("length", "young", "density", "section", "speed", "gap"), values, strict=True)))
+@dataclass(frozen=True, kw_only=True)
+class BarImpact(_StruckBar):
+    """A uniform bar on [0, L] that flies in -x against a rigid plane at x = -gap; see `bar_impact`.
+
+    Source: Louf, Gallimard and Pelle, §7.1.
+    """
+
+    length: float
+    young: float
+    density: float
+    section: float
+    speed: float
+    gap: float
+    wave_speed: float = field(init=False, repr=False, compare=False)
+    """c = √(E/ρ) (m/s)."""
+    impact_time: float = field(init=False, repr=False, compare=False)
+    """When it strikes (s)."""
+    release_time: float = field(init=False, repr=False, compare=False)
+    """When it leaves the plane, 2L/c later (s)."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        return _percute.ExactData.bar_impact(values)
+
+    def error(self, history: History) -> TrueError:
+        """Give the true error of a simulation of this very bar, eq. [60]; integrals are exact in space.
+
+        Raises
+        ------
+        InputError
+            If it is a simulation of another one.
+        """
+        values = [getattr(self, name) for name in self._arguments()]
+        sup, mean, over_time = _percute.true_error_of_bar_impact(values, instance("history", history, History)._data)
+        return TrueError(sup=sup, mean=mean, **over_time)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BouncingBar(_StruckBar):
+    """A uniform bar that falls from ``height`` on a rigid plane under ``gravity``, in -x, and comes back again and again.
+
+    It starts undeformed on [0, L] and at rest. The time between two contacts must be a whole number, at least 3, of periods 2L/c.
+
+    Source: Doyen, Ern and Piperno (2011), SIAM J. Sci. Comput. 33(1), 223–249; d'Alembert.
+    """
+
+    length: float
+    young: float
+    density: float
+    section: float
+    gravity: float
+    height: float
+    wave_speed: float = field(init=False, repr=False, compare=False)
+    """c = √(E/ρ) (m/s)."""
+    impact_time: float = field(init=False, repr=False, compare=False)
+    """When it touches first (s)."""
+    contact_duration: float = field(init=False, repr=False, compare=False)
+    """How long each contact lasts, 2L/c (s)."""
+    period: float = field(init=False, repr=False, compare=False)
+    """Time of two bounces, after which all repeats (s)."""
+    energy: float = field(init=False, repr=False, compare=False)
+    """Kinetic, strain and potential energy (J), zero at rest on the plane."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        data = _percute.ExactData.bouncing_bar(values)
+        if data is None:
+            raise InputError("`height` and `length`: the flight between two contacts must last a whole number, at least 3, of periods 2L/c")
+        return data
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClampedRod(_StruckBar):
+    """A rod on [0, L], clamped at x = L, that springs back against an obstacle at the undeformed place of its end x = 0.
+
+    It starts at rest with u₀ = (1 - x/L) ``distance``.
+
+    Source: a benchmark of Dabaghi, Petrov, Pousin and Renard (2016), Appl. Numer. Math. 103; d'Alembert.
+    """
+
+    length: float
+    young: float
+    density: float
+    section: float
+    distance: float
+    wave_speed: float = field(init=False, repr=False, compare=False)
+    """c = √(E/ρ) (m/s)."""
+    passage: float = field(init=False, repr=False, compare=False)
+    """L/c (s), after which it touches, and for which it does."""
+    period: float = field(init=False, repr=False, compare=False)
+    """3L/c (s)."""
+    energy: float = field(init=False, repr=False, compare=False)
+    """Kinetic plus strain energy (J)."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        return _percute.ExactData.clamped_rod(values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarMode(_Bar):
+    """A standing wave u = A φ(x) cos(ωt + θ) of a uniform bar, with the ends ``fixed`` that are named, the others free.
+
+    Source: Timoshenko, Vibration Problems in Engineering.
+    """
+
+    length: float
+    young: float
+    density: float
+    section: float
+    amplitude: float
+    number: int
+    fixed: Literal["start", "both", "none"]
+    phase: float = 0.0
+    angular_frequency: float = field(init=False, repr=False, compare=False)
+    """ω (rad/s)."""
+    wave_number: float = field(init=False, repr=False, compare=False)
+    """k (rad/m)."""
+    energy: float = field(init=False, repr=False, compare=False)
+    """Kinetic plus strain energy (J)."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        *lengths, order, fixed, phase = values
+        angle = number("phase", phase, finite=True)
+        data = _percute.ExactData.bar_mode([*lengths, angle], whole("number", order, most=10**6), text("fixed", fixed))
+        if data is None:
+            raise wrong("fixed", fixed, "'start', 'both' or 'none'")
+        return data
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarRamp(_Bar):
+    """A uniform bar at rest, clamped at x = 0, whose other end is pulled from t = 0 on by a traction that grows by ``rate``.
+
+    Source: Timoshenko, Vibration Problems in Engineering, modal series; here in d'Alembert's form.
+    """
+
+    length: float
+    young: float
+    density: float
+    section: float
+    rate: float
+    wave_speed: float = field(init=False, repr=False, compare=False)
+    """c = √(E/ρ) (m/s)."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        return _percute.ExactData.bar_ramp(values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlockMode(_Exact):
+    """A standing wave of the rectangle [0, width] × [0, height] with rollers on all sides, of pressure or shear.
+
+    ``numbers`` are its half waves along x and y. Source: Graff, Wave Motion in Elastic Solids, §5.1.
+    """
+
+    width: float
+    height: float
+    material: Elastic
+    wave: Literal["pressure", "shear"]
+    numbers: tuple[int, int]
+    amplitude: float
+    phase: float = 0.0
+    angular_frequency: float = field(init=False, repr=False, compare=False)
+    """ω (rad/s)."""
+    energy: float = field(init=False, repr=False, compare=False)
+    """Kinetic plus strain energy (J)."""
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        law = instance("material", self.material, Elastic)
+        if law.plane is None or law.poisson is None:
+            raise InputError("`material` has no `plane` or no `poisson`: it is that of a bar")
+        if self.wave not in ("pressure", "shear"):
+            raise wrong("wave", self.wave, "'pressure' or 'shear'")
+        across = 1 - (law.poisson if law.plane == "stress" else 2 * law.poisson)
+        lame = law.young * law.poisson / ((1 + law.poisson) * across), law.young / (2 * (1 + law.poisson))
+        rest = law.density, self.amplitude, number("phase", self.phase, finite=True)
+        halves = [whole("numbers", each, least=0, most=10**6) for each in self.numbers]
+        return _percute.ExactData.block_mode([self.width, self.height, law.thickness, *lame, *rest], halves, self.wave == "shear")
+
+    def displacement(self, points: ArrayLike, t: float) -> NDArray[np.float64]:
+        """Displacement at points, shape (n, 2), at an instant (m)."""
+        x, y = numbers("points", points, most=2, finite=True).reshape(-1, 2).T
+        return np.stack([self._evaluate(axis, x=x, y=y, t=t) for axis in ("x", "y")], axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidSlide(_Exact):
+    """A rigid block at rest that a ``push`` (N) along a plane moves against dry friction of at most ``limit`` (N).
+
+    The push has instants (s), from 0 on and increasing, with values (N): straight lines between, constant after the last.
+
+    Source: Coulomb's law, eq. [2]; den Hartog (1931) for the pieces of the motion.
+    """
+
+    mass: float
+    limit: float
+    push: Sequence[tuple[float, float]]
+
+    def _make(self, *values: Any) -> _percute.ExactData:
+        push = numbers("push", self.push, most=2, finite=True)
+        rows = [(t, f) for t, f in push.tolist()] if push.ndim == 2 and push.shape[1] == 2 else []
+        data = _percute.ExactData.rigid_slide(self.mass, self.limit, rows)
+        if data is None:
+            raise wrong("push", self.push, "pairs of an instant (s), from 0 on and increasing, and a force (N)")
+        return data
+
+    def position(self, t: ArrayLike) -> NDArray[np.float64]:
+        """How far it has come at the instants ``t`` (m)."""
+        return self._evaluate("position", t=t)
+
+    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Velocity (m/s), likewise."""
+        return self._evaluate("velocity", t=t)
+
+    def friction(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Force of friction on the block (N), likewise."""
+        return self._evaluate("friction", t=t)
+
+    def dissipated(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Energy dissipated so far (J), likewise."""
+        return self._evaluate("dissipated", t=t)
 
 
 def bar_impact(

@@ -95,7 +95,8 @@ pub(crate) fn estimate(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
-    let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, &format!("`_ablation`: {error}")))?;
+    let ablation =
+        ablation.parse().map_err(|error: UnknownName| errors::input(py, &format!("`_ablation`: {error}")))?;
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, every)? };
     let instants = instants.map(Instants::from);
     Ok(EstimateData {

@@ -1,131 +1,166 @@
-//! The exact impact of a bar.
+//! Closed-form solutions, and the true error of a bar that strikes a plane.
 
 use crate::any::Any;
 use crate::history::HistoryData;
 use crate::reference::{Told, told};
 use crate::run::{Run, Stoppable};
 use crate::{door, errors};
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::{PyArray1, PyReadonlyArray2};
 use percute_core::history::StepSource;
 use percute_estimator::reference::{Recorder, ReferenceError, TrueError, bar_impact_error};
-use percute_exact::BarImpact;
+use percute_exact::{BarEnds, BarImpact, BarMode, BarRamp, BlockMode, BouncingBar, ClampedRod, RigidSlide, Wave};
 use pyo3::prelude::*;
+use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The exact solution of a bar that strikes a plane.
+/// A function of place (m) and time (s), in this order.
+type Function = Box<dyn Fn(&[f64]) -> f64 + Send + Sync>;
+
+/// A closed-form solution: its functions and its constants, by name. Python checks the arguments.
 #[pyclass(frozen, module = "percute._percute")]
-pub(crate) struct BarImpactData {
-    exact: BarImpact,
+pub(crate) struct ExactData {
+    functions: HashMap<&'static str, Function>,
+    #[pyo3(get)]
+    constants: HashMap<&'static str, f64>,
 }
 
-/// Places (m) and as many instants (s).
-type Points<'py> = PyReadonlyArray1<'py, f64>;
+/// The data of a bar: its fields, and the constants of these names.
+macro_rules! bar {
+    ($exact:ident: $kind:ident, $($constant:ident),+) => {
+        Self::bar(
+            $exact,
+            [$kind::displacement, $kind::velocity, $kind::normal_force],
+            &[$((stringify!($constant), $exact.$constant())),+],
+        )
+    };
+}
 
 #[pymethods]
-impl BarImpactData {
-    /// Checks that all numbers are positive.
-    #[new]
-    fn positive(
-        py: Python<'_>,
-        length: f64,
-        young: f64,
-        density: f64,
-        section: f64,
-        speed: f64,
-        gap: f64,
-    ) -> PyResult<Self> {
-        let numbers = [
-            ("length", length, "m"),
-            ("young", young, "Pa"),
-            ("density", density, "kg/m³"),
-            ("section", section, "m²"),
-            ("speed", speed, "m/s"),
-            ("gap", gap, "m"),
-        ];
-        for (name, value, unit) in numbers {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(errors::input(py, &format!("`{name}` is {value} {unit}; it must be positive and finite")));
-            }
-        }
-        Ok(Self { exact: BarImpact { length, young, density, section, speed, gap } })
+impl ExactData {
+    /// From L, E, ρ, S, v₀ and the gap.
+    #[staticmethod]
+    fn bar_impact(values: [f64; 6]) -> Self {
+        let exact = impact(values);
+        bar!(exact: BarImpact, wave_speed, impact_time, release_time)
     }
 
-    #[getter]
-    fn wave_speed(&self) -> f64 {
-        self.exact.wave_speed()
+    /// From L, E, ρ, S, g and h; None if the bar does not land as it left.
+    #[staticmethod]
+    fn bouncing_bar(values: [f64; 6]) -> Option<Self> {
+        let [length, young, density, section, gravity, height] = values;
+        let exact = BouncingBar::new(length, young, density, section, gravity, height)?;
+        Some(bar!(exact: BouncingBar, wave_speed, impact_time, contact_duration, period, energy))
     }
 
-    #[getter]
-    fn impact_time(&self) -> f64 {
-        self.exact.impact_time()
+    /// From L, E, ρ, S and d.
+    #[staticmethod]
+    fn clamped_rod(values: [f64; 5]) -> Self {
+        let [length, young, density, section, distance] = values;
+        let exact = ClampedRod { length, young, density, section, distance };
+        bar!(exact: ClampedRod, wave_speed, passage, period, energy)
     }
 
-    #[getter]
-    fn release_time(&self) -> f64 {
-        self.exact.release_time()
-    }
-
-    fn displacement<'py>(
-        &self,
-        py: Python<'py>,
-        x: Points<'py>,
-        t: Points<'py>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.at(py, &x, &t, BarImpact::displacement)
-    }
-
-    fn velocity<'py>(&self, py: Python<'py>, x: Points<'py>, t: Points<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.at(py, &x, &t, BarImpact::velocity)
-    }
-
-    fn normal_force<'py>(
-        &self,
-        py: Python<'py>,
-        x: Points<'py>,
-        t: Points<'py>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.at(py, &x, &t, BarImpact::normal_force)
-    }
-
-    fn contact_force<'py>(
-        &self,
-        py: Python<'py>,
-        x: Points<'py>,
-        t: Points<'py>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.at(py, &x, &t, |exact, _, t| exact.contact_force(t))
-    }
-
-    /// The true error of a history: sup, mean, and time, kinetic and elastic part at each instant.
-    fn error<'py>(&self, py: Python<'py>, history: &HistoryData) -> PyResult<Told<'py>> {
-        let Any::Bar(run) = &history.run else {
-            return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
+    /// From L, E, ρ, S, A and θ, the number of the mode and which ends are fixed.
+    #[staticmethod]
+    fn bar_mode(values: [f64; 6], number: u32, fixed: &str) -> Option<Self> {
+        let [length, young, density, section, amplitude, phase] = values;
+        let ends = match fixed {
+            "start" => BarEnds::FixedFree,
+            "both" => BarEnds::FixedFixed,
+            "none" => BarEnds::FreeFree,
+            _ => return None,
         };
-        let (run, exact) = (run.clone(), self.exact);
-        let outcome = door::through(py, None, move |watch| true_error(&run, &exact, watch))?;
-        let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
-        told(py, &error)
+        let exact = BarMode { ends, number, length, young, density, section, amplitude, phase };
+        Some(bar!(exact: BarMode, wave_number, angular_frequency, energy))
+    }
+
+    /// From L, E, ρ, S and r.
+    #[staticmethod]
+    fn bar_ramp(values: [f64; 5]) -> Self {
+        let [length, young, density, section, rate] = values;
+        let exact = BarRamp { length, young, density, section, rate };
+        bar!(exact: BarRamp, wave_speed)
+    }
+
+    /// From the sides, the thickness, λ, G, ρ, A and θ, the half waves and whether it is a shear wave.
+    #[staticmethod]
+    fn block_mode(values: [f64; 8], numbers: [u32; 2], across: bool) -> Self {
+        let [width, height, thickness, lambda, shear, density, amplitude, phase] = values;
+        let wave = if across { Wave::Shear } else { Wave::Pressure };
+        let sides = [width, height];
+        let exact = BlockMode { wave, numbers, sides, thickness, lambda, shear, density, amplitude, phase };
+        let along = |axis: usize| -> Function { Box::new(move |at| exact.displacement([at[0], at[1]], at[2])[axis]) };
+        let constants = [("angular_frequency", exact.angular_frequency()), ("energy", exact.energy())];
+        Self { functions: [("x", along(0)), ("y", along(1))].into(), constants: constants.into() }
+    }
+
+    /// From the mass, the largest friction and the push; None if the instants of the push do not increase from 0.
+    #[staticmethod]
+    fn rigid_slide(mass: f64, limit: f64, push: Vec<(f64, f64)>) -> Option<Self> {
+        let exact = RigidSlide::new(mass, limit, &push)?;
+        let over_time = |function: fn(&RigidSlide, f64) -> f64| -> Function {
+            let exact = exact.clone();
+            Box::new(move |at| function(&exact, at[0]))
+        };
+        let functions = [
+            ("position", over_time(RigidSlide::position)),
+            ("velocity", over_time(RigidSlide::velocity)),
+            ("friction", over_time(RigidSlide::friction)),
+            ("dissipated", over_time(RigidSlide::dissipated)),
+        ];
+        Some(Self { functions: functions.into(), constants: HashMap::new() })
+    }
+
+    /// The function of this name at places and instants, one in a row.
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        rows: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let Some(function) = self.functions.get(name) else {
+            return Err(errors::input(py, &format!("there is no function `{name}`")));
+        };
+        let columns = rows.as_array().ncols().max(1);
+        Ok(PyArray1::from_iter(py, rows.as_slice()?.chunks_exact(columns).map(function)))
     }
 }
 
-impl BarImpactData {
-    fn at<'py>(
-        &self,
-        py: Python<'py>,
-        x: &Points<'_>,
-        t: &Points<'_>,
-        field: fn(&BarImpact, f64, f64) -> f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let places = x.as_slice()?.iter();
-        if let Some(x) = places.clone().find(|x| !(0.0..=self.exact.length).contains(*x)) {
-            return Err(errors::input(
-                py,
-                &format!("`x` holds {x} m; it must lie in the bar, from 0 to {} m", self.exact.length),
-            ));
-        }
-        let values: Vec<f64> = places.zip(t.as_slice()?).map(|(&x, &t)| field(&self.exact, x, t)).collect();
-        Ok(PyArray1::from_vec(py, values))
+impl ExactData {
+    /// That of a bar, with displacement, velocity and normal force.
+    fn bar<T: Copy + Send + Sync + 'static>(
+        exact: T,
+        fields: [fn(&T, f64, f64) -> f64; 3],
+        constants: &[(&'static str, f64)],
+    ) -> Self {
+        let function = |(name, field): (_, fn(&T, f64, f64) -> f64)| {
+            (name, Box::new(move |at: &[f64]| field(&exact, at[0], at[1])) as Function)
+        };
+        let names = ["displacement", "velocity", "normal_force"];
+        let functions = names.into_iter().zip(fields).map(function).collect();
+        Self { functions, constants: constants.iter().copied().collect() }
     }
+}
+
+fn impact([length, young, density, section, speed, gap]: [f64; 6]) -> BarImpact {
+    BarImpact { length, young, density, section, speed, gap }
+}
+
+/// The true error of a history of a bar that strikes a plane: sup, mean, and time, kinetic and elastic part at each instant.
+/// The bar is that of [`ExactData::bar_impact`].
+#[pyfunction]
+pub(crate) fn true_error_of_bar_impact<'py>(
+    py: Python<'py>,
+    values: [f64; 6],
+    history: &HistoryData,
+) -> PyResult<Told<'py>> {
+    let Any::Bar(run) = &history.run else {
+        return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
+    };
+    let run = run.clone();
+    let outcome = door::through(py, None, move |watch| true_error(&run, &impact(values), watch))?;
+    let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
+    told(py, &error)
 }
 
 fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: door::Watch) -> Result<TrueError, String> {

@@ -34,7 +34,7 @@ mod _percute {
     #[pymodule_export]
     use super::estimate::{EstimateData, estimate, meaning};
     #[pymodule_export]
-    use super::exact::BarImpactData;
+    use super::exact::{ExactData, true_error_of_bar_impact};
     #[pymodule_export]
     use super::history::HistoryData;
     #[pymodule_export]
