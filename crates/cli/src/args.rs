@@ -1,8 +1,9 @@
 //! The arguments of the command.
 
-use crate::case::{Instants, hint};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, UnknownName};
+use percute_workflow::case::Instants;
+use percute_workflow::message::hint;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -1,7 +1,7 @@
 //! The command as a process: standard output and error, a terminal, signals.
 
 use crate::command::{Console, command_line};
-use crate::failure::INTERRUPTED;
+use crate::exit::INTERRUPTED;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -2,8 +2,8 @@
 
 use crate::any::{Any, each};
 use crate::{door, errors};
-use percute::case::{Case, CaseOf, Instants, Source};
-use percute::outputs;
+use percute_workflow::case::{Case, CaseOf, Instants, Source};
+use percute_workflow::outputs;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;

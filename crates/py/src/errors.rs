@@ -1,7 +1,5 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
-use percute::Failure;
-use percute::case::{CaseError, hint};
 use percute::reproduce::ReproduceError;
 use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
@@ -12,6 +10,9 @@ use percute_core::time::TimeError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
+use percute_workflow::Failure;
+use percute_workflow::case::CaseError;
+use percute_workflow::message::hint;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

@@ -7,9 +7,6 @@ use crate::restore::restore;
 use crate::run::{Run, Stoppable};
 use crate::{contact, door, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
-use percute::Failure;
-use percute::case::{Instants, hint, statement};
-use percute::report::{Report, Subject};
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
@@ -17,6 +14,10 @@ use percute_core::time::TimeGrid;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample, UnknownName};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
+use percute_workflow::Failure;
+use percute_workflow::case::{Instants, statement};
+use percute_workflow::message::hint;
+use percute_workflow::report::{Report, Subject};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -110,7 +111,7 @@ pub(crate) fn estimate(
 /// What the error means with a reading, by its name; a file may have one that this version does not know.
 #[pyfunction]
 pub(crate) fn meaning(reconstruction: &str) -> String {
-    percute::report::meaning(reconstruction.parse().ok())
+    percute_workflow::report::meaning(reconstruction.parse().ok())
 }
 
 /// Options of an estimate by their names.

@@ -2,7 +2,6 @@
 
 use crate::any::Any;
 use crate::door::Watch;
-use percute::history::Stored;
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Kinematics};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
@@ -11,6 +10,7 @@ use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::{HistoryFile, HistorySource};
+use percute_workflow::history::Stored;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 

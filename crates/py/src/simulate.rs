@@ -7,17 +7,17 @@ use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{door, errors, time};
-use percute::Failure;
-use percute::case::{CaseError, Source, Unsayable};
-use percute::history::{AnyStored, plan};
-use percute::info::memory;
-use percute::run::simulate_into;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::Discard;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::{FileError, Overwrite};
+use percute_workflow::Failure;
+use percute_workflow::case::{CaseError, NotRepresentable, Source};
+use percute_workflow::history::{AnyStored, plan};
+use percute_workflow::info::memory;
+use percute_workflow::run::simulate_into;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -102,7 +102,7 @@ pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryDat
 }
 
 fn opened(path: &Path) -> Result<AnyRun, Failure> {
-    Ok(match percute::history::open(path)? {
+    Ok(match percute_workflow::history::open(path)? {
         AnyStored::Bar(stored) => Any::Bar(Arc::new(Run::stored(*stored)?)),
         AnyStored::Plane(stored) => Any::Plane(Arc::new(Run::stored(*stored)?)),
     })
@@ -130,7 +130,7 @@ impl Store {
 #[derive(Debug, Error)]
 enum StoreError {
     #[error(transparent)]
-    Unsayable(#[from] Unsayable),
+    NotRepresentable(#[from] NotRepresentable),
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -140,7 +140,7 @@ enum StoreError {
 impl StoreError {
     fn raised(&self, py: Python<'_>, case: Refused<'_>) -> PyErr {
         match self {
-            Self::Unsayable(error) => errors::input(py, &error.to_string()),
+            Self::NotRepresentable(error) => errors::input(py, &error.to_string()),
             Self::File(error) => errors::file(py, error),
             Self::Simulation(error) => raised(py, error, case),
         }

@@ -5,14 +5,14 @@ use super::outputs::{contact_recorder, with_work};
 use super::result::{Given, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
-use crate::failure::Failure;
-use crate::history::{AnyStored, Stored, open};
-use crate::outputs::{Output, check};
 use crate::picture::Drawn;
 use crate::progress::Watch;
-use crate::report::Report;
 use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
+use percute_workflow::Failure;
+use percute_workflow::history::{AnyStored, Stored, open};
+use percute_workflow::outputs::{Output, check};
+use percute_workflow::report::Report;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {

@@ -2,12 +2,13 @@
 
 use super::{Console, case};
 use crate::args::InfoArguments;
-use crate::case::{Case, CaseOf};
-use crate::failure::{DONE, Failure};
-use crate::history::{AnyStored, open};
-use crate::info::{Info, of_case, of_estimate, of_history, of_mesh};
-use crate::report::reported;
+use crate::exit::DONE;
 use percute_io::{Kind, estimate_file, gmsh, kind};
+use percute_workflow::Failure;
+use percute_workflow::case::{Case, CaseOf};
+use percute_workflow::history::{AnyStored, open};
+use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
+use percute_workflow::report::reported;
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {

@@ -11,11 +11,13 @@ mod run;
 mod simulate;
 
 use crate::args::{Arguments, Command};
-use crate::case::{Case, CaseOf, Source, hint};
-use crate::failure::{BAD_INPUT, DONE, FAILED, Failure};
-use crate::report::Warning;
+use crate::exit::{BAD_INPUT, DONE, FAILED, code};
 use clap::Parser;
 use percute_io::is_hdf5;
+use percute_workflow::Failure;
+use percute_workflow::case::{Case, CaseOf, Source};
+use percute_workflow::message::hint;
+use percute_workflow::report::Warning;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::Path;
@@ -53,7 +55,7 @@ where
     outcome.unwrap_or_else(|failure| {
         // If standard error is gone too, the exit code is all that is left to say it.
         let _ = writeln!(console.err, "error: {failure}");
-        failure.exit_code()
+        code(&failure)
     })
 }
 

@@ -2,7 +2,8 @@
 
 use super::Console;
 use crate::args::{NewArguments, Template};
-use crate::failure::{DONE, Failure};
+use crate::exit::DONE;
+use percute_workflow::Failure;
 
 pub(super) fn command(arguments: &NewArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     console.print(text(arguments.case))?;

@@ -1,17 +1,17 @@
 //! How a command makes its files.
 
 use super::Console;
-use crate::case::CaseOf;
-use crate::failure::Failure;
-use crate::history;
-use crate::outputs::Output;
-use crate::report::number::bytes;
 use percute_core::contact_results::ContactRecorder;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
+use percute_workflow::Failure;
+use percute_workflow::case::CaseOf;
+use percute_workflow::history;
+use percute_workflow::message::bytes;
+use percute_workflow::outputs::Output;
 
 /// A file that somebody else has made since it was checked.
 pub(super) fn taken(error: FileError) -> Failure {

@@ -2,8 +2,9 @@
 
 use super::Console;
 use crate::args::RecoverArguments;
-use crate::failure::{DONE, Failure};
+use crate::exit::DONE;
 use percute_io::history::{AnyHistoryFile, open, recover};
+use percute_workflow::Failure;
 
 pub(super) fn command(arguments: &RecoverArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     let file = &arguments.history;

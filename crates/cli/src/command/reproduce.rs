@@ -2,11 +2,22 @@
 
 use super::Console;
 use crate::args::ReproduceArguments;
-use crate::failure::{DONE, Failure, INTERRUPTED};
+use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
 use crate::reproduce::{Effort, PARTS, ReproduceError, Reproduction, parts};
+use percute_workflow::Failure;
 
 pub(super) fn command(arguments: &ReproduceArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    reproduce(arguments, console).or_else(|error| match error {
+        ReproduceError::Failure(failure) => Err(*failure),
+        error => {
+            console.say(&format!("error: {error}"));
+            Ok(error.exit_code())
+        }
+    })
+}
+
+fn reproduce(arguments: &ReproduceArguments, console: &mut Console<'_>) -> Result<u8, ReproduceError> {
     if arguments.list {
         let width = PARTS.iter().map(|part| part.key.len()).max().unwrap_or(0);
         let line = |part: &crate::reproduce::Part| format!("{:width$}  {}", part.key, part.title);
@@ -25,7 +36,7 @@ pub(super) fn command(arguments: &ReproduceArguments, console: &mut Console<'_>)
                 code = INTERRUPTED;
                 break;
             }
-            Err(error) => return Err(error.into()),
+            Err(error) => return Err(error),
         }
         watch.clear();
         if !arguments.quiet {
@@ -44,9 +55,9 @@ pub(super) fn command(arguments: &ReproduceArguments, console: &mut Console<'_>)
 }
 
 /// Says how a folder that is in use is taken all the same.
-fn refused(error: ReproduceError) -> Failure {
+fn refused(error: ReproduceError) -> ReproduceError {
     match error {
-        ReproduceError::NotEmpty { .. } => Failure::Argument(format!("--output: {error} with --force")),
-        other => other.into(),
+        ReproduceError::NotEmpty { .. } => Failure::Argument(format!("--output: {error} with --force")).into(),
+        other => other,
     }
 }

@@ -3,16 +3,17 @@
 use super::Console;
 use super::outputs::taken;
 use crate::args::{PrintArguments, WorkArguments};
-use crate::case::statement;
-use crate::failure::{DONE, Failure, INTERRUPTED};
-use crate::outputs::Output;
+use crate::exit::{DONE, INTERRUPTED};
 use crate::picture::{self, Drawn};
-use crate::report::{Report, summary};
 use percute_core::contact_results::ContactResults;
 use percute_core::problem::Problem;
 use percute_estimator::{Estimate, Options};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Case, Overwrite, estimate_file};
+use percute_workflow::Failure;
+use percute_workflow::case::statement;
+use percute_workflow::outputs::Output;
+use percute_workflow::report::{Report, summary};
 
 /// What is to be given to the user.
 pub(super) struct Given<'a, const D: usize, const N: usize> {

@@ -4,16 +4,17 @@ use super::outputs::{begin_history, contact_recorder, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
-use crate::case::{Case, CaseOf, Instants};
-use crate::failure::{Failure, INTERRUPTED};
-use crate::history::stored_case;
-use crate::outputs::{Output, check, chosen};
+use crate::exit::INTERRUPTED;
 use crate::picture::Drawn;
 use crate::progress::Watch;
-use crate::report::Report;
-use crate::run::run;
 use percute_core::problem::Problem;
 use percute_estimator::{EstimateError, Request, RunError};
+use percute_workflow::Failure;
+use percute_workflow::case::{Case, CaseOf, Instants};
+use percute_workflow::history::stored_case;
+use percute_workflow::outputs::{Output, check, chosen};
+use percute_workflow::report::Report;
+use percute_workflow::run::run;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {

@@ -3,16 +3,13 @@
 use super::outputs::begin_history;
 use super::{Console, case};
 use crate::args::SimulateArguments;
-use crate::case::{Case, CaseOf};
-use crate::failure::{DONE, Failure, INTERRUPTED};
-use crate::outputs::{Output, check, chosen};
+use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
-use crate::report::build::{balance_summary, problem_summary};
-use crate::report::number::{bytes, short, trimmed};
-use crate::report::reported;
-use crate::report::summary::{body, drift, energy, layout, step};
-use crate::run::simulate_only;
-use percute_core::dynamics::Simulation;
+use percute_workflow::Failure;
+use percute_workflow::case::{Case, CaseOf};
+use percute_workflow::outputs::{Output, check, chosen};
+use percute_workflow::report::{reported, simulated};
+use percute_workflow::run::simulate_only;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -43,7 +40,7 @@ fn simulate<const D: usize, const N: usize>(
     let start = Instant::now();
     let simulation = simulate_only(case, writer, watch)?;
     watch.clear();
-    console.print(&summary(case, &simulation, history.file, start.elapsed().as_secs_f64()))?;
+    console.print(&simulated(&case.subject(), &simulation, history.file, start.elapsed().as_secs_f64()))?;
     Ok(if simulation.interrupted { INTERRUPTED } else { DONE })
 }
 
@@ -52,30 +49,4 @@ fn named_after(case: &Path) -> PathBuf {
     let mut name = case.file_stem().unwrap_or_default().to_os_string();
     name.push(".vtkhdf");
     name.into()
-}
-
-fn summary<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    simulation: &Simulation,
-    file: &Path,
-    seconds: f64,
-) -> String {
-    let (times, balance) = (&case.times, balance_summary(&simulation.balance));
-    let (steps, planned) = (simulation.steps, times.step_count());
-    let reached = trimmed(times.instants()[steps], 5);
-    let time = match steps < planned {
-        true => format!("INTERRUPTED at step {steps} of {planned}, t = {reached} s;"),
-        false => format!("{reached} s in {steps} steps;"),
-    };
-    let size = std::fs::metadata(file).map_or(0, |found| found.len());
-    let (version, seconds) = (env!("CARGO_PKG_VERSION"), short(seconds, 3));
-    layout(&[
-        ("case", format!("{} (percute {version}, {seconds} s)", case.source.name())),
-        ("body", body(&problem_summary(&case.subject()))),
-        ("time", time),
-        ("", step(times.longest_step(), case.critical_step)),
-        ("energy", energy(&balance)),
-        ("drift", drift(&balance)),
-        ("history", format!("{}, {}", file.display(), bytes(size))),
-    ])
 }

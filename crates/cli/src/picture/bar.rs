@@ -2,9 +2,9 @@
 
 use super::DrawError;
 use super::canvas::{AXIS_BELOW, AXIS_LEFT, FAINT, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px};
-use crate::report::Report;
 use percute_core::ids::ElementId;
 use percute_core::problem::BarProblem;
+use percute_workflow::report::Report;
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::prelude::*;

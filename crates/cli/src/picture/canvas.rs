@@ -1,8 +1,8 @@
 //! What all pictures share: units, fonts, titles, colours, the SVG document.
 
 use super::DrawError;
-use crate::report::Report;
-use crate::report::number::{percent, short, trimmed};
+use percute_workflow::message::{percent, short, trimmed};
+use percute_workflow::report::Report;
 use plotters::backend::SVGBackend;
 use plotters::chart::{ChartContext, MeshStyle};
 use plotters::coord::Shift;

@@ -1,9 +1,9 @@
 //! The file that a picture goes to.
 
 use super::Drawn;
-use crate::failure::Failure;
-use crate::report::Report;
-use crate::writable;
+use percute_workflow::Failure;
+use percute_workflow::report::Report;
+use percute_workflow::writable;
 use std::path::Path;
 
 /// Makes sure before the work that a picture can be written at its end. A file that is there is

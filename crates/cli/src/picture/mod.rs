@@ -8,8 +8,8 @@ mod plane_body;
 
 pub use file::{check_path, write};
 
-use crate::report::Report;
 use percute_core::problem::{BarProblem, TriangleProblem};
+use percute_workflow::report::Report;
 use thiserror::Error;
 
 /// Why a picture could not be drawn.

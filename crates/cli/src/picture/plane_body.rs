@@ -3,10 +3,10 @@
 use super::DrawError;
 use super::canvas::{AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px};
 use super::frame::Frame;
-use crate::report::Report;
 use percute_core::ids::ElementId;
 use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
+use percute_workflow::report::Report;
 use plotters::backend::SVGBackend;
 use plotters::chart::LabelAreaPosition;
 use plotters::coord::Shift;

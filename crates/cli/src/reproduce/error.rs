@@ -1,7 +1,6 @@
 //! What can keep a part from being made.
 
-use crate::case::CaseError;
-use crate::failure::{BAD_INPUT, FAILED, Failure, INTERRUPTED};
+use crate::exit::{BAD_INPUT, FAILED, INTERRUPTED};
 use crate::picture::DrawError;
 use percute_core::dynamics::SimulationError;
 use percute_core::material::MaterialError;
@@ -11,6 +10,8 @@ use percute_core::problem::InputError;
 use percute_core::time::TimeError;
 use percute_estimator::reference::ReferenceError;
 use percute_estimator::{EstimateError, RunError};
+use percute_workflow::Failure;
+use percute_workflow::case::CaseError;
 use std::path::PathBuf;
 use thiserror::Error;
 

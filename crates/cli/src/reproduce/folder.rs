@@ -38,7 +38,7 @@ pub fn prepare(folder: &Path, overwrite: bool) -> Result<(), ReproduceError> {
     std::fs::create_dir_all(folder).map_err(|cause| unwritable(folder, cause.to_string()))?;
     for name in [PAGE, SHORT_PAGE, NUMBERS] {
         let file = folder.join(name);
-        crate::writable::check(&file).map_err(|cause| unwritable(&file, cause.to_string()))?;
+        percute_workflow::writable::check(&file).map_err(|cause| unwritable(&file, cause.to_string()))?;
     }
     Ok(())
 }

@@ -25,8 +25,8 @@ pub use raster::{Raster, SCALE};
 pub use section::{Figure, Item, Section};
 pub use tally::{Tally, weight};
 
-use crate::case::hint;
 use percute_core::observer::Observer;
+use percute_workflow::message::hint;
 use std::path::{Path, PathBuf};
 
 /// One part of the evidence.

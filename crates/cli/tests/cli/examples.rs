@@ -2,7 +2,6 @@
 
 use crate::common::{Bench, stderr, stdout};
 use assert_cmd::cargo::cargo_bin_cmd;
-use percute::case::{Case, CaseOf, Source, problem_from, statement};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
@@ -10,6 +9,7 @@ use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder, bar_impact_error};
 use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::BarImpact;
+use percute_workflow::case::{Case, CaseOf, Source, problem_from, statement};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -5,9 +5,9 @@
 
 mod common;
 mod contact;
+mod dependencies;
 mod examples;
 mod history;
-mod house;
 #[cfg(target_os = "linux")]
 mod interrupt;
 mod mesh_file;
@@ -15,4 +15,3 @@ mod mistakes;
 mod picture;
 mod reproduce;
 mod run;
-mod statement;

@@ -1,7 +1,7 @@
 //! Every mistake of `tests/mistakes.toml` that the command can be given is named, and nothing is made.
 
 use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr};
-use percute::case::{Case, Source};
+use percute_workflow::case::{Case, Source};
 use serde::Deserialize;
 use std::process::Output;
 

@@ -1,6 +1,6 @@
 //! Axes: from values to places, and where the marks are.
 
-use crate::report::number::trimmed;
+use percute_workflow::message::trimmed;
 
 /// An axis of a chart.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use super::colours::{Colours, ROOM};
 use super::sheet::{GRID, Lettering, NORMAL, Point, SMALL, Sheet, TITLE, sheet};
 use crate::picture::DrawError;
 use crate::picture::canvas::INK;
-use crate::report::number::short;
+use percute_workflow::message::short;
 
 /// Size of a grid, for one, two and three columns (pixels).
 const PLOTS: [[f64; 2]; 3] = [[560.0, 340.0], [300.0, 220.0], [195.0, 165.0]];

@@ -5,8 +5,8 @@ use super::row::PackRow;
 use super::text::CaseText;
 use super::trial::{Trial, plane};
 use super::{Curve, Outcome};
-use crate::case::CaseOf;
 use percute_exact::RigidSlide;
+use percute_workflow::case::CaseOf;
 
 /// Young's moduli (Pa): the wave speed doubles from one to the next.
 const STIFFNESS: [f64; 4] = [3.2e6, 1.28e7, 5.12e7, 2.048e8];

@@ -1,7 +1,7 @@
 //! The case files of the pack, with other meshes and starts.
 
 use super::super::ReproduceError;
-use crate::case::{Case, CaseOf, Source};
+use percute_workflow::case::{Case, CaseOf, Source};
 
 /// A case file that the program carries with it, and its settings.
 #[derive(Clone, Debug)]

@@ -2,10 +2,10 @@
 
 use super::super::{ReproduceError, Tally};
 use super::text::CaseText;
-use crate::case::CaseOf;
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::Simulation;
 use percute_estimator::reference::{Motion, Recorder};
+use percute_workflow::case::CaseOf;
 
 /// A case and what came out of it.
 pub(super) struct Trial<const D: usize, const N: usize> {
@@ -32,7 +32,7 @@ fn run<const D: usize, const N: usize>(
 ) -> Result<Trial<D, N>, ReproduceError> {
     let recorder = Recorder::new(&case.problem, &case.times);
     let contact = ContactRecorder::new(&case.problem, &case.times).keeping_steps();
-    let mut sinks = (recorder, contact.map_err(crate::Failure::from)?);
+    let mut sinks = (recorder, contact.map_err(percute_workflow::Failure::from)?);
     let simulation = tally.simulate(1.0, &case.problem, &case.times, &mut sinks)?;
     let (motion, contact) = (sinks.0.finish(), sinks.1.finish());
     Ok(Trial { motion, contact, simulation, case })

@@ -1,7 +1,6 @@
 //! The paper's figures 8 and 9: stress, and what each element has added to the error, at several instants.
 
 use super::block::{Block, Impact};
-use crate::report::number::{percent, short};
 use crate::reproduce::chart::{Colours, MeshMap, MeshMaps};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, Part, ReproduceError, Section, Tally, weight};
@@ -10,6 +9,7 @@ use percute_core::ids::ElementId;
 use percute_core::observer::Observer;
 use percute_core::problem::TriangleProblem;
 use percute_estimator::{Acceleration, Estimate, Estimator, Reconstruction, Request};
+use percute_workflow::message::{percent, short};
 
 pub(super) const PART: Part =
     Part { key: "stress-maps", title: "The paper's figures 8 and 9: stress and error, element by element", make };

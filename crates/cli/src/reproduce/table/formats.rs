@@ -1,8 +1,8 @@
 //! A table as CSV, JSON, HTML and Markdown.
 
 use super::{Cell, Column, Table};
-use crate::report::number::short;
 use crate::reproduce::page::{escape, rich};
+use percute_workflow::message::short;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

@@ -97,7 +97,7 @@ fn every_estimate_says_what_the_page_has() {
             _ => {}
         }
     }
-    let said = percute::report::meaning(Some(percute_estimator::Reconstruction::Corrected));
+    let said = percute_workflow::report::meaning(Some(percute_estimator::Reconstruction::Corrected));
     // Rounded outward to what can be said.
     let down = |x: f64| (20.0 * x).floor() / 20.0;
     let up = |x: f64| (10.0 * x).ceil() / 10.0;
@@ -113,7 +113,7 @@ fn every_estimate_says_what_the_page_has() {
     );
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
     for reading in [percute_estimator::Reconstruction::Consistent, percute_estimator::Reconstruction::Published] {
-        let said = percute::report::meaning(Some(reading));
+        let said = percute_workflow::report::meaning(Some(reading));
         let told = format!("in tests {:.2} to over 3 times the true error", others[0]);
         assert!(said.contains(&told) && others[1] > 3.0, "the page has {others:?}; said is: {said}");
     }

@@ -2,11 +2,11 @@
 
 use super::grid::{ENDS, FRACTIONS, Grid, MEASURES, Value};
 use super::study::Setting;
-use crate::report::number::short;
 use crate::reproduce::ReproduceError;
 use crate::reproduce::chart::{Colours, HeatMap, HeatMaps};
 use crate::reproduce::table::{Cell, Column, Table};
 use percute_estimator::Acceleration;
+use percute_workflow::message::short;
 
 /// Maps of all choices: a row for each reading, a column for each Γ_DA.
 fn maps(grid: &Grid, colours: Colours, map: impl Fn(usize) -> (String, Vec<f64>)) -> Result<String, ReproduceError> {

@@ -6,11 +6,11 @@ pub(super) mod study;
 mod summary;
 mod sweep;
 
-use crate::report::number::{percent, short};
 use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use grid::{ENDS, FRACTIONS, Grid, MEASURES};
 use percute_core::observer::Observer;
 use percute_estimator::{Acceleration, Reconstruction};
+use percute_workflow::message::{percent, short};
 use study::{BAR, Setting, WHOLE};
 use summary::Summary;
 

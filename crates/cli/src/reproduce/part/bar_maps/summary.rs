@@ -3,9 +3,9 @@
 use super::PAPER;
 use super::grid::{ENDS, FRACTIONS, Grid, MEASURES, Value, range};
 use super::study::Setting;
-use crate::report::number::short;
 use crate::reproduce::table::{Cell, Column, Table};
 use percute_estimator::{Acceleration, Reconstruction};
+use percute_workflow::message::short;
 
 /// What the values of some settings come to.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,12 +10,12 @@ mod tables;
 mod touch;
 
 use super::parallel::{in_order, threads};
-use crate::report::number::{percent, short};
 use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use cases::{Kind, cases};
 use figure::GOOD;
 use percute_core::observer::Observer;
 use percute_estimator::{Acceleration, Reconstruction};
+use percute_workflow::message::{percent, short};
 use study::STEP;
 
 pub(super) const PART: Part =

@@ -1,12 +1,12 @@
 //! How table 1 moves with what the paper leaves out.
 
 use super::paper::{Row, deviation};
-use crate::report::number::{percent, short};
 use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::part::block::{Block, Gap, mesh_name};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError, Section, Tally, weight};
 use percute_estimator::{Acceleration, Reconstruction, Request};
+use percute_workflow::message::{percent, short};
 
 /// Gaps in steps: fractions 0.1 to 0.9 of a step beyond a whole one. Below, a node may touch at the first step already.
 const GAPS: [f64; 5] = [1.1, 1.3, 1.5, 1.7, 1.9];

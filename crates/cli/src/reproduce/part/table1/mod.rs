@@ -4,13 +4,13 @@ mod assumptions;
 mod paper;
 
 use super::block::{Block, Impact, mesh_name};
-use crate::report::number::{percent, short};
 use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, Part, ReproduceError, Section, Tally, weight};
 use paper::{ROWS, Row, deviation};
 use percute_core::observer::Observer;
 use percute_estimator::{Acceleration, ErrorMeasures, Reconstruction, Request};
+use percute_workflow::message::{percent, short};
 
 pub(super) const PART: Part =
     Part { key: "table1", title: "The paper's table 1: an oblique impact on four meshes", make };

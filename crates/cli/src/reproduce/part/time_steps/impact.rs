@@ -2,12 +2,12 @@
 
 use super::super::block::{Block, Impact};
 use super::block;
-use crate::report::number::short;
 use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, ReproduceError, Section, Tally};
 use percute_estimator::{Acceleration, Reconstruction, Request};
+use percute_workflow::message::short;
 
 /// Fractions of a step at which the impact falls.
 const FRACTIONS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];

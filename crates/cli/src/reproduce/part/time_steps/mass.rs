@@ -1,7 +1,6 @@
 //! The second plateau: the lumped mass, seen on a bar that vibrates and touches nothing.
 
 use super::ratios;
-use crate::report::number::{percent, short};
 use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::tally::weight as weight_of;
@@ -14,6 +13,7 @@ use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, Recorder};
 use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::{BarEnds, BarMode};
+use percute_workflow::message::{percent, short};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A bar of aluminium of 1 m between walls, moving in its fifth mode.

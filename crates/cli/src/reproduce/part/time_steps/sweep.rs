@@ -2,12 +2,12 @@
 
 use super::super::block::Impact;
 use super::{block, ratios};
-use crate::report::number::{percent, short};
 use crate::reproduce::chart::{Axis, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::tally::weight as weight_of;
 use crate::reproduce::{Effort, ReproduceError, Section, Tally};
 use percute_estimator::{Acceleration, Estimate, Reconstruction, Request, Sample};
+use percute_workflow::message::{percent, short};
 
 /// The fraction of a step at which the impact falls.
 const FRACTION: f64 = 0.3;

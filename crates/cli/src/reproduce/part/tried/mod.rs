@@ -8,12 +8,12 @@ use super::effectivity::body::Body;
 use super::effectivity::cases::{Kind, cases};
 use super::effectivity::study::{Case, Found};
 use super::parallel::{in_order, threads};
-use crate::report::number::short;
 use crate::reproduce::chart::{Axis, Band, Hue, Lines, Panel, Series};
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, Part, ReproduceError, Section};
 use percute_core::observer::Observer;
 use percute_estimator::{Ablation, Options, Reconstruction};
+use percute_workflow::message::short;
 
 pub(super) const PART: Part =
     Part { key: "tried", title: "What each part of the default is for, and what failed", make };

@@ -2,7 +2,6 @@
 
 use super::super::parallel::{in_order, threads};
 use super::{ATTEMPTS, PART};
-use crate::report::number::short;
 use crate::reproduce::pack::sliding_block;
 use crate::reproduce::table::{Cell, Column, Table};
 use crate::reproduce::{Effort, ReproduceError, Section};
@@ -10,6 +9,7 @@ use percute_core::dynamics::simulate;
 use percute_core::observer::Observer;
 use percute_core::time::TimeGrid;
 use percute_estimator::Estimator;
+use percute_workflow::message::short;
 
 /// Parts of the slide.
 const PARTS: [f64; 3] = [0.25, 0.5, 1.0];
@@ -41,7 +41,7 @@ pub(super) fn add(section: &mut Section, effort: &Effort, observer: &mut dyn Obs
 }
 
 /// How often a longitudinal wave goes through the height of the block.
-fn waves(case: &crate::case::CaseOf<2, 3>) -> f64 {
+fn waves(case: &percute_workflow::case::CaseOf<2, 3>) -> f64 {
     let height = case.problem.mesh().points().iter().fold(0.0_f64, |h, p| h.max(p[1]));
     case.times.end() * case.problem.materials()[0].wave_speed() / height
 }

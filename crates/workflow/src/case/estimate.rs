@@ -1,0 +1,32 @@
+//! `[estimate]`: the options of the estimate.
+
+use super::source::CaseError;
+use super::table::Table;
+use crate::message::hint;
+use percute_estimator::Options;
+use percute_estimator::UnknownName;
+use std::str::FromStr;
+
+/// Reads the options; all have a default.
+pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
+    let mut options = Options::default();
+    let Some(table) = root.single("estimate")? else { return Ok(options) };
+    table.only(&["reconstruction", "acceleration", "every"])?;
+    options.reconstruction = choice(&table, "reconstruction")?.unwrap_or_default();
+    options.acceleration = choice(&table, "acceleration")?.unwrap_or_default();
+    if let Some(every) = table.get("every") {
+        options.every = every.count(1)?;
+    }
+    Ok(options)
+}
+
+/// A name among those that the estimator knows.
+fn choice<T: FromStr<Err = UnknownName>>(table: &Table<'_>, key: &str) -> Result<Option<T>, CaseError> {
+    let Some(value) = table.get(key) else { return Ok(None) };
+    let name = value.text("a name")?;
+    let unknown = |error: UnknownName| {
+        let known: Vec<String> = error.known.iter().map(|name| format!("\"{name}\"")).collect();
+        value.must_be(format!("one of {}{}", known.join(", "), hint(name, error.known.iter().copied())))
+    };
+    name.parse().map(Some).map_err(unknown)
+}

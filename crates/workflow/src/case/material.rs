@@ -1,0 +1,69 @@
+//! `[material]`: the law of all elements or of a group.
+
+use super::source::CaseError;
+use super::table::Table;
+use percute_core::material::{Elastic, MaterialError};
+
+const BAR_KEYS: [&str; 4] = ["young", "density", "section", "group"];
+const PLANE_KEYS: [&str; 6] = ["young", "poisson", "density", "plane", "thickness", "group"];
+
+/// What is said of properties that a bar does not have.
+pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
+
+/// Reads all materials, each with its group of elements.
+pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
+    let tables = root.tables("material")?;
+    if tables.is_empty() {
+        return Err(root.error(
+            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), and `poisson` and `plane` (a bar: `section` in m²)",
+        ));
+    }
+    let one = |table: &Table<'_>| {
+        let law = if D == 1 { bar(table)? } else { plane(table)? };
+        let group = table.get("group").map(|v| v.text("the name of a group of elements")).transpose()?;
+        Ok((group.map(str::to_string), law))
+    };
+    tables.iter().map(one).collect()
+}
+
+fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {
+    for key in ["poisson", "plane", "thickness"] {
+        let why = format!("{NOT_FOR_BARS}, which has a `section` (m²) and stretches along its axis only");
+        table.refuse(key, &why)?;
+    }
+    table.only(&BAR_KEYS)?;
+    let young = number(table, "young", "Pa")?;
+    let density = number(table, "density", "kg/m³")?;
+    let section = number(table, "section", "m²")?;
+    Elastic::bar(young, density, section).map_err(|error| out_of_range(table, &error))
+}
+
+fn plane(table: &Table<'_>) -> Result<Elastic, CaseError> {
+    table.refuse("section", "applies to bars only; a plane body has `plane` and `thickness` (m)")?;
+    table.only(&PLANE_KEYS)?;
+    let young = number(table, "young", "Pa")?;
+    let poisson = number(table, "poisson", "")?;
+    let density = number(table, "density", "kg/m³")?;
+    let plane = table.require("plane", "\"stress\" (a thin plate) or \"strain\" (a long body)")?;
+    // Energies are then those of a slice of unit thickness, as in the paper.
+    let thickness = table.get("thickness").map_or(Ok(1.0), |value| value.number("m"))?;
+    let law = match plane.text("\"stress\" or \"strain\"")? {
+        "stress" => Elastic::plane_stress(young, poisson, density, thickness),
+        "strain" => Elastic::plane_strain(young, poisson, density, thickness),
+        other => {
+            let hint = crate::message::hint(other, ["stress", "strain"]);
+            return Err(plane.must_be(format!("\"stress\" or \"strain\"{hint}")));
+        }
+    };
+    law.map_err(|error| out_of_range(table, &error))
+}
+
+fn number(table: &Table<'_>, key: &str, unit: &str) -> Result<f64, CaseError> {
+    let what = if unit.is_empty() { "a number without unit".to_string() } else { format!("a number in {unit}") };
+    table.require(key, &what)?.number(unit)
+}
+
+fn out_of_range(table: &Table<'_>, error: &MaterialError) -> CaseError {
+    let message = format!("is {} {}; it must be {}", error.value, error.unit, error.allowed);
+    table.get(error.name).map_or_else(|| table.error(&message), |value| value.error(&message))
+}

@@ -1,0 +1,178 @@
+//! Case files: TOML in, a checked problem with its instants and options out.
+//!
+//! Units are SI. A bar takes one number where a plane body takes a vector `[x, y]`. Tables:
+//!
+//! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
+//!   `top`), `disc = { radius, rings }` around the origin (outline `boundary`), `bar = { length, elements }` (ends
+//!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres per
+//!   unit of length, 1 unless given); or arrays: `points` and `cells`, with
+//!   `groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
+//!   `elements = { name = [element, …] }`;
+//! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
+//!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
+//! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
+//! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
+//! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
+//!   one component, else a list in the order of `components`;
+//! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
+//!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
+//! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
+//! - `[estimate]`: `reconstruction`, `acceleration`, `every`;
+//! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
+//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields.
+//!
+//! The reader walks the parsed document itself, because every error shall name the line, the path
+//! of the key, the value, its unit and what is allowed.
+
+mod estimate;
+mod load;
+mod material;
+mod mesh;
+mod obstacle;
+mod output;
+mod place;
+mod plausibility_warnings;
+mod problem;
+mod source;
+mod statement;
+mod support;
+mod syntax;
+mod table;
+mod text;
+mod time;
+mod value;
+
+pub use output::{Instants, Output};
+pub(crate) use source::At;
+pub use source::{CaseError, Source};
+pub use statement::{NotRepresentable, problem_from, statement};
+
+use crate::report::Subject;
+use percute_core::dynamics::SimulationError;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::Options;
+use std::path::{Path, PathBuf};
+use table::Table;
+use toml::de::DeTable;
+
+/// The tables of a case file.
+const TABLES: [&str; 10] =
+    ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
+
+const NO_MESH: &str = "the table [mesh] is missing: say what is simulated, as in rectangle = { width = 0.05, height = 0.04, nx = 20, \
+                       ny = 16 }; `percute new block` prints a whole case to start from";
+
+/// Names of the components.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A case of one dimension, ready to run.
+#[derive(Clone, Debug)]
+pub struct CaseOf<const D: usize, const N: usize> {
+    /// The file it came from.
+    pub source: Source,
+    /// The problem.
+    pub problem: Problem<D, N>,
+    /// The instants.
+    pub times: TimeGrid,
+    /// Δt_c (s), eq. \[34\].
+    pub critical_step: f64,
+    /// Options of the estimate.
+    pub options: Options,
+    /// The files that a run makes.
+    pub output: Output,
+    /// The file that its mesh was read from.
+    pub mesh_file: Option<PathBuf>,
+}
+
+/// A case ready to run.
+#[derive(Clone, Debug)]
+pub enum Case {
+    /// A bar.
+    Bar(Box<CaseOf<1, 2>>),
+    /// A plane body of triangles.
+    Plane(Box<CaseOf<2, 3>>),
+}
+
+impl Case {
+    /// Reads and checks a case file.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn parse(source: Source) -> Result<Self, CaseError> {
+        let document = parsed(&source)?;
+        let root = Table::root(&source, document.get_ref());
+        root.only(&TABLES)?;
+        let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
+        let file = mesh::file(&mesh);
+        match mesh::read(&mesh)? {
+            mesh::AnyMesh::Bar(bar) => {
+                let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
+                Ok(Self::Bar(Box::new(case)))
+            }
+            mesh::AnyMesh::Plane(triangles) => Ok(Self::Plane(Box::new(read(&source, &root, triangles, file)?))),
+        }
+    }
+}
+
+fn read<const D: usize, const N: usize>(
+    source: &Source,
+    root: &Table<'_>,
+    mesh: percute_core::mesh::Mesh<D, N>,
+    mesh_file: Option<PathBuf>,
+) -> Result<CaseOf<D, N>, CaseError> {
+    // Cheap tables first: a slip in the last line should not wait for the critical step.
+    let options = estimate::read(root)?;
+    let output = output::read(root)?;
+    let wanted = time::read(root)?;
+    let problem = problem::read(root, mesh)?;
+    let critical_step = percute_core::dynamics::critical_time_step(&problem);
+    let times = wanted.grid(critical_step)?;
+    output::check(root, &output, times.end())?;
+    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output, mesh_file })
+}
+
+/// The document in a text.
+fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
+    DeTable::parse(source.text()).map_err(|error| {
+        let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
+        if source.text().starts_with("$MeshFormat") {
+            let message = "this is a mesh of Gmsh and no case; a case names it: [mesh], and `file = \"block.msh\"` in the next line";
+            return source.error(&at, message);
+        }
+        let mut wrong = source.error(&at, "");
+        let told = error.message().trim().replace('\n', ", ");
+        wrong.message = match syntax::advice(&wrong.excerpt, &told) {
+            Some(advice) => format!("this is no valid TOML: {advice} ({told})"),
+            None => format!("this is no valid TOML: {told}"),
+        };
+        wrong
+    })
+}
+
+impl<const D: usize, const N: usize> CaseOf<D, N> {
+    /// What a report on it is about.
+    #[must_use]
+    pub fn subject(&self) -> Subject<'_, D, N> {
+        let Self { source, problem, times, critical_step, .. } = self;
+        Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None }
+    }
+
+    /// The files that a run reads and must not replace, each with what it is; `case` is its own.
+    #[must_use]
+    pub fn inputs<'a>(&'a self, case: Option<&'a Path>) -> Vec<(&'static str, &'a Path)> {
+        let case = case.map(|file| ("case file", file));
+        case.into_iter().chain(self.mesh_file.as_deref().map(|file| ("mesh file", file))).collect()
+    }
+
+    /// The place in the file of a start that the simulation refuses; `None` for other failures,
+    /// which are not the input's.
+    #[must_use]
+    pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
+        let SimulationError::StartsTooNear { obstacle, .. } = error else { return None };
+        let document = parsed(&self.source).ok()?;
+        let root = Table::root(&self.source, document.get_ref());
+        let place = percute_core::problem::Place { table: "obstacle", index: Some(*obstacle), key: "point" };
+        Some(self.source.error(&place::find(&root, place), error.to_string()))
+    }
+}

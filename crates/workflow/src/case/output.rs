@@ -1,0 +1,134 @@
+//! `[output]`: the files that a run makes.
+
+use super::source::CaseError;
+use super::table::Table;
+use crate::message::trimmed;
+use percute_core::time::TimeGrid;
+use percute_estimator::Request;
+use std::path::PathBuf;
+
+/// So many instants an estimate file holds unless told otherwise: enough to watch it, and small.
+const INSTANTS: usize = 50;
+
+/// The files that a run makes. Paths are relative to the working directory, as those of the command
+/// line are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Output {
+    /// The history: all steps.
+    pub history: Option<PathBuf>,
+    /// The estimate: what each element contributes at some instants.
+    pub estimate: Option<PathBuf>,
+    /// At which.
+    pub instants: Instants,
+    /// Whether the estimate file holds the admissible fields too.
+    pub fields: bool,
+}
+
+/// Instants of an estimate file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Instants {
+    /// At most so many, evenly spaced, the first and the last among them.
+    Count(usize),
+    /// The sampled steps nearest to these times (s).
+    Times(Vec<f64>),
+}
+
+impl Default for Instants {
+    fn default() -> Self {
+        Self::Count(INSTANTS)
+    }
+}
+
+impl Instants {
+    /// The steps of a run over these times whose error is sampled at every `every`-th step.
+    #[must_use]
+    pub fn steps(&self, times: &TimeGrid, every: usize) -> Vec<usize> {
+        let wanted = match self {
+            Self::Count(count) => return Request::evenly(times, *count, every).steps,
+            Self::Times(wanted) => wanted,
+        };
+        let last = times.step_count();
+        let sampled: Vec<usize> = (0..last).step_by(every).chain([last]).collect();
+        let mut steps: Vec<usize> = wanted.iter().map(|&t| nearest(times.instants(), &sampled, t)).collect();
+        steps.sort_unstable();
+        steps.dedup();
+        steps
+    }
+
+    /// What is wrong with the first instant that comes after the end of a run (s).
+    #[must_use]
+    pub fn after(&self, end: f64) -> Option<String> {
+        let Self::Times(times) = self else { return None };
+        let time = times.iter().find(|&&time| late(time, end))?;
+        Some(format!("is {time} s, but the run ends at {} s; give instants before that, in seconds", trimmed(end, 5)))
+    }
+}
+
+/// The sampled step nearest to an instant, the earlier of two.
+fn nearest(instants: &[f64], sampled: &[usize], t: f64) -> usize {
+    let after = sampled.partition_point(|&n| instants[n] < t).min(sampled.len() - 1);
+    let before = after.saturating_sub(1);
+    let distance = |i: usize| (instants[sampled[i]] - t).abs();
+    sampled[if distance(before) <= distance(after) { before } else { after }]
+}
+
+/// Reads the table; everything may be left out.
+pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
+    let mut output = Output::default();
+    let Some(table) = root.single("output")? else { return Ok(output) };
+    table.only(&["history", "estimate", "instants", "fields"])?;
+    for (key, slot) in [("history", &mut output.history), ("estimate", &mut output.estimate)] {
+        if let Some(value) = table.get(key) {
+            let name = value.text("the name of a file")?;
+            if name.is_empty() {
+                return Err(value.must_be("the name of a file, such as \"block.vtkhdf\""));
+            }
+            *slot = Some(PathBuf::from(name));
+        }
+    }
+    if let Some(value) = table.get("instants") {
+        output.instants = if value.is_list() {
+            let times = value.numbers("s")?;
+            if times.is_empty() || times.iter().any(|&t| t < 0.0) {
+                return Err(value.must_be("a list of one time or more, none of them negative (s)"));
+            }
+            Instants::Times(times)
+        } else {
+            Instants::Count(value.count(1)?)
+        };
+    }
+    if let Some(value) = table.get("fields") {
+        output.fields = value.flag()?;
+    }
+    Ok(output)
+}
+
+/// Refuses instants after the end of the run: they are more likely in other units.
+pub(super) fn check(root: &Table<'_>, output: &Output, end: f64) -> Result<(), CaseError> {
+    let (Instants::Times(times), Some(table)) = (&output.instants, root.single("output")?) else { return Ok(()) };
+    let (Some(at), Some(value)) = (times.iter().position(|&t| late(t, end)), table.get("instants")) else {
+        return Ok(());
+    };
+    let entry = value.list("")?.swap_remove(at);
+    Err(entry.error(output.instants.after(end).unwrap_or_default()))
+}
+
+/// Whether an instant comes after the end (s), beyond the digits that a printed end lacks.
+fn late(time: f64, end: f64) -> bool {
+    time > end * (1.0 + 1e-3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_sampled_steps_are_taken_once() {
+        let times = TimeGrid::uniform(1.0, 10).unwrap();
+        let steps = |wanted: &[f64], every| Instants::Times(wanted.to_vec()).steps(&times, every);
+        assert_eq!(steps(&[0.96, 0.0, 0.44, 0.41], 1), [0, 4, 10]);
+        // Sampled are 0, 3, 6, 9 and the end.
+        assert_eq!(steps(&[0.16, 0.4, 9.0], 3), [3, 10]);
+        assert_eq!(steps(&[0.04], 100), [0]);
+    }
+}

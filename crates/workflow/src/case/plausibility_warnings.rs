@@ -1,0 +1,37 @@
+//! What is doubtful about a case, at its line.
+
+use super::{CaseOf, parsed, place};
+use crate::case::table::Table;
+use crate::info::memory;
+use crate::message::bytes;
+use crate::report::{Warning, few_samples};
+use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
+
+impl<const D: usize, const N: usize> CaseOf<D, N> {
+    /// What may be meant, but more likely is not, each with its line: to be told before the run. With `in_memory`, the
+    /// history is kept in memory.
+    #[must_use]
+    pub fn plausibility_warnings(&self, in_memory: bool) -> Vec<Warning> {
+        let mut all = plausibility_warnings(&self.problem, &self.times);
+        all.extend(few_samples(self.options.every, self.times.step_count()).map(|Warning { name, brief, message }| {
+            PlausibilityWarning { place: Place { table: "estimate", index: None, key: "every" }, name, brief, message }
+        }));
+        let needed = memory::of_case(self, in_memory);
+        all.extend(memory::scarce(needed, memory::available(), in_memory).map(|message| {
+            let place = Place { table: "mesh", index: None, key: "" };
+            PlausibilityWarning { place, name: "memory", brief: format!("the run needs {}", bytes(needed)), message }
+        }));
+        // The lines are looked up only if there is something to say: meshes as arrays make long texts.
+        if all.is_empty() { Vec::new() } else { self.at_their_lines(all) }
+    }
+
+    fn at_their_lines(&self, plausibility_warnings: Vec<PlausibilityWarning>) -> Vec<Warning> {
+        let Ok(document) = parsed(&self.source) else { return Vec::new() };
+        let root = Table::root(&self.source, document.get_ref());
+        let located = |PlausibilityWarning { place, name, brief, message }| {
+            let message = self.source.error(&place::find(&root, place), message).to_string();
+            Warning { name, brief, message }
+        };
+        plausibility_warnings.into_iter().map(located).collect()
+    }
+}

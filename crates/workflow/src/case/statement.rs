@@ -1,0 +1,170 @@
+//! A problem written down in the language of the case files, and read again: the same problem, bit
+//! by bit. Mesh, initial fields and instants are arrays, which a text would only make longer; they
+//! are kept beside it.
+
+use super::source::{CaseError, Source};
+use super::table::Table;
+use super::text::{Writer, list, quoted, vector};
+use super::{AXES, estimate, parsed, problem};
+use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
+use percute_core::material::{Elastic, Hypothesis};
+use percute_core::mesh::Mesh;
+use percute_core::obstacle::Plane;
+use percute_core::problem::{Initial, Problem};
+use percute_estimator::Options;
+use thiserror::Error;
+
+/// The tables of a statement.
+const TABLES: [&str; 6] = ["material", "obstacle", "support", "traction", "body_force", "estimate"];
+/// Tables of a case file that a statement does not have.
+const BESIDE: [&str; 4] = ["mesh", "initial", "time", "output"];
+
+/// A problem that the language of the case files has no words for.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum NotRepresentable {
+    /// A law for a body of another dimension.
+    #[error(
+        "material {index} is a law for {law}, but the mesh has {dimension} dimension(s): a case file gives a bar \
+         `section` and a plane body `plane`; make it with Elastic::bar (1) or plane_stress, plane_strain (2)",
+        law = law_name(*.hypothesis)
+    )]
+    Law {
+        /// Which material, from 1.
+        index: usize,
+        /// What it supposes.
+        hypothesis: Hypothesis,
+        /// Dimension of the mesh.
+        dimension: usize,
+    },
+}
+
+fn law_name(hypothesis: Hypothesis) -> &'static str {
+    match hypothesis {
+        Hypothesis::Bar => "a bar",
+        Hypothesis::PlaneStress | Hypothesis::PlaneStrain => "a plane body",
+    }
+}
+
+/// Writes down a problem: the tables `[[material]]`, `[[obstacle]]`, `[[support]]`, `[[traction]]`,
+/// `[[body_force]]` and, with options, `[estimate]`. Mesh, initial fields and instants are left out.
+/// [`problem_from`] makes the same problem of it, bit by bit.
+///
+/// # Errors
+/// A problem that the language cannot say.
+pub fn statement<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    options: Option<&Options>,
+) -> Result<String, NotRepresentable> {
+    let (stated, mut text) = (problem.statement(), Writer::default());
+    for (i, (group, law)) in stated.materials.iter().enumerate() {
+        material::<D>(&mut text, i, group.as_deref(), law)?;
+    }
+    problem.obstacles().iter().for_each(|plane| obstacle(&mut text, plane));
+    stated.supports.iter().for_each(|one| support(&mut text, one));
+    stated.tractions.iter().for_each(|one| traction(&mut text, one));
+    stated.body_forces.iter().for_each(|one| body_force(&mut text, one));
+    if let Some(options) = options {
+        text.table("[estimate]");
+        text.key("reconstruction", quoted(&options.reconstruction.to_string()));
+        text.key("acceleration", quoted(&options.acceleration.to_string()));
+        // Integers of TOML have 63 bits; no run has that many steps.
+        text.key("every", i64::try_from(options.every).unwrap_or(i64::MAX).to_string());
+    }
+    Ok(text.finish())
+}
+
+/// Reads what [`statement`] wrote, on a mesh and with initial displacement (m) and velocity (m/s) at
+/// the nodes. The options are the defaults where the text has none.
+///
+/// # Errors
+/// The first thing that is wrong; `[mesh]`, `[initial]`, `[time]` and `[output]`, which are no part of a statement.
+pub fn problem_from<const D: usize, const N: usize>(
+    source: &Source,
+    mesh: Mesh<D, N>,
+    initial_displacement: Vec<[f64; D]>,
+    initial_velocity: Vec<[f64; D]>,
+) -> Result<(Problem<D, N>, Options), CaseError> {
+    let document = parsed(source)?;
+    let root = Table::root(source, document.get_ref());
+    for name in BESIDE {
+        root.refuse(name, "is no part of a statement: mesh, initial fields, instants and files are given beside it")?;
+    }
+    root.only(&TABLES)?;
+    let options = estimate::read(&root)?;
+    let builder = problem::stated(&root, mesh)?
+        .initial_displacement(Initial::Nodal(initial_displacement))
+        .initial_velocity(Initial::Nodal(initial_velocity));
+    Ok((problem::build(&root, builder)?, options))
+}
+
+fn material<const D: usize>(
+    text: &mut Writer,
+    index: usize,
+    group: Option<&str>,
+    law: &Elastic,
+) -> Result<(), NotRepresentable> {
+    let hypothesis = law.hypothesis();
+    if (hypothesis == Hypothesis::Bar) != (D == 1) {
+        return Err(NotRepresentable::Law { index: index + 1, hypothesis, dimension: D });
+    }
+    text.table("[[material]]");
+    text.group(group);
+    text.number("young", law.young());
+    text.number("density", law.density());
+    let plane = match hypothesis {
+        Hypothesis::Bar => {
+            text.number("section", law.extent());
+            return Ok(());
+        }
+        Hypothesis::PlaneStress => "stress",
+        Hypothesis::PlaneStrain => "strain",
+    };
+    text.number("poisson", law.poisson());
+    text.key("plane", quoted(plane));
+    text.number("thickness", law.extent());
+    Ok(())
+}
+
+fn obstacle<const D: usize>(text: &mut Writer, plane: &Plane<D>) {
+    text.table("[[obstacle]]");
+    text.key("point", vector(plane.point()));
+    // As it was given: a unit normal made unit again may differ in the last bit.
+    text.key("normal", vector(plane.direction()));
+    text.number("friction", plane.friction());
+    text.group(plane.group());
+}
+
+fn support<const D: usize>(text: &mut Writer, support: &Support<D>) {
+    let axes: Vec<usize> = (0..D).filter(|&c| support.components[c]).collect();
+    text.table("[[support]]");
+    text.group(Some(&support.group));
+    text.key("components", list(axes.iter().map(|&c| quoted(AXES[c]))));
+    let Some(table) = &support.velocity else { return };
+    // Of other components the language does not speak, nor do they matter.
+    let named = |all: &[f64; D]| axes.iter().map(|&c| all[c]).collect::<Vec<_>>();
+    let value = list(table.value().iter().map(|all| vector(&named(all))));
+    text.key("velocity", format!("{{ time = {}, value = {value} }}", numbers(table.time())));
+}
+
+fn traction<const D: usize>(text: &mut Writer, traction: &Traction<D>) {
+    text.table("[[traction]]");
+    text.group(Some(&traction.group));
+    in_time(text, &traction.value);
+    let Profile { value, gradient } = &traction.profile;
+    text.key("profile", format!("{{ value = {value:?}, gradient = {} }}", vector(gradient)));
+}
+
+fn body_force<const D: usize>(text: &mut Writer, force: &BodyForce<D>) {
+    text.table("[[body_force]]");
+    text.group(force.group.as_deref());
+    in_time(text, &force.value);
+}
+
+fn in_time<const D: usize>(text: &mut Writer, table: &InTime<D>) {
+    text.key("time", numbers(table.time()));
+    text.key("value", list(table.value().iter().map(|v| vector(v))));
+}
+
+fn numbers(all: &[f64]) -> String {
+    list(all.iter().map(|x| format!("{x:?}")))
+}

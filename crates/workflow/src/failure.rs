@@ -1,0 +1,141 @@
+//! Why something could not be done.
+
+use crate::case::{CaseError, NotRepresentable};
+use percute_core::contact_results::ContactMemoryError;
+use percute_core::dynamics::SimulationError;
+use percute_core::history::SinkError;
+use percute_estimator::{EstimateError, RunError};
+use percute_io::FileError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why something could not be done.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The case file is wrong.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The case file cannot be read.
+    #[error("{file}: cannot read the case file: {cause}", file = .file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        cause: std::io::Error,
+    },
+    /// An argument that cannot be met.
+    #[error("{0}")]
+    Argument(String),
+    /// A file that is not to be lost.
+    #[error("{what} {file}: the file exists already; give another name, or --force to replace it", file = .file.display())]
+    Exists {
+        /// The argument or key that names it.
+        what: &'static str,
+        /// The file.
+        file: PathBuf,
+    },
+    /// Simulation or estimate failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A history or estimate file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A history that does not fit its own problem.
+    #[error("{file}: {cause}", file = .file.display())]
+    History {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        cause: EstimateError,
+    },
+    /// A problem that cannot be written down.
+    #[error(transparent)]
+    NotRepresentable(#[from] NotRepresentable),
+    /// No room for the contact results.
+    #[error(transparent)]
+    Contact(#[from] ContactMemoryError),
+    /// A file that cannot be written.
+    #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
+    Unwritable {
+        /// The argument or key that names it.
+        what: &'static str,
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        cause: String,
+    },
+    /// Standard output or standard error cannot be written.
+    #[error("cannot write the result: {0}")]
+    Output(#[from] std::io::Error),
+}
+
+impl Failure {
+    /// Whether the case file, the history or the arguments are wrong.
+    #[must_use]
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Case(_)
+            | Self::Unreadable { .. }
+            | Self::Argument(_)
+            | Self::Exists { .. }
+            | Self::History { .. }
+            | Self::NotRepresentable(_) => true,
+            Self::File(error) => !error.cause.is_of_the_system(),
+            Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => false,
+        }
+    }
+
+    /// What became of a sink that did not take a step: it stands for itself.
+    pub(crate) fn from_sink(error: SinkError, otherwise: impl FnOnce(SinkError) -> RunError) -> Self {
+        let error = match error.downcast::<FileError>() {
+            Ok(error) => return Self::File(*error),
+            Err(error) => error,
+        };
+        match error.downcast::<EstimateError>() {
+            Ok(error) => Self::Run(RunError::Estimate(*error)),
+            Err(error) => Self::Run(otherwise(error)),
+        }
+    }
+}
+
+impl From<SimulationError> for Failure {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Sink { step, cause } => {
+                Self::from_sink(cause, |cause| SimulationError::Sink { step, cause }.into())
+            }
+            error => Self::Run(error.into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_io::FileCause;
+
+    #[test]
+    fn a_run_that_fails_is_not_bad_input() {
+        let unstable = SimulationError::Unstable {
+            step: 3,
+            time: 1e-6,
+            node: 7,
+            speed: 1e9,
+            longest_step: 2e-7,
+            critical_step: 1e-7,
+        };
+        let failure = Failure::from(unstable);
+        assert!(!failure.is_bad_input());
+        assert!(failure.to_string().contains("unstable at step 3"), "{failure}");
+        assert!(Failure::Argument("--threads".into()).is_bad_input());
+    }
+
+    #[test]
+    fn a_step_that_could_not_be_stored_names_its_file() {
+        let full = FileCause::Write { step: 4, source: std::io::Error::from_raw_os_error(28) };
+        let failure = Failure::from(SimulationError::Sink { step: 4, cause: full.at("a.vtkhdf".as_ref()).into() });
+        assert!(!failure.is_bad_input());
+        let said = failure.to_string();
+        assert!(said.starts_with("a.vtkhdf: step 4 could not be written") && !said.contains("handed on"), "{said}");
+    }
+}

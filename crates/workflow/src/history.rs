@@ -1,0 +1,109 @@
+//! Histories in files: with the statement of their problem in the language of the case files.
+
+use crate::case::{NotRepresentable, Source, problem_from, statement};
+use crate::failure::Failure;
+use crate::report::Subject;
+use percute_core::dynamics::{Simulation, critical_time_step};
+use percute_core::history::StepSink;
+use percute_core::observer::Observer;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Estimate, Options, Request, RunError};
+use percute_io::Case;
+use percute_io::history::{AnyHistoryFile, HistoryFile, Plan};
+use std::path::Path;
+
+/// The file that will hold the history of a problem, with the options that its estimate takes unless
+/// told otherwise, and the case file that it came from.
+///
+/// # Errors
+/// A problem that the language of the case files cannot say.
+pub fn plan<'p, const D: usize, const N: usize>(
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    options: &Options,
+    case: Option<&Source>,
+) -> Result<Plan<'p, D, N>, NotRepresentable> {
+    let case = case.map(stored_case);
+    Ok(Plan::new(problem, times, &statement(problem, Some(options))?, case.as_ref()))
+}
+
+/// A case file as it is stored in others.
+#[must_use]
+pub fn stored_case(source: &Source) -> Case {
+    Case { name: source.name().to_string(), text: source.text().to_string() }
+}
+
+/// A history in a file, with its problem.
+#[derive(Clone, Debug)]
+pub struct Stored<const D: usize, const N: usize> {
+    /// The file.
+    pub file: HistoryFile<D, N>,
+    /// The problem that was simulated.
+    pub problem: Problem<D, N>,
+    /// Options of the estimate, from the same statement.
+    pub options: Options,
+    /// The name of the file, as it was given.
+    pub name: String,
+}
+
+/// A history of either dimension.
+#[derive(Clone, Debug)]
+pub enum AnyStored {
+    /// Of a bar.
+    Bar(Box<Stored<1, 2>>),
+    /// Of a plane body.
+    Plane(Box<Stored<2, 3>>),
+}
+
+/// Opens a history and reads the statement of its problem. Its steps stay in the file.
+///
+/// # Errors
+/// A file that is no history or is damaged; a statement with a mistake, with its line.
+pub fn open(path: &Path) -> Result<AnyStored, Failure> {
+    match percute_io::history::open(path)? {
+        AnyHistoryFile::Bar(file) => Ok(AnyStored::Bar(Box::new(Stored::new(file, path)?))),
+        AnyHistoryFile::Plane(file) => Ok(AnyStored::Plane(Box::new(Stored::new(file, path)?))),
+    }
+}
+
+impl<const D: usize, const N: usize> Stored<D, N> {
+    fn new(file: HistoryFile<D, N>, path: &Path) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let source = Source::new(format!("{name}, statement of the problem"), file.statement());
+        let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());
+        let (problem, options) = problem_from(&source, file.mesh().clone(), u, v)?;
+        Ok(Self { file, problem, options, name })
+    }
+
+    /// What a report on it is about: computes the critical step, which takes a while on a large mesh and
+    /// which only reports need.
+    #[must_use]
+    pub fn subject(&self) -> Subject<'_, D, N> {
+        let Self { file, problem, name, .. } = self;
+        let critical_step = critical_time_step(problem);
+        Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()) }
+    }
+
+    /// Estimates the error of the steps it holds; with the same options, bit by bit what a run that
+    /// made them would say. `beside` takes the steps too.
+    ///
+    /// # Errors
+    /// Steps that cannot be read or do not fit the problem, options out of range.
+    pub fn estimate(
+        &self,
+        options: Options,
+        request: &Request,
+        beside: &mut dyn StepSink<D>,
+        observer: &mut dyn Observer,
+    ) -> Result<(Simulation, Estimate<D>), Failure> {
+        let source = self.file.source(&self.problem)?;
+        percute_estimator::estimate(&self.problem, &source, options, request, beside, observer).map_err(|error| {
+            match error {
+                RunError::Estimate(cause) => Failure::History { file: self.file.path().to_path_buf(), cause },
+                RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
+                RunError::Simulation(_) => Failure::Run(error),
+            }
+        })
+    }
+}

@@ -1,0 +1,65 @@
+//! What an estimate file holds.
+
+use super::{Info, WrittenBy};
+use crate::message::{bytes, short, trimmed};
+use crate::report::{FORMAT, Versions};
+use percute_io::estimate_file::EstimateFile;
+use serde::Serialize;
+use serde_json::Value;
+use std::path::Path;
+
+/// An estimate.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct EstimateInfo {
+    pub format: u32,
+    pub versions: Versions,
+    pub file: String,
+    pub written_by: WrittenBy,
+    pub case: Option<String>,
+    pub dimension: usize,
+    pub nodes: usize,
+    pub elements: usize,
+    pub instants: Vec<f64>,
+    pub fields: bool,
+    pub bytes: u64,
+    pub report: Value,
+}
+
+/// What an estimate file holds.
+#[must_use]
+pub fn of_estimate(path: &Path, file: &EstimateFile) -> Info {
+    Info::Estimate(Box::new(EstimateInfo {
+        format: FORMAT,
+        versions: Versions::of_this_program(),
+        file: path.display().to_string(),
+        written_by: WrittenBy::new(&file.provenance),
+        case: file.case.as_ref().map(|case| case.name.clone()),
+        dimension: file.dimension,
+        nodes: file.nodes,
+        elements: file.elements,
+        instants: file.instants.clone(),
+        fields: file.fields,
+        bytes: file.bytes,
+        // A report of another program is no reason to say nothing.
+        report: serde_json::from_str(&file.report).unwrap_or_default(),
+    }))
+}
+
+impl EstimateInfo {
+    pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
+        let kind = if self.dimension == 1 { "bar elements" } else { "triangles" };
+        let mut lines =
+            vec![("estimate", format!("{}, {}", self.file, bytes(self.bytes))), ("written", self.written_by.line())];
+        lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
+        lines.push(("body", format!("{} {kind}, {} nodes", self.elements, self.nodes)));
+        let ends = self.instants.first().zip(self.instants.last());
+        let ends = ends.map_or_else(String::new, |(a, b)| format!(" from {} to {} s", trimmed(*a, 5), trimmed(*b, 5)));
+        let fields = if self.fields { ", with the admissible fields" } else { "" };
+        lines.push(("holds", format!("{} instants{ends}{fields}", self.instants.len())));
+        if let [Some(sup), Some(mean)] = ["sup", "mean"].map(|key| self.report["error"][key].as_f64()) {
+            lines.push(("error", format!("sup {} J^½, mean {} J^½", short(sup, 4), short(mean, 4))));
+        }
+        lines
+    }
+}

@@ -1,0 +1,94 @@
+//! How much memory a run will take, before it begins.
+
+use crate::case::CaseOf;
+use crate::message::bytes;
+use percute_core::contact_results::{ContactSteps, Resultant};
+use percute_core::dynamics::Balance;
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::mesh::Facet;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+
+/// About how many bytes a run and its estimate take; with `in_memory`, its history too.
+pub(crate) fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>, in_memory: bool) -> u64 {
+    let CaseOf { problem, times, options, .. } = case;
+    let estimate = percute_estimator::memory(problem, times, options) as u64;
+    let history = if in_memory { of_history(problem, times) } else { 0 };
+    let contact = case.output.estimate.as_ref().map_or(0, |_| of_contact(problem, times));
+    [estimate, history, contact].into_iter().fold(of_run(problem, times), u64::saturating_add)
+}
+
+/// How many bytes a history takes in memory.
+#[must_use]
+pub fn of_history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
+    let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
+    let instant = (nodes + contact) * size_of::<[f64; D]>() + contact * size_of::<bool>();
+    (times.step_count() as u64 + 1).saturating_mul(instant as u64)
+}
+
+/// Bytes of memory that this machine has free, where it tells.
+#[must_use]
+pub fn available() -> Option<u64> {
+    let told = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    line.trim().strip_suffix(" kB")?.parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// What to say if more memory is needed than is free.
+#[must_use]
+pub fn scarce(needed: u64, free: Option<u64>, in_memory: bool) -> Option<String> {
+    let free = free.filter(|free| needed > *free)?;
+    let (needed, free) = (bytes(needed), bytes(free));
+    let file = if in_memory { ", store the history in a file" } else { "" };
+    Some(format!(
+        "the run needs about {needed} of memory, but {free} are free: take a coarser mesh, fewer steps{file}, or a larger machine"
+    ))
+}
+
+/// How many bytes the contact results of all nodes at all instants take, which an estimate file asks for.
+pub(super) fn of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
+    let rows = (problem.surface().nodes().len() as u64).saturating_mul(times.step_count() as u64 + 1);
+    rows.saturating_mul(ContactSteps::<D>::BYTES as u64)
+}
+
+/// About how many bytes problem and simulation take, most of it in proportion to the mesh.
+#[must_use]
+pub fn of_run<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
+    let mesh = problem.mesh();
+    let vector = size_of::<[f64; D]>();
+    // Coordinates, initial fields, mass and its inverse; u, v, a and the force of the integrator.
+    let node = 8 * vector + 2 * size_of::<f64>() + 2 * size_of::<u32>();
+    // Nodes, facets and place in the stars; the element of the stiffness.
+    let element = N
+        * (size_of::<NodeId>() + size_of::<FacetId>() + size_of::<ElementId>() + size_of::<Option<FacetId>>())
+        + size_of::<u16>()
+        + (N + 1) * size_of::<u32>()
+        + D * vector;
+    // With what is supported of it.
+    let facet = size_of::<Facet<D>>() + D;
+    let instant = size_of::<f64>()
+        + size_of::<Balance>()
+        + size_of::<f64>()
+        + (1 + problem.obstacles().len()) * size_of::<Resultant<D>>();
+    let total = [
+        (mesh.node_count(), node),
+        (mesh.element_count(), element),
+        (mesh.facets().len(), facet),
+        (times.step_count() + 1, instant),
+    ];
+    total.iter().map(|&(count, size)| (count as u64).saturating_mul(size as u64)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_there_is_is_told() {
+        assert_eq!(scarce(1000, Some(1000), true), None);
+        assert_eq!(scarce(1001, None, true), None);
+        let told = scarce(8_000_000_000, Some(1_000_000_000), true).unwrap();
+        assert!(told.contains("8.00 GB") && told.contains("1.00 GB") && told.contains("in a file"), "{told}");
+        assert!(scarce(1001, Some(1000), false).is_some_and(|told| !told.contains("in a file")));
+    }
+}

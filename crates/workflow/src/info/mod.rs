@@ -1,0 +1,228 @@
+//! What a file holds, without any simulation. The fields are the keys of the JSON document, described in
+//! `docs/json.md`.
+
+mod estimate;
+pub mod memory;
+mod mesh;
+mod setting;
+
+pub use estimate::{EstimateInfo, of_estimate};
+pub use mesh::{GroupInfo, MeshInfo, of_mesh};
+pub use setting::{MaterialInfo, PlaneInfo};
+
+use crate::case::{CaseOf, NotRepresentable, Output};
+use crate::history::{Stored, plan};
+use crate::message::{bytes, trimmed};
+use crate::report::build::problem_summary;
+use crate::report::summary::{body, layout, step};
+use crate::report::{FORMAT, Given, ProblemSummary, Versions};
+use percute_core::time::TimeGrid;
+use percute_io::Provenance;
+use serde::Serialize;
+
+/// What a file holds.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Info {
+    /// A case.
+    Case(Box<CaseInfo>),
+    /// A history.
+    History(Box<HistoryInfo>),
+    /// An estimate.
+    Estimate(Box<EstimateInfo>),
+    /// A mesh.
+    Mesh(Box<MeshInfo>),
+}
+
+/// A case: what its run will take.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct CaseInfo {
+    pub format: u32,
+    pub versions: Versions,
+    pub file: String,
+    pub problem: ProblemSummary,
+    pub materials: Vec<MaterialInfo>,
+    pub planes: Vec<PlaneInfo>,
+    pub time: TimeInfo,
+    pub history_bytes: u64,
+    pub run_memory: u64,
+    pub estimate_memory: u64,
+    pub contact_memory: u64,
+    pub output_history: Option<String>,
+    pub output_estimate: Option<String>,
+}
+
+/// A history.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct HistoryInfo {
+    pub format: u32,
+    pub versions: Versions,
+    pub file: String,
+    pub written_by: WrittenBy,
+    pub case: Option<String>,
+    pub problem: ProblemSummary,
+    pub time: TimeInfo,
+    pub steps: Option<usize>,
+    pub complete: bool,
+    pub given: Given,
+    pub bytes: u64,
+    pub estimate_memory: u64,
+}
+
+/// The steps of a run.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct TimeInfo {
+    pub time_step: f64,
+    pub critical_time_step: f64,
+    pub steps_planned: usize,
+    pub end: f64,
+}
+
+/// The program that wrote a file; empty where the file does not say.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct WrittenBy {
+    pub program: String,
+    pub architecture: String,
+    pub system: String,
+}
+
+impl TimeInfo {
+    fn new(times: &TimeGrid, critical_step: f64) -> Self {
+        Self {
+            time_step: times.longest_step(),
+            critical_time_step: critical_step,
+            steps_planned: times.step_count(),
+            end: times.end(),
+        }
+    }
+
+    fn lines(&self) -> [(&'static str, String); 2] {
+        [
+            ("time", format!("{} s in {} steps;", trimmed(self.end, 5), self.steps_planned)),
+            ("", step(self.time_step, self.critical_time_step)),
+        ]
+    }
+}
+
+impl WrittenBy {
+    fn new(provenance: &Provenance) -> Self {
+        let Provenance { program, architecture, system } = provenance.clone();
+        Self { program, architecture, system }
+    }
+
+    fn line(&self) -> String {
+        let known: Vec<_> =
+            [&self.program, &self.architecture, &self.system].into_iter().filter(|s| !s.is_empty()).cloned().collect();
+        if known.is_empty() { "an unknown program".to_string() } else { known.join(", ") }
+    }
+}
+
+/// What a case holds and what its run will take.
+///
+/// # Errors
+/// A problem that cannot be stored.
+pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<Info, NotRepresentable> {
+    let Output { history, estimate, .. } = &case.output;
+    let name = |file: &Option<std::path::PathBuf>| file.as_ref().map(|file| file.display().to_string());
+    Ok(Info::Case(Box::new(CaseInfo {
+        format: FORMAT,
+        versions: Versions::of_this_program(),
+        file: case.source.name().to_string(),
+        problem: problem_summary(&case.subject()),
+        materials: setting::materials(&case.problem),
+        planes: setting::planes(&case.problem),
+        time: TimeInfo::new(&case.times, case.critical_step),
+        history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source))?.bytes(),
+        run_memory: memory::of_run(&case.problem, &case.times),
+        estimate_memory: percute_estimator::memory(&case.problem, &case.times, &case.options) as u64,
+        contact_memory: memory::of_contact(&case.problem, &case.times),
+        output_history: name(history),
+        output_estimate: name(estimate),
+    })))
+}
+
+/// What a history holds.
+#[must_use]
+pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info {
+    let (file, problem, subject) = (&stored.file, &stored.problem, stored.subject());
+    let [velocity, acceleration] = file.given();
+    Info::History(Box::new(HistoryInfo {
+        format: FORMAT,
+        versions: Versions::of_this_program(),
+        file: stored.name.clone(),
+        written_by: WrittenBy::new(file.provenance()),
+        case: file.case().map(|case| case.name.clone()),
+        problem: problem_summary(&subject),
+        time: TimeInfo::new(file.times(), subject.critical_step),
+        steps: file.count().checked_sub(1),
+        complete: file.is_complete(),
+        given: Given { velocity, acceleration },
+        bytes: file.bytes(),
+        estimate_memory: percute_estimator::memory(problem, file.times(), &stored.options) as u64,
+    }))
+}
+
+impl Info {
+    /// A few lines of at most 80 columns.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        layout(&match self {
+            Self::Case(info) => info.lines(),
+            Self::History(info) => info.lines(),
+            Self::Estimate(info) => info.lines(),
+            Self::Mesh(info) => info.lines(),
+        })
+    }
+
+    /// One JSON document. Numbers that are not finite become `null`.
+    ///
+    /// # Errors
+    /// None that is known; whatever the serialiser reports.
+    pub fn to_json(&self) -> Result<String, std::io::Error> {
+        serde_json::to_string(self).map_err(std::io::Error::from)
+    }
+}
+
+impl CaseInfo {
+    fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut lines = vec![("case", self.file.clone()), ("body", body(&self.problem))];
+        lines.extend(self.materials.iter().map(MaterialInfo::line));
+        lines.extend(self.planes.iter().map(PlaneInfo::line));
+        lines.extend(self.time.lines());
+        lines.push(("history", format!("{} on disk", bytes(self.history_bytes))));
+        let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));
+        lines.push(("memory", format!("about {run} for the run, and {estimate} for the estimate")));
+        if self.output_estimate.is_some() {
+            lines.push((
+                "",
+                format!("and {} for what contact does, as there is an estimate file", bytes(self.contact_memory)),
+            ));
+        }
+        for (name, file) in [("history", &self.output_history), ("estimate", &self.output_estimate)] {
+            lines.extend(file.as_ref().map(|file| ("output", format!("{name} to {file}"))));
+        }
+        lines
+    }
+}
+
+impl HistoryInfo {
+    fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut lines =
+            vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", self.written_by.line())];
+        lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
+        lines.push(("body", body(&self.problem)));
+        lines.extend(self.time.lines());
+        let held = self.steps.map_or_else(|| "no step".to_string(), |steps| format!("{steps} steps"));
+        let ended =
+            if self.complete { "complete" } else { "NOT FINISHED: its run goes on or was killed (percute recover)" };
+        lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
+        let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
+        lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));
+        lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
+        lines
+    }
+}

@@ -1,0 +1,73 @@
+//! What a case is about: materials, and planes with their gaps, so that a slip shows before the run.
+
+use crate::message::trimmed;
+use percute_core::problem::Problem;
+use serde::Serialize;
+
+/// A material.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct MaterialInfo {
+    pub group: Option<String>,
+    pub young: f64,
+    pub density: f64,
+    pub wave_speed: f64,
+}
+
+/// A plane at the start.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct PlaneInfo {
+    /// Smallest gap of the nodes that may touch it (m).
+    pub gap: f64,
+    pub contact_nodes: usize,
+    /// Largest speed of such a node towards it (m/s).
+    pub approach_speed: f64,
+}
+
+/// The materials as they were stated.
+pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<MaterialInfo> {
+    let stated = problem.statement().materials.iter();
+    let told = stated.map(|(group, law)| MaterialInfo {
+        group: group.clone(),
+        young: law.young(),
+        density: law.density(),
+        wave_speed: law.wave_speed(),
+    });
+    told.collect()
+}
+
+/// The planes, in their order.
+pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
+    let told = |(obstacle, plane): (usize, &percute_core::obstacle::Plane<D>)| {
+        let mine = problem.surface().nodes().iter().filter(|node| node.obstacle == obstacle && node.free);
+        let speeds = mine.clone().map(|contact| -plane.split(&problem.initial_velocity()[contact.node.index()]).0);
+        PlaneInfo {
+            gap: problem.initial_gap(obstacle),
+            contact_nodes: mine.count(),
+            approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    problem.obstacles().iter().enumerate().map(told).collect()
+}
+
+impl MaterialInfo {
+    pub(super) fn line(&self) -> (&'static str, String) {
+        let of = self.group.as_ref().map_or_else(String::new, |group| format!(" of \"{group}\""));
+        let [young, density, speed] = [self.young, self.density, self.wave_speed].map(|x| trimmed(x, 4));
+        ("material", format!("E {young} Pa, density {density} kg/m³, waves {speed} m/s{of}"))
+    }
+}
+
+impl PlaneInfo {
+    pub(super) fn line(&self) -> (&'static str, String) {
+        let (gap, speed) = (trimmed(self.gap, 4), trimmed(self.approach_speed, 4));
+        // Of what moves nearer by itself; loads may bring it sooner or later.
+        let when = if self.approach_speed > 0.0 {
+            format!(" at {speed} m/s: {} s", trimmed(self.gap / self.approach_speed, 4))
+        } else {
+            String::new()
+        };
+        ("plane", format!("gap {gap} m{when}, {} nodes may touch", self.contact_nodes))
+    }
+}

@@ -1,0 +1,15 @@
+//! From a case file to a report, for the command and for Python: the case language ([`case`]), runs ([`run`]), histories
+//! in files ([`history`]), the report and its JSON document ([`report`]), and the contents of files ([`info`]).
+//! Nothing here prints.
+
+pub mod case;
+mod failure;
+pub mod history;
+pub mod info;
+pub mod message;
+pub mod outputs;
+pub mod report;
+pub mod run;
+pub mod writable;
+
+pub use failure::Failure;

@@ -1,0 +1,7 @@
+//! Parts of messages: numbers with their units, names and their nearest spelling.
+
+mod number;
+mod spelling;
+
+pub use number::{bytes, percent, short, trimmed};
+pub use spelling::{hint, list};

@@ -1,0 +1,60 @@
+//! The files that a run will make, checked before any work is done for them.
+
+use crate::failure::Failure;
+use crate::writable;
+use std::path::Path;
+
+/// A file to come.
+#[derive(Clone, Copy, Debug)]
+pub struct Output<'a> {
+    /// The argument or key that names it.
+    pub what: &'static str,
+    /// The file.
+    pub file: &'a Path,
+}
+
+/// A file from the command line, else from the case.
+pub fn chosen<'a>(
+    [flag, key]: [&'static str; 2],
+    given: Option<&'a Path>,
+    stated: Option<&'a Path>,
+) -> Option<Output<'a>> {
+    let stated = stated.map(|file| Output { what: key, file });
+    given.map(|file| Output { what: flag, file }).or(stated)
+}
+
+/// Makes sure that all files can be made, that no two of them are one, and that none is an input; `inputs` say what
+/// they are. Only a picture may replace a file unless `force` says so.
+///
+/// # Errors
+/// [`Failure::Argument`] for two names of one file, [`Failure::Exists`] and [`Failure::Unwritable`].
+pub fn check(
+    inputs: &[(&str, &Path)],
+    outputs: &[Option<Output<'_>>],
+    picture: Option<&Path>,
+    force: bool,
+) -> Result<(), Failure> {
+    let drawn = picture.map(|file| Output { what: "--picture", file });
+    let all: Vec<Output<'_>> = outputs.iter().copied().chain([drawn]).flatten().collect();
+    for (i, Output { what, file }) in all.iter().enumerate() {
+        let shown = file.display();
+        if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {
+            return Err(Failure::Argument(format!("{what} {shown} is the {name} itself; give another name")));
+        }
+        if let Some(other) = all[..i].iter().find(|other| writable::same(file, other.file)) {
+            return Err(Failure::Argument(format!(
+                "{what} {shown} is the file of {} too; give it another",
+                other.what
+            )));
+        }
+    }
+    for Output { what, file } in outputs.iter().flatten() {
+        if !force && file.exists() {
+            return Err(Failure::Exists { what, file: file.to_path_buf() });
+        }
+        let fail =
+            |cause: std::io::Error| Failure::Unwritable { what, file: file.to_path_buf(), cause: cause.to_string() };
+        writable::check(file).map_err(fail)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,36 @@
+//! The summary of a simulation.
+
+use super::Subject;
+use super::build::{balance_summary, problem_summary};
+use super::summary::{body, drift, energy, layout, step};
+use crate::message::{bytes, short, trimmed};
+use percute_core::dynamics::Simulation;
+use std::path::Path;
+
+/// The summary of a run that is not estimated, with the file of its history and the time it took (s).
+#[must_use]
+pub fn simulated<const D: usize, const N: usize>(
+    subject: &Subject<'_, D, N>,
+    simulation: &Simulation,
+    file: &Path,
+    seconds: f64,
+) -> String {
+    let (times, balance) = (subject.times, balance_summary(&simulation.balance));
+    let (steps, planned) = (simulation.steps, times.step_count());
+    let reached = trimmed(times.instants()[steps], 5);
+    let time = match steps < planned {
+        true => format!("INTERRUPTED at step {steps} of {planned}, t = {reached} s;"),
+        false => format!("{reached} s in {steps} steps;"),
+    };
+    let size = std::fs::metadata(file).map_or(0, |found| found.len());
+    let (version, seconds) = (env!("CARGO_PKG_VERSION"), short(seconds, 3));
+    layout(&[
+        ("case", format!("{} (percute {version}, {seconds} s)", subject.name)),
+        ("body", body(&problem_summary(subject))),
+        ("time", time),
+        ("", step(times.longest_step(), subject.critical_step)),
+        ("energy", energy(&balance)),
+        ("drift", drift(&balance)),
+        ("history", format!("{}, {}", file.display(), bytes(size))),
+    ])
+}

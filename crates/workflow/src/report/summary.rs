@@ -1,0 +1,177 @@
+//! The summary of a run: at most 24 lines of 80 columns.
+
+use super::{ADMISSIBLE, BalanceSummary, ProblemSummary, Report, meaning};
+use crate::message::{percent, short, trimmed};
+
+/// The summary of a run.
+#[must_use]
+pub fn summary(report: &Report) -> String {
+    layout(&lines(report)) + &meaning::lines(&report.meaning) + &layout(&[("result", result(report))])
+}
+
+/// Names and values in two columns.
+pub(crate) fn layout(lines: &[(&str, String)]) -> String {
+    lines.iter().map(|(name, value)| cut(&format!("{name:<10}{value}")) + "\n").collect()
+}
+
+/// A line that fits the screen.
+fn cut(line: &str) -> String {
+    let line = line.trim_end();
+    if line.chars().count() <= 80 { line.to_string() } else { line.chars().take(79).chain(['…']).collect() }
+}
+
+fn lines(report: &Report) -> Vec<(&'static str, String)> {
+    let mut lines = what_was_run(report);
+    lines.extend(error(report));
+    lines.extend(worst_elements(report));
+    lines.extend(balance(report));
+    lines.push(("residual", residual(report)));
+    lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
+    lines.extend(contact(report).map(|line| ("contact", line)));
+    lines.extend(warnings(report));
+    lines
+}
+
+/// Elements, nodes and size of a body.
+pub(crate) fn body(problem: &ProblemSummary) -> String {
+    let kind = if problem.dimension == 1 { "bar elements" } else { "triangles" };
+    let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| trimmed(u - l, 4));
+    let size = size.collect::<Vec<_>>().join(" x ");
+    format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)
+}
+
+/// The longest step beside the critical one (s).
+pub(crate) fn step(step: f64, critical: f64) -> String {
+    format!("step {step:.4e} s, critical {critical:.4e} s, ratio {}", trimmed(step / critical, 4))
+}
+
+fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
+    let label = if report.held.is_some() { "history" } else { "case" };
+    let (version, seconds) = (report.versions.percute, short(report.seconds, 3));
+    let options = &report.options;
+    let mut lines = vec![
+        (label, format!("{} (percute {version}, {seconds} s)", report.case)),
+        ("body", body(&report.problem)),
+        ("time", time(report)),
+        ("", step(report.time_step, report.critical_time_step)),
+        (
+            "options",
+            format!(
+                "{} forces, {} acceleration, every {}",
+                options.reconstruction, options.acceleration, options.every
+            ),
+        ),
+    ];
+    let given = [("velocities", report.given.velocity), ("accelerations", report.given.acceleration)];
+    let given: Vec<_> = given.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
+    if !given.is_empty() {
+        lines.push(("given", format!("{} of the history itself", given.join(" and "))));
+    }
+    lines
+}
+
+/// How far the run or the history went.
+fn time(report: &Report) -> String {
+    let Report { steps, steps_planned: planned, .. } = *report;
+    let end = trimmed(report.end, 5);
+    match report.held.map(|instants| instants.saturating_sub(1)) {
+        _ if !report.interrupted => format!("{end} s in {steps} steps;"),
+        Some(held) if held == steps => format!("INCOMPLETE history of {steps} of {planned} steps, t = {end} s;"),
+        Some(held) if held < planned => {
+            format!("INTERRUPTED at step {steps} of {held} ({planned} planned), t = {end} s;")
+        }
+        _ => format!("INTERRUPTED at step {steps} of {planned}, t = {end} s;"),
+    }
+}
+
+fn error(report: &Report) -> Vec<(&'static str, String)> {
+    let measure = |name: &str, value: f64, relative: f64, reference: f64| {
+        let (value, reference) = (short(value, 4), short(reference, 4));
+        format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
+    };
+    let (e, parts) = (&report.error, &report.parts);
+    let total = parts.kinetic + parts.elastic + parts.contact;
+    let share = |part: f64| if total > 0.0 { percent(part / total) } else { "0 %".to_string() };
+    let shares = [("kinetic", parts.kinetic), ("elastic", parts.elastic), ("contact", parts.contact)];
+    let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
+    vec![
+        ("error", measure("sup", e.sup, e.relative_sup, e.reference_sup)),
+        ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
+        ("", format!("at the sup: {shares}")),
+    ]
+}
+
+/// The error in one line, the last one, for `tail -n 1`.
+fn result(report: &Report) -> String {
+    let e = &report.error;
+    if !report.problem.obstacles.is_empty() && report.kept_impulse.is_none() && e.sup == 0.0 {
+        return "no contact, and nothing that could be wrong: see the warnings".to_string();
+    }
+    let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
+    let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);
+    format!("sup {at_most} ({sup} J^½ at {time} s), mean {mean}")
+}
+
+fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
+    let line = |(i, worst): (usize, &super::WorstElement)| {
+        let centroid = worst.centroid.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ");
+        let value = format!("element {:<8} {:>10} J^½  at ({centroid}) m", worst.element, short(worst.error, 4));
+        (if i == 0 { "worst" } else { "" }, value)
+    };
+    // The document and the picture have more.
+    report.worst_elements.iter().take(3).enumerate().map(line).collect()
+}
+
+fn balance(report: &Report) -> Vec<(&'static str, String)> {
+    let b = &report.balance;
+    let [loads, supports, contact, friction] =
+        [b.work_of_loads, b.work_of_supports, b.work_of_contact, b.friction].map(|x| short(x, 4));
+    vec![
+        ("energy", energy(b)),
+        ("work", format!("loads {loads}, supports {supports}, contact {contact}, friction {friction} J")),
+        ("drift", drift(b)),
+    ]
+}
+
+/// Energies at the start and now.
+pub(crate) fn energy(balance: &BalanceSummary) -> String {
+    let [initial, kinetic, strain] = [balance.initial, balance.kinetic, balance.strain].map(|x| short(x, 4));
+    format!("initial {initial}, now kinetic {kinetic}, strain {strain} J")
+}
+
+/// Drifts of the two balances.
+pub(crate) fn drift(balance: &BalanceSummary) -> String {
+    format!("energy {}, impulse {}", percent(balance.energy_drift), percent(balance.impulse_drift))
+}
+
+fn residual(report: &Report) -> String {
+    let worst = &report.largest_residual;
+    let verdict = if worst.admissible { "admissible" } else { "NOT ADMISSIBLE" };
+    format!("largest {} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", short(worst.value, 2), worst.name)
+}
+
+/// Nothing where all is kept.
+fn kept_impulse(report: &Report) -> Option<String> {
+    let Some(kept) = report.kept_impulse.map(percent) else { return Some("no contact".to_string()) };
+    (kept != percent(1.0)).then(|| format!("{kept} of the contact impulse kept by the admissible force"))
+}
+
+/// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said already.
+fn contact(report: &Report) -> Option<String> {
+    let contact = report.contact.as_ref()?;
+    let (first, peak) = (contact.first_touch?, contact.time_of_peak?);
+    let [force, pressure] = [contact.peak_normal_force, contact.peak_pressure].map(|x| short(x, 4));
+    Some(format!("from {} s, peak {force} N at {} s, pressure {pressure} Pa", trimmed(first, 4), trimmed(peak, 4)))
+}
+
+/// One line each if there are two at most; else the first and how many more.
+fn warnings(report: &Report) -> Vec<(&'static str, String)> {
+    let all = &report.warnings;
+    let mut lines: Vec<_> =
+        all.iter().take(if all.len() > 2 { 1 } else { 2 }).map(|w| ("WARNING", w.brief.clone())).collect();
+    if all.len() > 2 {
+        let names = all.iter().skip(1).map(|w| w.name).collect::<Vec<_>>().join(", ");
+        lines.push(("WARNINGS", format!("and {}: {names}", all.len() - 1)));
+    }
+    lines
+}

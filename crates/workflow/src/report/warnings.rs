@@ -1,0 +1,167 @@
+//! What the user should look at before trusting a result.
+
+use super::{LargestResidual, ProblemSummary};
+use crate::message::percent;
+use percute_core::mesh::{ImportWarning, Mesh};
+use percute_core::problem::PlausibilityWarning;
+use percute_estimator::Reconstruction;
+use serde::Serialize;
+
+/// Energy that appears or goes by more than this, relatively, is a warning.
+const DRIFT: f64 = 0.1;
+/// So is a contact impulse of which less than the one or more than the other is kept.
+const KEPT: [f64; 2] = [0.9, 1.1];
+/// Resampling of tables below this is rounding.
+const RESAMPLED: f64 = 1e-12;
+
+/// A warning.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// Its name, for programs.
+    pub name: &'static str,
+    /// A few words, for the summary.
+    #[serde(skip)]
+    pub brief: String,
+    /// What is the matter and what to do.
+    pub message: String,
+}
+
+/// What the warnings look at.
+pub(super) struct Facts<'a> {
+    pub(super) problem: &'a ProblemSummary,
+    pub(super) plausibility_warnings: &'a [PlausibilityWarning],
+    pub(super) drift: f64,
+    pub(super) interrupted: bool,
+    pub(super) reconstruction: Reconstruction,
+    pub(super) kept_impulse: Option<f64>,
+    pub(super) residual: &'a LargestResidual,
+}
+
+/// All warnings of a run.
+pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
+    [
+        not_admissible(facts),
+        energy_drift(facts),
+        kept_impulse(facts),
+        no_contact(facts),
+        resampled(facts),
+        reoriented(facts),
+    ]
+    .into_iter()
+    .flatten()
+    .chain(facts.plausibility_warnings.iter().map(Warning::from))
+    .collect()
+}
+
+impl From<&PlausibilityWarning> for Warning {
+    fn from(plausibility_warning: &PlausibilityWarning) -> Self {
+        Self {
+            name: plausibility_warning.name,
+            brief: plausibility_warning.brief.clone(),
+            message: plausibility_warning.to_string(),
+        }
+    }
+}
+
+fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<String>) -> Option<Warning> {
+    Some(Warning { name, brief: brief.into(), message: message.into() })
+}
+
+fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
+    let LargestResidual { name, value, admissible } = facts.residual;
+    if *admissible {
+        return None;
+    }
+    let message = format!(
+        "the residual `{name}` is {value:.2e}: above {:.0e} a field is not admissible and the error measure is not one",
+        super::ADMISSIBLE
+    );
+    warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
+}
+
+fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
+    // A drift that is no number must not pass.
+    if facts.drift <= DRIFT {
+        return None;
+    }
+    let drift = percent(facts.drift);
+    let message = format!(
+        "the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it"
+    );
+    warning("energy_drift", format!("energy balance off by {drift}"), message)
+}
+
+fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
+    let [least, most] = KEPT;
+    let kept = facts.kept_impulse.filter(|kept| !(least..=most).contains(kept))?;
+    let shown = percent(kept);
+    let advice = match facts.reconstruction {
+        // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
+        Reconstruction::Corrected if kept < 1.0 => "the run ends while contact begins: let it last longer",
+        Reconstruction::Corrected => {
+            "reactions of the history pull, or are outside Coulomb's cone: is `friction` what it was made with?"
+        }
+        Reconstruction::Consistent | Reconstruction::Published => {
+            "refine the mesh or the steps where contact begins, or take `reconstruction = \"corrected\"`"
+        }
+    };
+    if kept > most {
+        let message = format!(
+            "the admissible contact force has {shown} of the simulated impulse; above 110 % it is not the force of the \
+             simulation: {advice}"
+        );
+        return warning("kept_impulse", format!("{shown} of the contact impulse in the admissible force"), message);
+    }
+    let message = format!(
+        "the admissible contact force keeps {shown} of the simulated impulse; below 90 % the estimate is pessimistic: {advice}"
+    );
+    warning("kept_impulse", format!("only {shown} of the contact impulse kept"), message)
+}
+
+fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
+    let foreseen =
+        facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
+    if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() || foreseen {
+        return None;
+    }
+    let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
+    let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
+    warning("no_contact", format!("no contact {when}"), message)
+}
+
+fn resampled(facts: &Facts<'_>) -> Option<Warning> {
+    let error = facts.problem.resampling_error;
+    if error <= RESAMPLED {
+        return None;
+    }
+    let error = percent(error);
+    let message = format!(
+        "tables in time are joined by straight lines between the steps: they differ from what was given by up to {error}"
+    );
+    warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
+}
+
+fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
+    let count = facts.problem.reoriented_elements;
+    let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
+    if count == 0 { None } else { warning("reoriented_elements", format!("{count} elements turned round"), message) }
+}
+
+/// An error that is sampled at the start and at the end only; told before the run, too.
+pub(crate) fn few_samples(every: usize, steps: usize) -> Option<Warning> {
+    if every <= 1 || every < steps {
+        return None;
+    }
+    let message = format!(
+        "is {every}, but the run has {steps} steps: the error is sampled at its start and its end only; give a smaller number"
+    );
+    Some(Warning { name: "few_samples", brief: "the error is sampled twice".to_string(), message })
+}
+
+/// What was reported when the mesh was read.
+pub fn reported<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Iterator<Item = Warning> {
+    mesh.import_warnings().iter().map(|ImportWarning { name, brief, message, .. }| {
+        let (brief, message) = (brief.clone(), message.clone());
+        Warning { name, brief, message }
+    })
+}

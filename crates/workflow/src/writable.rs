@@ -1,0 +1,58 @@
+//! Whether a file can be written, asked before any work is done for it.
+
+use std::fs::OpenOptions;
+use std::io::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Makes sure that a file can be made or replaced. What is there is left as it is.
+///
+/// # Errors
+/// A folder that is not there, something else than a file, whatever the system reports.
+pub fn check(file: &Path) -> Result<()> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.exists() {
+        return Err(Error::other(format!(
+            "there is no folder {}; make it first, or give another name",
+            folder.display()
+        )));
+    }
+    // Not the target of a link: a link to nothing must not be taken for a new file and removed.
+    let new = match std::fs::symlink_metadata(file) {
+        Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
+        Ok(_) => return Err(Error::other("it is no regular file")),
+        Err(_) => true,
+    };
+    // Appending nothing changes nothing.
+    OpenOptions::new().append(true).create(true).open(file)?;
+    if new { std::fs::remove_file(file) } else { Ok(()) }
+}
+
+/// Whether two paths name one file, be it there or not.
+#[must_use]
+pub fn same(a: &Path, b: &Path) -> bool {
+    matches!((identity(a), identity(b)), (Some(a), Some(b)) if a == b)
+}
+
+fn identity(file: &Path) -> Option<PathBuf> {
+    if let Ok(there) = file.canonicalize() {
+        return Some(there);
+    }
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(file.file_name()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_file_by_several_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        assert!(same(&file("a"), &file("./a")) && !same(&file("a"), &file("b")));
+        std::fs::write(file("a"), "").unwrap();
+        std::os::unix::fs::symlink(file("a"), file("link")).unwrap();
+        assert!(same(&file("a"), &file("link")));
+        assert!(!same(&file("none/a"), &file("none/a")), "nothing can be said of a folder that is not there");
+    }
+}
