@@ -31,11 +31,10 @@ pub fn chosen<'a>(
 pub fn check(
     inputs: &[(&str, &Path)],
     outputs: &[Option<Output<'_>>],
-    picture: Option<&Path>,
+    picture: Option<Output<'_>>,
     force: bool,
 ) -> Result<(), Failure> {
-    let drawn = picture.map(|file| Output { what: "--picture", file });
-    let all: Vec<Output<'_>> = outputs.iter().copied().chain([drawn]).flatten().collect();
+    let all: Vec<Output<'_>> = outputs.iter().copied().chain([picture]).flatten().collect();
     for (i, Output { what, file }) in all.iter().enumerate() {
         let shown = file.display();
         if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {

@@ -1,7 +1,7 @@
 //! `percute estimate`.
 
 use super::Console;
-use super::outputs::{contact_recorder, with_work};
+use super::outputs::{check, contact_recorder, with_work};
 use super::result::{Given, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
@@ -11,7 +11,7 @@ use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
 use percute_workflow::history::{AnyStored, Stored, open};
-use percute_workflow::outputs::{Output, check};
+use percute_workflow::outputs::Output;
 use percute_workflow::report::Report;
 use std::time::Instant;
 

@@ -1,6 +1,7 @@
 //! How a command makes its files.
 
 use super::Console;
+use crate::picture::check_path;
 use percute_core::contact_results::ContactRecorder;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -11,7 +12,19 @@ use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::history;
 use percute_workflow::message::bytes;
-use percute_workflow::outputs::Output;
+use percute_workflow::outputs::{self, Output};
+use std::path::Path;
+
+/// Checks all files that a command makes, before any work; a picture, which may replace a file, as well.
+pub(super) fn check(
+    inputs: &[(&str, &Path)],
+    outputs: &[Option<Output<'_>>],
+    picture: Option<&Path>,
+    force: bool,
+) -> Result<(), Failure> {
+    outputs::check(inputs, outputs, picture.map(|file| Output { what: "--picture", file }), force)?;
+    picture.map_or(Ok(()), check_path)
+}
 
 /// A file that somebody else has made since it was checked.
 pub(super) fn taken(error: FileError) -> Failure {

@@ -1,6 +1,6 @@
 //! `percute run`.
 
-use super::outputs::{begin_history, contact_recorder, with_work};
+use super::outputs::{begin_history, check, contact_recorder, with_work};
 use super::result::{Given, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
@@ -12,7 +12,7 @@ use percute_estimator::{EstimateError, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Instants};
 use percute_workflow::history::stored_case;
-use percute_workflow::outputs::{Output, check, chosen};
+use percute_workflow::outputs::{Output, chosen};
 use percute_workflow::report::Report;
 use percute_workflow::run::run;
 use std::time::Instant;

@@ -1,13 +1,13 @@
 //! `percute simulate`.
 
-use super::outputs::begin_history;
+use super::outputs::{begin_history, check};
 use super::{Console, case};
 use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf};
-use percute_workflow::outputs::{Output, check, chosen};
+use percute_workflow::outputs::{Output, chosen};
 use percute_workflow::report::{reported, simulated};
 use percute_workflow::run::simulate_only;
 use std::path::{Path, PathBuf};

@@ -21,10 +21,7 @@ fn dependencies_never_point_back() {
         ("io", vec!["percute-core", "percute-estimator"]),
         ("workflow", vec!["percute-core", "percute-estimator", "percute-io"]),
         ("cli", vec!["percute-core", "percute-estimator", "percute-exact", "percute-io", "percute-workflow"]),
-        (
-            "py",
-            vec!["percute-core", "percute-estimator", "percute-exact", "percute-io", "percute-workflow", "percute"],
-        ),
+        ("py", vec!["percute-core", "percute-estimator", "percute-exact", "percute-io", "percute-workflow", "percute"]),
         ("testkit", vec!["percute-core"]),
     ]);
     let folders: Vec<_> = std::fs::read_dir(root().join("crates")).unwrap().map(|f| f.unwrap().file_name()).collect();

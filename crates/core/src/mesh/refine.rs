@@ -18,9 +18,12 @@ impl BarMesh {
             cells.extend([[a, points.len()], [points.len(), b]]);
             points.push([0.5 * (points[a][0] + points[b][0])]);
         }
-        let ends = |group: &Vec<FacetId>| group.iter().flat_map(|f| self.facets[f.index()].nodes).map(|n| [n.index()]).collect();
+        let ends = |group: &Vec<FacetId>| {
+            group.iter().flat_map(|f| self.facets[f.index()].nodes).map(|n| [n.index()]).collect()
+        };
         let halves = |group: &Vec<ElementId>| group.iter().flat_map(|e| [2 * e.index(), 2 * e.index() + 1]).collect();
-        let facets: FacetGroups<1> = self.facet_groups.iter().map(|(name, group)| (name.clone(), ends(group))).collect();
+        let facets: FacetGroups<1> =
+            self.facet_groups.iter().map(|(name, group)| (name.clone(), ends(group))).collect();
         let elements: ElementGroups =
             self.element_groups.iter().map(|(name, group)| (name.clone(), halves(group))).collect();
         Self::new(points, &cells, &facets, &elements)
