@@ -14,11 +14,13 @@ from percute.errors import PercuteError
 
 if TYPE_CHECKING:
     from matplotlib.colors import Colormap, Normalize
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Drawing
 
     from percute.mesh import Mesh
+else:
+    Drawing = object
 
-__all__ = ["Colours", "Curve", "around_one", "between", "heat_maps", "lines", "mesh_maps", "needed", "own", "ordered", "ratio", "save"]
+__all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", "lines", "mesh_maps", "needed", "own", "ordered", "ratio", "save"]
 
 PALETTE = ("#2f79c8", "#da6228", "#24966e", "#9b55be", "#c83c64", "#967d1e", "#1496af", "#828791", "#a56450")
 INK, FAINT, GRID = "#282830", "#6e6e78", "#e1e2e8"
@@ -114,7 +116,7 @@ def needed() -> None:
         raise PercuteError('the figures need matplotlib: pip install "percute[plot]"') from error
 
 
-def _panels(count: int, columns: int, height: float | None = None, *, shared: bool = True) -> tuple[Figure, list[Any]]:
+def _panels(count: int, columns: int, height: float | None = None, *, shared: bool = True) -> tuple[Drawing, list[Any]]:
     """Give a figure with so many panels, in rows."""
     needed()
     from matplotlib.figure import Figure
@@ -147,7 +149,7 @@ def lines(
     xticks: Sequence[float] | None = None,
     yticks: Sequence[float] | None = None,
     zero: bool = False,
-) -> Figure:
+) -> Drawing:
     """Draw curves in panels with the same axes and one legend below.
 
     ``panels`` are titles with curves, ``log`` names the logarithmic axes ("x", "y" or "xy"), ``band`` is a range of y that is
@@ -159,8 +161,9 @@ def lines(
         figure, all_axes = _panels(len(panels), columns)
         entries: dict[str, Any] = {}
         for axes, (title, curves) in zip(all_axes, panels, strict=True):
-            for curve in curves:
-                look = {"color": curve.colour, "linestyle": "--" if curve.dashed else "-", "marker": "o" if curve.marked else None}
+            for k, curve in enumerate(curves):
+                # The first curve lies over the others.
+                look = {"color": curve.colour, "ls": "--" if curve.dashed else "-", "marker": "o" if curve.marked else None, "zorder": 3 - k / 100}
                 (entry,) = axes.plot(curve.x, curve.y, **look)
                 entries.setdefault(curve.name, entry)
             if band is not None:
@@ -192,7 +195,7 @@ def heat_maps(
     *,
     columns: int = 1,
     digits: int = 2,
-) -> Figure:
+) -> Drawing:
     """Draw a value for each cell of a grid, in panels with one bar of colours.
 
     ``maps`` are titles with arrays (rows from below, columns), NaN where there is none; ``x`` and ``y`` are a name and a text
@@ -231,7 +234,7 @@ def mesh_maps(
     *,
     columns: int = 1,
     plane: float | None = None,
-) -> Figure:
+) -> Drawing:
     """Draw a value for each triangle of meshes, in panels with one bar of colours.
 
     ``maps`` are titles with a mesh (or any object with ``points`` and ``cells``) and a value for each element; ``plane`` is the
@@ -259,7 +262,7 @@ def mesh_maps(
     return figure
 
 
-def _bar(figure: Figure, image: Any, axes: list[Any], colours: Colours) -> None:
+def _bar(figure: Drawing, image: Any, axes: list[Any], colours: Colours) -> None:
     bar = figure.colorbar(image, ax=axes, shrink=0.8, fraction=0.05, pad=0.02)
     bar.set_label(colours.label)
     bar.outline.set_visible(False)
@@ -267,7 +270,7 @@ def _bar(figure: Figure, image: Any, axes: list[Any], colours: Colours) -> None:
         _ticks(bar.ax.yaxis, colours.ticks)
 
 
-def save(figure: Figure, file: Path) -> None:
+def save(figure: Drawing, file: Path) -> None:
     """Write a figure as SVG and PNG; ``file`` has no ending."""
     import matplotlib as mpl
 

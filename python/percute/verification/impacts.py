@@ -1,0 +1,200 @@
+"""Impacts of plane bodies on meshes that are refined: estimates beside errors against still finer meshes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib import resources
+from typing import Any
+
+import numpy as np
+import percute as pc
+from percute.verification.block import ALUMINIUM
+
+__all__ = ["CORNER", "CURVED", "FEW", "FLAT", "KINDS", "MESHES", "READINGS", "STEP", "TILTED", "Case", "Found", "cases"]
+
+READINGS = [{"reconstruction": name} for name in ("corrected", "consistent", "published")]
+"""The reconstructions of the contact force, as arguments of `percute.estimate`."""
+STEP = 0.9
+"""Δt/Δt_c, exactly, of all runs but those for short steps."""
+MESHES = 4
+"""Meshes that are estimated, each with four times as many elements as the one before."""
+FEW = 2
+"""Meshes of a small study, and of studies of other things than the mesh, which show the last of them."""
+OBLIQUE, NORMAL = (400.0, -400.0), (0.0, -400.0)
+"""Velocity along and across the plane (m/s)."""
+FLAT, TILTED, CURVED, CORNER = KINDS = ("flat", "tilted by 3°", "curved", "corner first")
+"""Cases that are judged together: a side arrives at once or from one end to the other, a curved outline, a corner alone."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """The results on one mesh."""
+
+    elements: int
+    steps: int
+    estimates: list[pc.Estimate]
+    """One of each choice."""
+    touching: tuple[float, float] | None
+    """First and last instant at which a node touches (s)."""
+    most: int
+    """The most nodes that touch at one instant."""
+    last: int
+    """How many touch at the end."""
+    exact: list[tuple[float, float]] = field(default_factory=list)
+    """Sup and mean of e_ref (J^½) against each reference."""
+
+    def effectivity(self, choice: int) -> tuple[float, float]:
+        """Give e/e_ref, sup and mean, of a choice against the finest reference."""
+        return self.estimates[choice].sup / self.exact[-1][0], self.estimates[choice].mean / self.exact[-1][1]
+
+    def contact(self, choice: int) -> float:
+        """Give the part of contact in η where it is largest."""
+        parts = self.estimates[choice].parts
+        return parts.contact / parts.total
+
+
+@dataclass(frozen=True)
+class Case:
+    """One impact of an aluminium body, as in the paper's §7.2."""
+
+    body: str = "block"
+    """``"block"`` of 50 × 40 mm in 5×4 cells, ``"unstructured block"``, ``"rounded block"`` with two corners of 15 mm, or
+    ``"disc"`` of 25 mm with 24 edges. Refined meshes are of the same polygon."""
+    plane: Any = "stress"
+    friction: float = 0.2
+    tilt: float = 0.0
+    """By how much the plane is turned clockwise under the body (°)."""
+    velocity: tuple[float, float] = OBLIQUE
+    gap: float = 0.2e-3
+    """Distance of the lowest node from the plane (m)."""
+    end: float = 13e-6
+    """T (s); a run ends with its first instant at or past it."""
+    ratio: float = STEP
+    meshes: int = MESHES
+    references: tuple[int, ...] = (5, 6)
+    """Refinements of the references, coarsest first; the last one counts."""
+
+    @property
+    def kind(self) -> str:
+        """Which other cases it is judged with."""
+        if self.body in ("disc", "rounded block"):
+            return CURVED
+        # At 3°, the 50 mm of a side arrive within 6.5 µs; at 10° only the corner does.
+        return FLAT if self.tilt == 0.0 else TILTED if abs(self.tilt) < 5.0 else CORNER
+
+    @property
+    def name(self) -> str:
+        """Its name in tables."""
+        tilt = f" tilted by {self.tilt:g}°".replace("-", "−") if self.tilt else ""
+        way = "normal" if self.velocity == NORMAL else "oblique"
+        return f"{self.body}{tilt}, plane {self.plane}, μ = {self.friction:g}, {way}"
+
+    @property
+    def cost(self) -> float:
+        """How long it takes, in any unit: its finest reference decides."""
+        return 8.0 ** self.references[-1] * self.end
+
+    def at(self, **changes: Any) -> Case:
+        """Give the case with some changes."""
+        return replace(self, **changes)
+
+    def few(self) -> Case:
+        """Give the case on few meshes, against the first of its references."""
+        return self.at(meshes=FEW, references=self.references[:1])
+
+    def mesh(self, refinements: int) -> pc.Mesh:
+        """Give the mesh after a number of refinements."""
+        if self.body == "block":
+            # The same triangles as by refinement, but in rows, which is faster.
+            return pc.Mesh.rectangle(0.05, 0.04, nx=5 << refinements, ny=4 << refinements)
+        if self.body == "disc":
+            return pc.Mesh.disc(0.025, rings=4).refined(refinements)
+        with resources.as_file(resources.files("percute.verification") / f"{self.body.split()[0]}.msh") as file:
+            return pc.Mesh.read(file).refined(refinements)
+
+    def problem(self, refinements: int) -> pc.Problem:
+        """Give the problem on one of the meshes."""
+        angle = math.radians(self.tilt)
+        normal, tangent = np.array([math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), -math.sin(angle)])
+        mesh = self.mesh(refinements)
+        lowest = float(np.min(mesh.points[:, 0] * normal[0] + mesh.points[:, 1] * normal[1])) - self.gap
+        return pc.Problem(
+            mesh,
+            material=pc.Elastic(**ALUMINIUM, plane=self.plane),
+            initial_velocity=self.velocity[0] * tangent + self.velocity[1] * normal,
+            obstacles=[pc.Plane(point=normal * lowest, normal=normal, friction=self.friction)],
+        )
+
+    def run(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> list[Found | None]:
+        """Estimate on each mesh with each choice, then compare with the references.
+
+        A mesh that is not wanted, or on which the body starts too near to the plane, gives None.
+        """
+        found: list[Found | None] = []
+        histories, ends = [], []
+        for refinements in range(self.meshes):
+            problem = self.problem(refinements)
+            times = _steps_past(self.end, self.ratio, problem)
+            ends.append(times["end"])
+            try:
+                history = pc.simulate(problem, **times, progress=stop)
+            except pc.InputError as error:
+                if "obstacles[0].point" not in str(error):
+                    raise
+                found.append(None)
+                continue
+            estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
+            count = history.touching.sum(axis=1)
+            during = history.time[np.flatnonzero(count)]
+            touching = (float(during[0]), float(during[-1])) if len(during) else None
+            steps = len(history) - 1
+            found.append(Found(len(problem.mesh.cells), steps, estimates, touching, int(count.max()), int(count[-1])))
+            histories.append(history)
+        there = [each for each in found if each is not None]
+        for refinements in self.references:
+            fine = self.problem(refinements)
+            errors = pc.true_errors(histories, fine, **_steps_past(max(ends), STEP, fine), progress=stop)
+            for each, error in zip(there, errors, strict=True):
+                each.exact.append((error.sup, error.mean))
+        return found + [None] * (MESHES - self.meshes)
+
+    def finest(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> Found:
+        """Run it and give the results on the finest of the meshes that are estimated."""
+        return [found for found in self.run(choices, stop) if found is not None][-1]
+
+
+def _steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, float]:
+    """Give steps of exactly a part of Δt_c that reach an instant."""
+    step = ratio * problem.critical_time_step
+    return {"end": math.ceil(reach / step) * step, "step": step}
+
+
+def cases(small: bool = False) -> list[Case]:
+    """Give the cases; the small ones are some of them, on fewer meshes."""
+    block = Case()
+    tilted = replace(block, end=16e-6)
+    if small:
+        return [block.few(), replace(tilted, tilt=3.0).few()]
+    flat = [
+        replace(block, plane=plane, friction=friction, velocity=velocity)
+        for plane in ("stress", "strain")
+        for friction in (0.0, 0.2, 0.5)
+        for velocity in (OBLIQUE, NORMAL)
+    ]
+    # One case has a third reference of 640×512 cells.
+    flat = [replace(case, references=(5, 6, 7)) if case == block else case for case in flat]
+    unstructured = replace(block, body="unstructured block")
+    rounded = replace(tilted, body="rounded block", tilt=10.0)
+    return [
+        *flat,
+        unstructured,
+        replace(unstructured, plane="strain", friction=0.5),
+        replace(tilted, tilt=3.0),
+        replace(tilted, tilt=-3.0),
+        replace(tilted, body="unstructured block", tilt=3.0),
+        *(replace(tilted, tilt=tilt, velocity=NORMAL, gap=0.1e-3) for tilt in (10.0, -10.0)),
+        *(replace(rounded, velocity=velocity) for velocity in (OBLIQUE, NORMAL)),
+        *(replace(tilted, body="disc", velocity=velocity, end=40e-6) for velocity in (OBLIQUE, NORMAL)),
+    ]
