@@ -1,41 +1,41 @@
-//! What the error means and what it does not, in words: for the summary, the document and Python.
+//! The meaning of the error and its limits, in words: for the summary, the JSON document and Python.
 
 use percute_estimator::Reconstruction;
 
-/// What it is, whatever the reading.
+/// Nature of the error, for all reconstructions.
 const MEASURE: &str =
-    "A measure of admissible misfit, not a strict bound: errors of space, time, mass and contact together.";
+    "An estimate, not a strict bound: it contains the errors of space, time, mass and contact.";
 
-/// Where the evidence is.
+/// Source of the evidence.
 const EVIDENCE: &str = "(`percute reproduce`, docs/verification.md)";
 
-/// Smallest and largest estimate over true error of the reading `corrected` in docs/verification.md: bars with steps down to 0.02 of the
-/// critical one, and bodies that touch with an edge or along a curve, on all meshes. A test holds them to that page. At exactly
-/// the critical step a bar that has left the plane swings more and more, and half of that is not seen.
+/// Smallest and largest effectivity index of the reconstruction `corrected` in docs/verification.md, on all meshes: bars with steps
+/// down to 0.02 of the critical one, and bodies that touch with an edge or along a curve. A test compares them with that page. At
+/// exactly the critical step the oscillation of a bar after contact grows, and the estimate misses half of it.
 const CORRECTED: [f64; 2] = [0.85, 1.8];
-/// The largest where a corner touches first: the block tilted by 10°, all meshes.
+/// Largest effectivity index where a corner touches first: the block tilted by 10°, all meshes.
 const CORRECTED_AT_A_CORNER: f64 = 2.3;
-/// The part of the wave speed below which effectivities at corners and curves grow like 1/√v.
+/// Wave speed over the impact speed below which effectivity indices at corners and curves grow like 1/√v.
 const SLOW: f64 = 100.0;
-/// The same of `consistent` and of `published` on the finest bars with the smallest steps, and what either passes at a corner or at a
-/// point; how far depends on the mesh.
+/// Effectivity indices of `consistent` and `published`: the smallest on the finest bars with the smallest steps, and a value that both
+/// exceed at a corner or a point. The excess depends on the mesh.
 const OTHERS: [f64; 2] = [0.23, 3.0];
 
-/// What the error means, and how far from the truth it was where that is known: nothing of the latter for a reading of
-/// which this version does not know.
+/// Meaning of the error, and its effectivity indices in tests. The latter are left out for a reconstruction that is unknown to this
+/// version.
 #[must_use]
-pub fn meaning(reading: Option<Reconstruction>) -> String {
-    let evidence = match reading {
+pub fn meaning(reconstruction: Option<Reconstruction>) -> String {
+    let evidence = match reconstruction {
         Some(Reconstruction::Corrected) => {
             let [least, most] = CORRECTED;
             format!(
-                "In tests at 0.02 to 0.9 Δt_c {least} to {most} times the true error, to {CORRECTED_AT_A_CORNER} if a corner is first; \
-                 far more where a corner or a curve touches slower than c/{SLOW}"
+                "In tests with steps of 0.02 to 0.9 Δt_c: {least} to {most} times the true error, up to {CORRECTED_AT_A_CORNER} if a \
+                 corner touches first, far more if a corner or a curve touches slower than c/{SLOW}"
             )
         }
-        Some(reading @ (Reconstruction::Consistent | Reconstruction::Published)) => {
+        Some(reconstruction @ (Reconstruction::Consistent | Reconstruction::Published)) => {
             let [least, most] = OTHERS;
-            format!("With `{reading}` it may lie far off: in tests {least} to over {most} times the true error")
+            format!("With `{reconstruction}` it may be far off: in tests {least} to over {most} times the true error")
         }
         None => return MEASURE.to_string(),
     };
@@ -62,15 +62,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_few_short_lines_say_all_of_it() {
-        for &reading in Reconstruction::ALL {
-            let text = meaning(Some(reading));
+    fn the_meaning_fits_a_few_short_lines() {
+        for &reconstruction in Reconstruction::ALL {
+            let text = meaning(Some(reconstruction));
             let lines = lines(&text);
             assert!((1..=4).contains(&lines.lines().count()), "{lines}");
             assert!(lines.lines().all(|line| line.chars().count() <= 80), "{lines}");
             assert_eq!(lines.trim_end().replace('\n', " "), text);
             assert!(lines.ends_with(&format!("{EVIDENCE}.\n")), "{lines}");
-            // None looks like another line of the summary.
+            // No line resembles another line of the summary.
             assert!(
                 ["contact ", "error ", "time ", "work "].iter().all(|label| !lines.contains(&format!("\n{label}")))
             );
@@ -78,8 +78,8 @@ mod tests {
     }
 
     #[test]
-    fn only_readings_that_drop_forces_are_called_far_off() {
-        let far_off = |reading| meaning(Some(reading)).contains("far off");
+    fn only_reconstructions_that_drop_forces_are_called_far_off() {
+        let far_off = |reconstruction| meaning(Some(reconstruction)).contains("far off");
         assert!(!far_off(Reconstruction::default()));
         assert!(far_off(Reconstruction::Consistent) && far_off(Reconstruction::Published));
         assert_eq!(meaning(None), MEASURE);

@@ -102,13 +102,13 @@ fn every_estimate_says_what_the_page_has() {
     let down = |x: f64| (20.0 * x).floor() / 20.0;
     let up = |x: f64| (10.0 * x).ceil() / 10.0;
     let told = format!(
-        "In tests at 0.02 to 0.9 Δt_c {} to {} times the true error, to {} if",
+        "In tests with steps of 0.02 to 0.9 Δt_c: {} to {} times the true error, up to {} if",
         down(least),
         up(most),
         up(corner)
     );
     assert!(
-        slow > up(corner) && said.contains("far more where a corner or a curve touches slower than c/100"),
+        slow > up(corner) && said.contains("far more if a corner or a curve touches slower than c/100"),
         "{slow}"
     );
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
