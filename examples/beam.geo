@@ -1,4 +1,4 @@
-// A beam, 200 mm long and 20 mm high, drawn in mm; below its free end a round foot, 2 mm deep.
+// A beam, 200 mm long and 20 mm high, in mm. A round foot, 2 mm deep, is below its free end.
 // gmsh -2 beam.geo -format msh41
 Point(1) = {0, 0, 0};
 Point(2) = {160, 0, 0};

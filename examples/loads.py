@@ -1,33 +1,32 @@
-"""Loads and motions whose exact answer is known, against what percute computes.
+"""Loads and prescribed motions with exact answers, against the results of percute.
 
-Run it with ``python examples/loads.py``; it takes a second. Each line gives a computed figure, the exact one, and how
-far apart they are.
+``python examples/loads.py`` takes a second. Each line has a computed value, the exact value and their relative difference.
 """
 
 import numpy as np
 import percute as pc
 
 YOUNG, DENSITY, LENGTH = 70e9, 2700.0, 0.1
-SPEED = float(np.sqrt(YOUNG / DENSITY))  # of waves in a bar (m/s)
+SPEED = float(np.sqrt(YOUNG / DENSITY))  # wave speed in a bar (m/s)
 BAR = pc.Elastic(young=YOUNG, density=DENSITY, section=1e-4)
 BLOCK = pc.Elastic(young=YOUNG, poisson=0.3, density=DENSITY, plane="strain")
 
 
 def free_fall() -> tuple[float, float]:
-    """Weight alone: ½ g t². Central differences are exact here, and so is the estimate: it is zero."""
+    """Weight alone: ½ g t². Central differences are exact here, and the estimate is zero."""
     gravity, end = 9.81, 1e-4
     mesh = pc.Mesh.disc(0.05, rings=4)
     problem = pc.Problem(mesh, material=BLOCK, body_forces=[pc.BodyForce(value=(0, -gravity * DENSITY))])
     history = pc.simulate(problem, end=end, courant=0.9)
-    # Of the reference: the energy norm of the fields themselves.
+    # Relative to the energy norm of the fields.
     assert pc.estimate(history).relative_sup < 1e-9
     return history.displacement[-1, 0, 1], -gravity * end**2 / 2
 
 
 def pulled_bar() -> tuple[float, float]:
-    """A bar is clamped at its start and pulled at its end by a stress that grows linearly in time.
+    """A bar is clamped at its start. A stress that grows linearly in time pulls its end.
 
-    A stress s at the end moves it at s/(ρc); each echo from the clamp, every 2L/c, takes twice what it brings.
+    A stress s moves the end at the velocity s/(ρc). Each echo from the clamp, every 2L/c, changes the velocity by twice this value.
     """
     end, stress = 5 * LENGTH / SPEED, 1e8
     problem = pc.Problem(
@@ -43,7 +42,7 @@ def pulled_bar() -> tuple[float, float]:
 
 
 def pushed_bar() -> tuple[float, float]:
-    """A support sets the start of a bar in motion, at a velocity that grows linearly; its middle follows L/2c later."""
+    """A support moves the start of a bar at a velocity that grows linearly. The middle follows after L/2c."""
     end, velocity = 0.9 * LENGTH / SPEED, 2.0
     problem = pc.Problem(
         pc.Mesh.bar(LENGTH, elements=200),
@@ -55,7 +54,7 @@ def pushed_bar() -> tuple[float, float]:
 
 
 def pressed_block(cells: int = 100) -> tuple[float, float]:
-    """A block between rollers is pressed on its right side: a plane wave of the speed √((λ + 2μ)/ρ)."""
+    """A pressure acts on the right side of a block between rollers: a plane wave of the speed √((λ + 2μ)/ρ)."""
     lame = YOUNG * 0.3 / (1.3 * 0.4) + YOUNG / 1.3
     speed, pressure, width = float(np.sqrt(lame / DENSITY)), 1e8, 0.05
     end = 1.5 * width / speed
@@ -65,14 +64,14 @@ def pressed_block(cells: int = 100) -> tuple[float, float]:
         supports=[pc.Support(group=side, components="y") for side in ("bottom", "top")],
         tractions=[pc.Traction(group="right", value=((0, 0), (-pressure, 0)), time=(0.0, end))],
     )
-    # Corners have half the mass and half the load of other nodes: all of the side moves as one.
+    # Corners have half the mass and half the load of other nodes, so the whole side moves uniformly.
     side = problem.mesh.points[:, 0] == width
     moved = pc.simulate(problem, end=end, courant=0.9).displacement[-1, side, 0]
     return moved.mean(), -pressure * end / 2 / (DENSITY * speed)
 
 
 def uneven_push() -> tuple[float, float]:
-    """A traction that varies along an edge: the momentum of a free block is its resultant times the time."""
+    """A traction varies along an edge: the momentum of a free block is the resultant times the time."""
     end, pressure, width, height = 1e-5, 1e6, 0.05, 0.04
     traction = pc.Traction(group="bottom", value=(0, pressure), profile=(1.0, (40.0, 0.0)))
     problem = pc.Problem(pc.Mesh.rectangle(width, height, nx=10, ny=8), material=BLOCK, tractions=[traction])
@@ -82,13 +81,13 @@ def uneven_push() -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print the figures."""
+    """Print the values."""
     largest = 0.0
     for case in (free_fall, pulled_bar, pushed_bar, pressed_block, uneven_push):
         computed, exact = case()
         difference = abs(computed / exact - 1.0)
         largest = max(largest, difference)
-        print(f"{case.__name__:<14} computed {computed:13.6e}   exact {exact:13.6e}   apart {difference:.1e}")
+        print(f"{case.__name__:<14} computed {computed:13.6e}   exact {exact:13.6e}   difference {difference:.1e}")
     print(f"largest difference {largest:.1e}")
 
 

@@ -1,6 +1,6 @@
 // A disc of radius 10 mm around the origin, for Gmsh 4 (https://gmsh.info); sizes in m.
 //     gmsh -2 disc.geo -o disc.msh        (disc.msh is from Gmsh 4.15.2)
-// The triangles are finest at the point that touches the plane first, (0, -R), where half the width of contact is about a tenth of R.
+// The triangles are finest at the first point of contact, (0, -R). The half-width of contact there is about a tenth of R.
 SetFactory("Built-in");
 R = 0.01;
 fine = R / 160;     // near the contact point ...

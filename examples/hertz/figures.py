@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FE, THEORY, SLOW, SHARP = "tab:blue", "black", "tab:orange", "tab:green"
+FE, THEORY, SLOW, CONSISTENT = "tab:blue", "black", "tab:orange", "tab:green"
 
 
 def draw(done: Study, folder: Path) -> None:
-    """Draw them into a folder."""
+    """Draw the figures into a folder."""
     with plt.rc_context({"font.size": 9}):
         for name, figure in (("force", _force(done)), ("contact", _contact(done)), ("error", _error(done))):
             figure.savefig(folder / f"hertz-{name}.png", dpi=110)
@@ -27,7 +27,7 @@ def draw(done: Study, folder: Path) -> None:
 
 
 def _force(done: Study) -> Figure:
-    """Resultant over time, and the peak of each theory against the speed."""
+    """Resultant over time, and the peak force of each theory over the speed."""
     figure, (over_time, over_speed) = plt.subplots(1, 2, figsize=(9.0, 3.3), layout="constrained")
     main, slow, waves = done.main, DISC.impact(SPEED), DISC.impact(SPEED, CUT)
     over_time.plot(main.time[::8] * 1e6, main.force[::8] / 1e6, color=FE, linewidth=2.5, alpha=0.6, label="finite elements")
@@ -47,7 +47,7 @@ def _force(done: Study) -> Figure:
 
 
 def _contact(done: Study) -> Figure:
-    """Width and pressure over time and the pressure at the peak, against Hertz for the force of the same instant."""
+    """Width and pressure over time, and the pressure at the peak, with Hertz for the force of the same instant."""
     figure, (width, middle, ellipse) = plt.subplots(1, 3, figsize=(11.0, 3.3), layout="constrained")
     main, time = done.main, done.main.time * 1e6
     some = slice(None, None, 8)
@@ -64,15 +64,15 @@ def _contact(done: Study) -> Figure:
     near, smooth = np.abs(place) < 1.3, np.linspace(-1.0, 1.0, 201)
     ellipse.plot(place[near], pressure[near], "o", color=FE, markersize=4, label="finite elements, nodes")
     ellipse.plot(smooth, np.sqrt(1.0 - smooth**2), color=THEORY, linewidth=1, label="Hertz")
-    _label(ellipse, "place, $x/b$", "pressure at the largest force, $p/p_0$")
+    _label(ellipse, "position, $x/b$", "pressure at the largest force, $p/p_0$")
     ellipse.legend(loc="lower center")
     return figure
 
 
 def _error(done: Study) -> Figure:
-    """The constitutive relation error over time in all readings, and where the default sees it."""
+    """The constitutive relation error over time of all reconstructions, and its map with the default."""
     figure, (over_time, near) = plt.subplots(1, 2, figsize=(9.0, 3.3), layout="constrained", width_ratios=(1, 1.2))
-    for name, colour in (("published", SLOW), ("consistent", SHARP), ("corrected", FE)):
+    for name, colour in (("published", SLOW), ("consistent", CONSISTENT), ("corrected", FE)):
         over = done.estimates[name].over_time
         time = (over.time - FLIGHT) * 1e6
         over_time.plot(time, np.sqrt(over.total), color=colour, label=f"{name}, error √η")
@@ -85,7 +85,7 @@ def _error(done: Study) -> Figure:
     done.estimates["corrected"].plot_map(axes=near)
     near.set_xlim(-1.5, 1.5)
     near.set_ylim(-10.1, -8.6)
-    near.set_title("whole, near the contact")
+    near.set_title("corrected, near the contact")
     return figure
 
 

@@ -1,4 +1,4 @@
-"""A disc falls on a rigid plane, and Hertz says what should come out: the study of docs/hertz.md.
+"""A disc strikes a rigid plane, against Hertz's theory: the study of docs/hertz.md.
 
     python examples/hertz/hertz.py                    # prints the study
     python examples/hertz/hertz.py --figures docs     # and draws its figures into a folder
@@ -19,25 +19,25 @@ from theory import Cylinder, Impact
 HERE = Path(__file__).parent
 DISC = Cylinder(radius=0.01, young=70e9, poisson=0.3, density=2700.0)
 SPEED = 30.0
-"""m/s: at the peak, b is a tenth of the radius and spans fifteen edges."""
+"""m/s. At the peak, b is a tenth of the radius and spans fifteen edges."""
 SPEEDS = (3.75, 7.5, 15.0, 30.0, 60.0)
-READINGS = ("published", "consistent", "corrected")
+RECONSTRUCTIONS = ("published", "consistent", "corrected")
 CUT = 6.0
-"""Vibrations up to about this frequency (c/R): their waves, about R long, are long against b, so that the force acts at a point."""
+"""Cut-off frequency of vibrations (c/R). Their waves, about R long, are long against b, so the force acts at a point."""
 
 
 @dataclass(frozen=True)
 class Study:
-    """All that docs/hertz.md tells of."""
+    """The runs of docs/hertz.md."""
 
     main: Run
     history: pc.History
     speeds: tuple[Run, ...]
-    """At `SPEEDS`, the main one among them."""
+    """At `SPEEDS`, including the main run."""
     variants: dict[str, Run]
-    """Finer meshes, smaller steps, plane stress; until the peak is past."""
+    """Finer meshes, smaller steps, plane stress, until after the peak."""
     estimates: dict[str, pc.Estimate]
-    """Of the main run, by the reading of the contact force."""
+    """Of the main run, by reconstruction of the contact force."""
 
 
 def study(every: int = 1) -> Study:
@@ -55,12 +55,12 @@ def study(every: int = 1) -> Study:
         "cut in four, half the speed": simulate(DISC, fine, SPEED / 2, end)[0],
         "cut in four, twice the speed": simulate(DISC, fine, SPEED * 2, end)[0],
     }
-    estimates = {name: pc.estimate(history, reconstruction=name, every=every) for name in READINGS}
+    estimates = {name: pc.estimate(history, reconstruction=name, every=every) for name in RECONSTRUCTIONS}
     return Study(main, history, speeds, variants, estimates)
 
 
 def report(done: Study) -> Iterator[str]:
-    """Tell the study, line by line."""
+    """Give the study, line by line."""
     main, points = done.main, done.history.problem.mesh.points
     yield (
         f"{main.triangles} triangles, {len(points)} nodes, edges of {main.edge * 1e3:.4f} mm where contact begins;"
@@ -112,7 +112,7 @@ def report_relations(done: Study) -> Iterator[str]:
 
 
 def report_speeds(speeds: tuple[Run, ...]) -> Iterator[str]:
-    """How the difference moves with the speed."""
+    """The difference as a function of the speed."""
     yield "\n          finite elements                     quasi-static       vibrating disc"
     yield "  m/s     b/R    MN/m     µs  rebound     force    time     force    time  rebound"
     for run in speeds:
@@ -125,26 +125,26 @@ def report_speeds(speeds: tuple[Run, ...]) -> Iterator[str]:
 
 
 def excess(run: Run, impact: Impact) -> float:
-    """Peak force of theory, over that of finite elements, less 1."""
+    """Peak force of theory over that of finite elements, less 1."""
     return float(impact.force.max() / run.force.max() - 1.0)
 
 
 def report_momentum(done: Study) -> Iterator[str]:
-    """Impulse, momentum, and the time that waves take."""
+    """Impulse, momentum, and the transit time of waves."""
     main, transit = done.main, 2.0 * DISC.radius / done.history.problem.wave_speed
     yield (
-        f"\nOver the momentum before: impulse {main.impulse:.6f}, change of momentum {1.0 + main.rebound:.6f};"
-        f" they differ by {abs(main.impulse - 1.0 - main.rebound):.0e}"
+        f"\nRelative to the initial momentum: impulse {main.impulse:.6f}, change of momentum {1.0 + main.rebound:.6f};"
+        f" difference {abs(main.impulse - 1.0 - main.rebound):.0e}"
     )
     lasts = ", ".join(f"{run.contact_time / transit:.2f}" for run in done.speeds)
-    yield f"A pressure wave crosses the disc in {transit * 1e6:.2f} µs: at these speeds contact lasts {lasts} transits"
+    yield f"A pressure wave crosses the disc in {transit * 1e6:.2f} µs; at these speeds contact lasts {lasts} transits"
     before = main.mass * SPEED**2 / 2.0
     drift = float(done.history.balance.energy_drift.max())
     yield f"Energy {before:.2f} J/m; {1.0 - main.rebound**2:.2%} of it is in vibrations at the end; energy balance kept to {drift:.0e}"
 
 
 def report_estimates(estimates: dict[str, pc.Estimate]) -> Iterator[str]:
-    """All readings of the contact force."""
+    """All reconstructions of the contact force."""
     yield "\nConstitutive relation error    sup    mean   at (µs)  kinetic part  kept impulse  largest residual"
     for name, estimate in estimates.items():
         worst, value = max(estimate.residuals.items(), key=lambda item: item[1])
@@ -155,11 +155,11 @@ def report_estimates(estimates: dict[str, pc.Estimate]) -> Iterator[str]:
 
 
 def main() -> None:
-    """Run the study, print it, and draw its figures if asked to."""
-    parser = argparse.ArgumentParser(description="A disc falls on a rigid plane: percute against Hertz.")
+    """Run and print the study, and draw its figures on request."""
+    parser = argparse.ArgumentParser(description="A disc strikes a rigid plane: percute against Hertz.")
     parser.add_argument("--figures", type=Path, metavar="FOLDER", help="draw the figures of docs/hertz.md into this folder")
     folder = parser.parse_args().figures
-    # What would be in the way of the figures shows before the work.
+    # Problems with the figures appear before the work.
     if folder is not None:
         if not folder.is_dir():
             parser.error(f"--figures {folder}: there is no such folder")

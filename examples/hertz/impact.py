@@ -1,4 +1,4 @@
-"""A simulated impact of a disc: its contact forces over time, and how far they are from Hertz's relations."""
+"""A simulated impact of a disc: its contact forces over time, and their difference from Hertz's relations."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import percute as pc
 from theory import Cylinder, Floats
 
 FLIGHT = 3e-8
-"""s, from the start to the plane: a few steps."""
+"""Duration from the start to the plane (s): a few steps."""
 PEAK = 8e-6
-"""s, from then on: at 30 m/s the largest force is past."""
+"""Time from then on (s): at 30 m/s the largest force is before this instant."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """What is compared of an impact; forces are per metre of thickness. Some stop soon after the peak."""
+    """Results of an impact; forces are per metre of thickness. Some runs end soon after the peak."""
 
     disc: Cylinder
     speed: float
     triangles: int
     contact: pc.Contact
     mass: float
-    """Of the triangles (kg)."""
+    """Mass of the triangles (kg)."""
     rebound: float
     """Velocity of the centre of mass in the last step, over that at the start."""
 
@@ -55,17 +55,17 @@ class Run:
 
     @property
     def pressure_in_the_middle(self) -> Floats:
-        """Density R/ℓ [45] at the node that touches first (Pa)."""
+        """Density R/ℓ [45] at the first node in contact (Pa)."""
         return self.contact.pressure[:, np.argmin(np.abs(self.place))]
 
     @property
     def touching_half_width(self) -> Floats:
-        """Half the length on which nodes touch (m)."""
+        """Half the length of contact of the nodes (m)."""
         return self.contact.resultants.area / 2.0
 
     @cached_property
     def half_width(self) -> Floats:
-        """Twice the standard deviation of the pressure's place (m): b, if the pressure is an ellipse."""
+        """Twice the standard deviation of the position of the pressure (m): b, if the pressure is an ellipse."""
         force = np.where(self.force > 0.0, self.force, np.inf)
         forces = self.contact.normal_force
         centre = forces @ self.place / force
@@ -95,7 +95,7 @@ class Run:
 
 
 def simulate(disc: Cylinder, mesh: pc.Mesh, speed: float, end: float, courant: float = 0.9) -> tuple[Run, pc.History]:
-    """Let the disc strike the plane at a speed (m/s), until `end` (s) after the first touch."""
+    """Simulate the impact of the disc at a speed (m/s), until `end` (s) after the first touch."""
     material = pc.Elastic(young=disc.young, poisson=disc.poisson, density=disc.density, plane=disc.plane)
     plane = pc.Plane(point=(0.0, -disc.radius - FLIGHT * speed), normal=(0.0, 1.0), group="lower")
     problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(0.0, -speed))
@@ -113,7 +113,7 @@ def simulate(disc: Cylinder, mesh: pc.Mesh, speed: float, end: float, courant: f
 
 
 def refined(mesh: pc.Mesh, radius: float) -> pc.Mesh:
-    """Cut each triangle into four; new nodes of the boundary go to the circle."""
+    """Cut each triangle into four, with the new boundary nodes on the circle."""
     cells = np.asarray(mesh.cells, dtype=np.int64)
     sides = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]], axis=2).reshape(-1, 2)
     edges, which, count = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
@@ -130,20 +130,20 @@ def refined(mesh: pc.Mesh, radius: float) -> pc.Mesh:
 
 @dataclass(frozen=True)
 class Differences:
-    """How far a run is from Hertz's relations between the force, the width and the pressure of the same instant, up to `PEAK`."""
+    """Differences of a run from Hertz's relations between force, width and pressure of the same instant, up to `PEAK`."""
 
     width_mean: float
-    """Relative, of the half-width by the pressure; mean while b is over 0.9 of its peak."""
+    """Half-width from the pressure, relative: mean while b is over 0.9 of its peak."""
     pressure_mean: float
-    """Relative, in the middle; mean likewise."""
+    """Pressure in the middle, relative: mean likewise."""
     width: float
-    """Relative; root mean square while b is over half of its peak."""
+    """Half-width from the pressure, relative: root mean square while b is over half of its peak."""
     pressure: float
-    """Relative; root mean square likewise."""
+    """Pressure in the middle, relative: root mean square likewise."""
     touching: float
-    """Of the touching half-width, in edges; the largest likewise."""
+    """Half-width of the touching nodes, in edges: largest value likewise."""
     ripple: float
-    """Of the force from its mean over 0.2 µs, over the peak force; root mean square likewise."""
+    """Force from its mean over 0.2 µs, over the peak force: root mean square likewise."""
 
 
 def differences(run: Run) -> Differences:

@@ -1,7 +1,7 @@
-"""What theory says of an elastic cylinder that strikes a rigid plane: Hertz, quasi-static impact, a vibrating disc.
+"""Theory of an elastic cylinder that strikes a rigid plane: Hertz, quasi-static impact, a vibrating disc.
 
-Forces are per metre of thickness. The sources: H. Hertz 1882; K. L. Johnson, Contact Mechanics (1985), chapters 4 and 5 for line
-contact and 11 for impact. All is linear in the strains and holds for half-widths b that are small against the radius.
+Forces are per metre of thickness. The sources are H. Hertz 1882 and K. L. Johnson, Contact Mechanics (1985), chapters 4 and 5 for line
+contact and 11 for impact. Strains are linear, and half-widths b are small against the radius.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Impact:
-    """A disc that has struck a plane, from first touch to release."""
+    """An impact of a disc on a plane, from first touch to release."""
 
     time: Floats
-    """s, from first touch on."""
+    """Time from first touch (s)."""
     force: Floats
     """N per metre of thickness."""
     rebound: float
-    """Velocity of the centre of mass after it, over that before it."""
+    """Velocity of the centre of mass after the impact, over that before it."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Cylinder:
     density: float
     plane: Literal["strain", "stress"] = "strain"
     degree: int = field(default=16, repr=False)
-    """Degree of the polynomials of which the modes of vibration are made."""
+    """Degree of the polynomials of the vibration modes."""
 
     @property
     def modulus(self) -> float:
@@ -48,12 +48,12 @@ class Cylinder:
 
     @property
     def lateral(self) -> float:
-        """ν in plane stress; ν/(1 - ν) in plane strain, where the plane problem is the same with E* for E."""
+        """ν in plane stress, ν/(1 - ν) in plane strain. With E* for E the plane problems are then the same."""
         return self.poisson if self.plane == "stress" else self.poisson / (1.0 - self.poisson)
 
     @property
     def wave_speed(self) -> float:
-        """c = √(E*/ρ) (m/s), the unit of speed of what follows."""
+        """c = √(E*/ρ) (m/s), the unit of speed below."""
         return float(np.sqrt(self.modulus / self.density))
 
     def half_width(self, force: Floats | float) -> Floats:
@@ -67,10 +67,10 @@ class Cylinder:
     def flexibility(self, width: float) -> float:
         """Approach of the plane and the disc's centre of mass for a unit force, times E*: (2/π) (ln(2R/b) - (1 + ν')/8).
 
-        The force is held by the disc's uniform acceleration. The stress is that of a point force on a half-plane (Flamant), plus
-        p/2 in all directions and (p/2R) (-y, x; x, y) with p = F/(πR), which free the circle of tractions and balance
-        the inertia; the point force is then spread as Hertz says. With a second force across the disc in place of inertia the same
-        steps give ln(4R/b) - 1/2 for the disc's centre, which is Johnson's in section 5.6.
+        The uniform acceleration of the disc balances the force. The stress is that of a point force on a half-plane (Flamant), plus
+        p/2 in all directions and (p/2R) (-y, x; x, y) with p = F/(πR). These terms free the circle of tractions and balance the
+        inertia. The point force is then distributed as in Hertz's theory. With a second force across the disc in place of inertia the
+        same steps give ln(4R/b) - 1/2 for the centre of the disc, as in Johnson's section 5.6.
         """
         return float(2.0 / np.pi * (np.log(2.0 * self.radius / width) - (1.0 + self.lateral) / 8.0))
 
@@ -81,11 +81,11 @@ class Cylinder:
         return frequencies, trace[0] @ modes
 
     def impact(self, speed: float, cut: float = 0.0, step: float = 2e-3) -> Impact:
-        """Strike the plane at a speed (m/s), with vibrations up to about the frequency `cut` (c/R); none if zero.
+        """Compute an impact at a speed (m/s), with vibrations up to about the frequency `cut` (c/R); none if zero.
 
-        The point of contact moves with the centre of mass and the modes; the rest of the approach follows the force at once, as
-        Hertz's. A mode of frequency ω moves with the part exp(-ω²/cut²) of its flexibility: cut off at one frequency, the fastest
-        modes and the spring of the rest would ring against each other.
+        The point of contact moves with the centre of mass and the modes. The rest of the approach follows the force at once, as in
+        Hertz's theory. A mode of frequency ω has the part exp(-ω²/cut²) of its flexibility. A sharp cut-off would excite oscillations
+        between the fastest modes and the spring of the rest.
         """
         frequencies, shapes = self.modes
         part = np.exp(-((frequencies / cut) ** 2)) if cut else (np.arange(len(shapes)) == 0).astype(float)
@@ -105,7 +105,7 @@ class Cylinder:
         return Impact(time, np.array(forces, dtype=np.float64) * self.modulus * self.radius, -float(velocity[0] / start))
 
     def _force(self, approach: float, force: float, moved: float) -> float:
-        """F (E* R) whose Hertz approach, less the flexibility of what moves by itself, is the given one (R), by Newton's method."""
+        """F (E* R) for a Hertz approach (R), without the flexibility of the moving modes, by Newton's method."""
         if approach <= 0.0:
             return 0.0
         force = max(force, approach / 10.0)
@@ -123,7 +123,7 @@ class Cylinder:
 def ritz_modes(degree: int, lateral: float, x: Floats) -> tuple[Floats, Floats, Floats]:
     """Modes of the free unit disc with E* = ρ = 1 that are symmetric in x, by the method of Ritz with polynomials of a degree.
 
-    Returns frequencies, modes (functions, modes), and the vertical displacement (places, functions) on the lower edge at the given x.
+    Returns frequencies, modes (functions, modes), and the vertical displacement (positions, functions) on the lower edge at the given x.
     """
     radii, radial = np.polynomial.legendre.leggauss(degree + 8)
     angles = 2.0 * np.pi * np.arange(2 * degree + 17) / (2 * degree + 17)
@@ -136,7 +136,7 @@ def ritz_modes(degree: int, lateral: float, x: Floats) -> tuple[Floats, Floats, 
         columns, rows = ([chebyshev.chebval(c, row) for row in rows] for c, rows in zip(at, one, strict=True))
         return np.array([columns[i] * rows[j] for i in range(odd, degree + 1, 2) for j in range(degree + 1 - i)]).T
 
-    # Of mass 1 and orthogonal, so that the mass matrix is the identity at any degree.
+    # The functions are orthogonal with mass 1: the mass matrix is the identity at any degree.
     u, v = (np.linalg.inv(np.linalg.qr(np.sqrt(weights)[:, None] * functions(odd, places))[1]) for odd in (1, 0))
     none = np.zeros((len(weights), u.shape[1])), np.zeros((len(weights), v.shape[1]))
     xx = np.hstack([functions(1, places, along=1) @ u, none[1]])
