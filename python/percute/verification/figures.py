@@ -170,11 +170,15 @@ def lines(
                 axes.axhspan(*band, color=PALETTE[2], alpha=0.14, linewidth=0)
             axes.set_title(title)
             axes.set(xlabel=x, ylabel=y)
-            axes.tick_params(labelbottom=True, labelleft=True)
             if "x" in log:
                 axes.set_xscale("log")
             if "y" in log:
                 axes.set_yscale("log")
+            for axis in (axes.xaxis, axes.yaxis):
+                if axis.get_scale() == "log":
+                    axis.set_major_formatter("{x:g}")
+                    axis.set_minor_formatter("{x:g}")
+            axes.tick_params(which="both", labelbottom=True, labelleft=True)
         if xticks is not None:
             _ticks(all_axes[0].xaxis, xticks)
         if yticks is not None:

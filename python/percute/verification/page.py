@@ -203,26 +203,26 @@ class _Markdown:
         return text
 
     def figure(self, figure: Figure, number: int, svg: str) -> str:
-        return f"![Figure {number}](figures/{figure.key}.png)\n\n**Figure {number}.** {figure.caption}"
+        return f"![Figure {number}](figures/{figure.key}.png)\n**Figure {number}.** {figure.caption}"
 
     def table(self, table: Table, number: int) -> str:
         if not table.on_page:
-            return f"**Table {number}.** {table.caption} ({len(table.rows)} rows in `tables/{table.key}.csv`)"
+            return f"**Table {number}.** {table.caption} (`tables/{table.key}.csv`, {len(table.rows)} rows)"
         head = [" ".join(filter(None, (column.heading, column.equation))) for column in table.columns]
         rows = [head, ["---"] * len(head), *([text.replace("|", "\\|") for text in row] for row in table.shown())]
         lines = (f"| {' | '.join(row)} |" for row in rows)
         return f"**Table {number}.** {table.caption}\n\n" + "\n".join(lines)
 
 
-def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, str]) -> Iterator[tuple[Section, list[str]]]:
-    """Give each section with its items as text, figures and tables numbered over all sections."""
+def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, str]) -> Iterator[tuple[Section, list[str], list[str]]]:
+    """Give each section with its items as text, and its tables that are left to files; figures and tables are numbered."""
     tables = drawings = 0
     for section in sections:
-        pieces = []
+        pieces, left = [], []
         for item in section.items:
             if isinstance(item, Table):
                 tables += 1
-                pieces.append(form.table(item, tables))
+                (pieces if item.on_page else left).append(form.table(item, tables))
             elif isinstance(item, Figure):
                 drawings += 1
                 pieces.append(form.figure(item, drawings, svg.get(item.key, "")))
@@ -230,15 +230,15 @@ def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, 
                 pieces.append(form.heading(item[4:]))
             else:
                 pieces.append(form.text(item))
-        yield section, pieces
+        yield section, pieces, left
 
 
 def _html(sections: Sequence[Section], origin: str, svg: dict[str, str]) -> str:
     style = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
     contents = "\n".join(f'<li><a href="#{section.key}">{html.escape(section.title)}</a></li>' for section in sections)
     body = "\n".join(
-        f'<section id="{section.key}">\n<h2>{html.escape(section.title)}</h2>\n' + "\n".join(pieces) + "\n</section>"
-        for section, pieces in _items(sections, _Html(), svg)
+        f'<section id="{section.key}">\n<h2>{html.escape(section.title)}</h2>\n' + "\n".join(pieces + left) + "\n</section>"
+        for section, pieces, left in _items(sections, _Html(), svg)
     )
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width, '
@@ -250,8 +250,8 @@ def _html(sections: Sequence[Section], origin: str, svg: dict[str, str]) -> str:
 
 def _markdown(sections: Sequence[Section], origin: str) -> str:
     pieces = [f"# {TITLE}", INTRODUCTION, origin]
-    for section, own in _items(sections, _Markdown(), {}):
-        pieces += [f"## {section.title}", *own]
+    for section, own, left in _items(sections, _Markdown(), {}):
+        pieces += [f"## {section.title}", *own, *([" ".join(left)] if left else [])]
     return "\n\n".join(pieces) + "\n"
 
 
