@@ -123,9 +123,9 @@ def refined(mesh: pc.Mesh, radius: float) -> pc.Mesh:
     (a, b, c), (ab, bc, ca) = cells.T, (len(mesh.points) + which.reshape(-1, 3)).T
     parts = np.hstack([(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]).T
     number = {tuple(edge): len(mesh.points) + i for i, edge in enumerate(edges.tolist())}
-    lower = [(*edge, number[min(edge), max(edge)]) for edge in np.asarray(mesh.groups["lower"]).tolist()]
+    lower = [(*edge, number[min(edge), max(edge)]) for edge in np.asarray(mesh.edge_groups["lower"]).tolist()]
     halves = np.array([half for i, j, middle in lower for half in ((i, middle), (middle, j))])
-    return pc.Mesh(np.vstack([mesh.points, middles]), parts, groups={"lower": halves})
+    return pc.Mesh(np.vstack([mesh.points, middles]), parts, edge_groups={"lower": halves})
 
 
 @dataclass(frozen=True)

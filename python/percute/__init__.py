@@ -1,6 +1,6 @@
-"""Elastic impacts, simulated and certified.
+"""Simulation of elastic impacts with an estimate of its error.
 
-State a `Problem` on a `Mesh`, `simulate` it, `estimate` how wrong the simulation is::
+State a `Problem` on a `Mesh`, `simulate` it, and `estimate` the error of the simulation::
 
     import percute as pc
 

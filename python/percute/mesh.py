@@ -33,9 +33,9 @@ class Mesh:
         Coordinates of the nodes (m). One coordinate makes a mesh of bars, two make one of triangles.
     cells : (elements, 2) or (elements, 3) ints
         Nodes of each element, counted from 0. Elements that are given clockwise (a bar: backwards) are turned round.
-    groups : dict of str to (edges, 2) ints, optional
+    edge_groups : dict of str to (edges, 2) ints, optional
         Named groups of boundary edges, each by its two nodes; of a bar: (ends,) or (ends, 1).
-    elements : dict of str to (n,) ints, optional
+    element_groups : dict of str to (n,) ints, optional
         Named groups of elements.
 
     Raises
@@ -51,21 +51,21 @@ class Mesh:
         self,
         points: ArrayLike,
         cells: ArrayLike,
-        groups: Mapping[str, ArrayLike] | None = None,
-        elements: Mapping[str, ArrayLike] | None = None,
+        edge_groups: Mapping[str, ArrayLike] | None = None,
+        element_groups: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         places = numbers("points", points, most=2)
         places = places[:, None] if places.ndim == 1 else places
         if places.ndim != 2 or places.shape[1] not in (1, 2):
             raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2); leave out z")
         dimension = places.shape[1]
-        facets = {} if groups is None else table("groups", groups, "edges")
-        parts = {} if elements is None else table("elements", elements, "elements")
+        edges = {} if edge_groups is None else table("edge_groups", edge_groups, "edges")
+        elements = {} if element_groups is None else table("element_groups", element_groups, "elements")
         self._data = _percute.MeshData.from_arrays(
             places,
             integers("cells", cells, dimension + 1),
-            {name: integers(f"groups[{name!r}]", edges, dimension) for name, edges in facets.items()},
-            {name: integers(f"elements[{name!r}]", each, None) for name, each in parts.items()},
+            {name: integers(f"edge_groups[{name!r}]", each, dimension) for name, each in edges.items()},
+            {name: integers(f"element_groups[{name!r}]", each, None) for name, each in elements.items()},
         )
 
     @classmethod
@@ -139,7 +139,7 @@ class Mesh:
         -------
         Mesh
             Of the triangles in the file, if there are any, else of its lines along x. Physical groups, or sets, of surfaces are its
-            ``elements``, those of curves its ``groups``; see ``docs/mesh.md``.
+            ``element_groups``, those of curves its ``edge_groups``; see ``docs/mesh.md``.
 
         Warns
         -----
@@ -219,14 +219,14 @@ class Mesh:
         return self._data.cells
 
     @cached_property
-    def groups(self) -> Mapping[str, NDArray[np.int64]]:
+    def edge_groups(self) -> Mapping[str, NDArray[np.int64]]:
         """Named groups of boundary edges, each by its nodes: arrays (edges, dimension)."""
-        return MappingProxyType(self._data.groups)
+        return MappingProxyType(self._data.edge_groups)
 
     @cached_property
-    def elements(self) -> Mapping[str, NDArray[np.int64]]:
+    def element_groups(self) -> Mapping[str, NDArray[np.int64]]:
         """Named groups of elements, by number: arrays (n,)."""
-        return MappingProxyType(self._data.elements)
+        return MappingProxyType(self._data.element_groups)
 
     @property
     def size(self) -> float:
@@ -243,7 +243,7 @@ class Mesh:
         return f"<percute.Mesh: {len(self.cells)} {kind}, {len(self.points)} nodes>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Mesh, (self.points.copy(), self.cells.copy(), dict(self.groups), dict(self.elements))
+        return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
 
     def __copy__(self) -> Mesh:
         return self

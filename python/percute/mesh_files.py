@@ -221,10 +221,10 @@ def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
     space = np.zeros((len(mesh.points), 3))
     space[:, :dimension] = mesh.points
     cells: list[tuple[str, NDArray[Any]]] = [(kinds[dimension], np.asarray(mesh.cells, np.int64))]
-    cells += [(kinds[dimension - 1], edges) for edges in mesh.groups.values() if len(edges)]
+    cells += [(kinds[dimension - 1], edges) for edges in mesh.edge_groups.values() if len(edges)]
     empty = np.empty(0, np.int64)
-    sets = {group: [members] + [empty] * (len(cells) - 1) for group, members in mesh.elements.items()}
-    for at, (group, edges) in enumerate(((g, e) for g, e in mesh.groups.items() if len(e)), start=1):
+    sets = {group: [members] + [empty] * (len(cells) - 1) for group, members in mesh.element_groups.items()}
+    for at, (group, edges) in enumerate(((g, e) for g, e in mesh.edge_groups.items() if len(e)), start=1):
         parts = sets.setdefault(group, [empty] * len(cells))
         parts[at] = np.arange(len(edges))
     with tempfile.TemporaryDirectory(prefix=".percute-", dir=_folder(target, name)) as folder:

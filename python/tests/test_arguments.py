@@ -120,8 +120,8 @@ NAN = float("nan")
 TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.mesh, "points", (None, *NO_ARRAYS, [[[0.0]]])),
     (Calls.mesh, "cells", (None, *NO_ARRAYS, [[0.0, 1.0, 2.0]], [[0, 1, HUGE]], np.array([[0, 1, 2**63]], np.uint64))),
-    (Calls.mesh, "groups", (3, [], "x", {3: [[0, 1]]}, {"a": None}, {"a": [[0.5, 1.0]]}, {"\ud800": [[0, 1]]})),
-    (Calls.mesh, "elements", (3, [], "x", {3: [0]}, {"a": None}, {"a": [0.5]}, {"a": 0}, {None: [0]})),
+    (Calls.mesh, "edge_groups", (3, [], "x", {3: [[0, 1]]}, {"a": None}, {"a": [[0.5, 1.0]]}, {"\ud800": [[0, 1]]})),
+    (Calls.mesh, "element_groups", (3, [], "x", {3: [0]}, {"a": None}, {"a": [0.5]}, {"a": 0}, {None: [0]})),
     (Calls.rectangle, "width", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "height", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "nx", (None, *NO_WHOLES, 0, 10**9)),
@@ -244,7 +244,7 @@ def test_a_message_tells_value_and_way_out(calls: Calls) -> None:
         (calls.simulate, {"progress": 3}, "`progress` is 3; it must be True, False or a function"),
         (calls.simulate, {"store": b"x"}, "`store` is b'x'; it must be the name of a file"),
         (calls.rectangle, {"nx": LONG}, "`nx` is of the type int; it must be a whole number from 1 to"),
-        (calls.mesh, {"groups": {3: []}}, "`groups` has the key 3; it must be the name of a group"),
+        (calls.mesh, {"edge_groups": {3: []}}, "`edge_groups` has the key 3; it must be the name of a group"),
         (calls.plot_map, {"axes": 3}, "`axes` is 3; it must be axes of matplotlib"),
     ]
     for call, arguments, message in table:

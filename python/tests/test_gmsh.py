@@ -98,7 +98,7 @@ def test_a_mesh_of_gmsh_gives_what_its_arrays_give(model: None, tmp_path: Path, 
     mesh = pc.Mesh.read(save(tmp_path / "plate.msh", version, binary), scale=1e-3)
     same = from_arrays(mesh, text=not binary)
     assert mesh.points.tobytes() == same.points.tobytes()
-    for groups, others in [(mesh.groups, same.groups), (mesh.elements, same.elements)]:
+    for groups, others in [(mesh.edge_groups, same.edge_groups), (mesh.element_groups, same.element_groups)]:
         assert list(groups) == list(others)
         assert all(np.array_equal(groups[name], others[name]) for name in groups)
     ours, theirs = results(mesh), results(same)
@@ -113,7 +113,7 @@ def test_a_mesh_of_gmsh_gives_what_its_arrays_give(model: None, tmp_path: Path, 
 @pytest.mark.parametrize("binary", [False, True])
 def test_gmsh_reads_what_is_written(model: None, tmp_path: Path, version: str, binary: bool) -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=3, ny=2)
-    mesh = pc.Mesh(mesh.points, mesh.cells, dict(mesh.groups), {"odd": np.arange(1, 12, 2), "first": [0, 1]})
+    mesh = pc.Mesh(mesh.points, mesh.cells, dict(mesh.edge_groups), {"odd": np.arange(1, 12, 2), "first": [0, 1]})
     mesh.write(tmp_path / "a.msh", version=version, binary=binary)
     gmsh.open(str(tmp_path / "a.msh"))
     tags, places, _ = gmsh.model.mesh.getNodes()
@@ -215,7 +215,7 @@ def test_saving_all_leaves_out_what_does_not_belong(model: None, tmp_path: Path,
     assert all(each.filename == __file__ for each in caught)
     # In version 2.2 this setting loses the groups.
     assert ("Mesh.SaveAll = 1" in told) == (version == "2.2")
-    assert (len(mesh.elements["left"]) == 0) == (version == "2.2")
+    assert (len(mesh.element_groups["left"]) == 0) == (version == "2.2")
 
 
 def test_a_curve_inside_the_body_is_left_out(model: None, tmp_path: Path) -> None:
@@ -224,7 +224,7 @@ def test_a_curve_inside_the_body_is_left_out(model: None, tmp_path: Path) -> Non
     gmsh.model.addPhysicalGroup(1, inside, name="joint")
     with pytest.warns(pc.MeshWarning, match='"joint" lie inside the body'):
         mesh = pc.Mesh.read(save(tmp_path / "a.msh", "4.1", 0), scale=1e-3)
-    assert len(mesh.groups["joint"]) == 0
+    assert len(mesh.edge_groups["joint"]) == 0
 
 
 @pytest.mark.parametrize(("version", "binary"), FORMATS)

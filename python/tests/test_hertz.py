@@ -35,7 +35,7 @@ def study(hertz: Any) -> Any:
 def test_the_mesh_is_what_the_study_needs(study: Any, hertz: Any) -> None:
     mesh, radius = study.history.problem.mesh, hertz.DISC.radius
     assert 4500 < len(mesh.cells) < 5500
-    edges = mesh.groups["lower"]
+    edges = mesh.edge_groups["lower"]
     # Gmsh computes the places on an arc to a few roundings.
     assert np.allclose(np.linalg.norm(mesh.points[np.unique(edges)], axis=1), radius, rtol=1e-12, atol=0)
     assert np.min(np.linalg.norm(mesh.points - (0.0, -radius), axis=1)) < 1e-12 * radius

@@ -17,8 +17,8 @@ def test_a_file_of_gmsh_is_read(name: str) -> None:
         mesh = pc.Mesh.read(FILES / f"{name}.msh", scale=1e-3)
     assert [each.filename for each in caught] == [__file__] * 3
     assert mesh.points.max(axis=0).tolist() == [0.05, 0.04]
-    assert list(mesh.groups) == ["Dach, außen", "bottom", "interface", "right side"]
-    assert list(mesh.elements) == ["30", "aluminium", "steel"]
+    assert list(mesh.edge_groups) == ["Dach, außen", "bottom", "interface", "right side"]
+    assert list(mesh.element_groups) == ["30", "aluminium", "steel"]
 
 
 def block(folder: Path, mesh: str) -> str:
@@ -70,7 +70,7 @@ def meshes() -> list[pc.Mesh]:
     plate = pc.Mesh.rectangle(0.05, 0.04, nx=4, ny=3)
     parts = {"odd": np.arange(1, 24, 2), "few": [0, 1, 5]}
     return [
-        pc.Mesh(plate.points / 3, plate.cells, {**plate.groups, "ends": plate.groups["left"]}, parts),
+        pc.Mesh(plate.points / 3, plate.cells, {**plate.edge_groups, "ends": plate.edge_groups["left"]}, parts),
         pc.Mesh(pc.Mesh.bar(0.1, elements=9).points + 0.3, pc.Mesh.bar(0.1, elements=9).cells, {"end": [9]}, {"b": [0, 1]}),
     ]
 
@@ -78,7 +78,7 @@ def meshes() -> list[pc.Mesh]:
 def assert_same(a: pc.Mesh, b: pc.Mesh) -> None:
     assert a.points.tobytes() == b.points.tobytes()
     assert np.array_equal(a.cells, b.cells)
-    for groups, others in [(a.groups, b.groups), (a.elements, b.elements)]:
+    for groups, others in [(a.edge_groups, b.edge_groups), (a.element_groups, b.element_groups)]:
         assert list(groups) == list(others)
         assert all(np.array_equal(groups[name], others[name]) for name in groups)
 
@@ -133,11 +133,11 @@ def test_abaqus_and_med_keep_the_groups(tmp_path: Path) -> None:
         # Abaqus's is a text.
         np.testing.assert_allclose(read.points, 2 * mesh.points, rtol=1e-14)
         assert np.array_equal(read.cells, mesh.cells)
-        assert set(read.groups) == set(mesh.groups)
-        for name, edges in mesh.groups.items():
-            assert sorted(map(sorted, read.groups[name].tolist())) == sorted(map(sorted, edges.tolist()))
-        assert {name: sorted(all_) for name, all_ in read.elements.items()} == {
-            name: sorted(all_) for name, all_ in mesh.elements.items()
+        assert set(read.edge_groups) == set(mesh.edge_groups)
+        for name, edges in mesh.edge_groups.items():
+            assert sorted(map(sorted, read.edge_groups[name].tolist())) == sorted(map(sorted, edges.tolist()))
+        assert {name: sorted(all_) for name, all_ in read.element_groups.items()} == {
+            name: sorted(all_) for name, all_ in mesh.element_groups.items()
         }
         with pytest.raises(pc.ExistingFileError):
             mesh.write(tmp_path / f"a.{ending}")
@@ -152,7 +152,7 @@ def test_a_format_without_groups_says_so(tmp_path: Path) -> None:
     assert caught[0].filename == __file__
     read = pc.Mesh.read(tmp_path / "a.vtu")
     assert read.points.tobytes() == mesh.points.tobytes()
-    assert not read.groups and not read.elements
+    assert not read.edge_groups and not read.element_groups
 
 
 def test_a_format_of_two_files_is_whole(tmp_path: Path) -> None:
@@ -177,8 +177,8 @@ def test_what_meshlane_finds_is_checked(tmp_path: Path) -> None:
     assert [each.filename for each in caught] == [__file__] * 2
     told = [str(each.message) for each in caught]
     assert "1 node of the mesh file left out" in told[0] and "group '3': 1 edge lies inside" in told[1]
-    assert {name: all_.tolist() for name, all_ in mesh.elements.items()} == {"5": [0], "6": [1]}
-    assert {name: all_.tolist() for name, all_ in mesh.groups.items()} == {"2": [[0, 1]], "3": []}
+    assert {name: all_.tolist() for name, all_ in mesh.element_groups.items()} == {"5": [0], "6": [1]}
+    assert {name: all_.tolist() for name, all_ in mesh.edge_groups.items()} == {"2": [[0, 1]], "3": []}
     assert mesh.reoriented_elements == 1
     for points, cells, phrase in [
         (places[:4], [("quad", np.array([[0, 1, 2, 3]]))], "'quad'; percute takes 3-node triangles"),

@@ -23,8 +23,8 @@ def test_a_pickled_problem_is_the_same(make: object) -> None:
         assert getattr(again, name) == getattr(problem, name), name
     for name in ("points", "cells"):
         assert np.array_equal(getattr(again.mesh, name), getattr(problem.mesh, name)), name
-    assert {name: edges.tolist() for name, edges in again.mesh.groups.items()} == {
-        name: edges.tolist() for name, edges in problem.mesh.groups.items()
+    assert {name: edges.tolist() for name, edges in again.mesh.edge_groups.items()} == {
+        name: edges.tolist() for name, edges in problem.mesh.edge_groups.items()
     }
     first, second = (pc.simulate(p, end=4e-6, courant=0.9) for p in (problem, again))
     assert first.displacement.tobytes() == second.displacement.tobytes()

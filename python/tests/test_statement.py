@@ -57,7 +57,7 @@ def test_a_problem_tells_what_was_stated() -> None:
 def test_a_mesh_tells_what_it_is() -> None:
     mesh = stack().mesh
     assert mesh.dimension == 2 and mesh.size == pytest.approx(0.02 * 2**0.5)
-    assert mesh.groups["top"].tolist() == [[6, 7], [7, 8]] and mesh.elements["low"].tolist() == [0, 1, 2, 3]
+    assert mesh.edge_groups["top"].tolist() == [[6, 7], [7, 8]] and mesh.element_groups["low"].tolist() == [0, 1, 2, 3]
     turned = pc.Mesh([0.0, 0.5, 1.0], [[1, 0], [1, 2]], {"end": [2]})
     assert (turned.dimension, turned.reoriented_elements, turned.cells.tolist()) == (1, 1, [[0, 1], [1, 2]])
     assert repr(turned) == "<percute.Mesh: 2 bars, 3 nodes>"
@@ -86,10 +86,10 @@ def test_masses_are_those_of_the_material(lengths: list[float]) -> None:
         ({"cells": [[0.0, 1.0, 2.0]]}, "`cells` is an array of float64"),
         ({"cells": [[0, 1]]}, "`cells` has the shape (1, 2); it must have (n, 3)"),
         ({"cells": [[0, 1, 7], [0, 2, 3]]}, "names node 7"),
-        ({"groups": {"a": [[0, 2]]}}, 'group "a" names the edge of nodes 0 and 2'),
-        ({"groups": {"a": [0, 1]}}, "`groups['a']` has the shape (2,)"),
-        ({"elements": {"a": [2]}}, 'group "a" names element 2'),
-        ({"elements": {"a": [-2]}}, '`elements["a"]`: entry 0 is -2'),
+        ({"edge_groups": {"a": [[0, 2]]}}, 'group "a" names the edge of nodes 0 and 2'),
+        ({"edge_groups": {"a": [0, 1]}}, "`edge_groups['a']` has the shape (2,)"),
+        ({"element_groups": {"a": [2]}}, 'group "a" names element 2'),
+        ({"element_groups": {"a": [-2]}}, '`element_groups["a"]`: entry 0 is -2'),
     ],
 )
 def test_mistakes_in_a_mesh(changes: dict[str, Any], message: str) -> None:

@@ -195,5 +195,5 @@ def test_groups_have_their_names(tmp_path: Path) -> None:
     problem = pc.Problem(mesh, material=material, initial_velocity=(1.0, 0.0))
     pc.estimate(pc.simulate(problem, end=5e-4, courant=0.9)).save(tmp_path / "error.vtkhdf")
     again = pc.open(tmp_path / "error.vtkhdf").mesh  # type: ignore[union-attr]
-    assert set(again.groups) == set(again.elements) == set(names)
-    assert all(again.groups[name].tolist() == [[0, 1]] for name in names)
+    assert set(again.edge_groups) == set(again.element_groups) == set(names)
+    assert all(again.edge_groups[name].tolist() == [[0, 1]] for name in names)

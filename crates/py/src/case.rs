@@ -1,7 +1,7 @@
 //! Case files.
 
 use crate::any::{Any, each};
-use crate::{door, errors};
+use crate::{bridge, errors};
 use percute_workflow::case::{Case, CaseOf, Instants, Source};
 use percute_workflow::outputs;
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ impl CaseData {
     /// Reads the text of a case of this name; the files that it reads are relative to `folder`.
     #[new]
     fn parse(py: Python<'_>, name: String, text: String, folder: PathBuf) -> PyResult<Self> {
-        let case = door::through(py, None, move |_| Case::parse(Source::new(name, text).in_folder(folder)))?;
+        let case = bridge::blocking(py, None, move |_| Case::parse(Source::new(name, text).in_folder(folder)))?;
         Ok(Self {
             case: match case.map_err(|error| errors::case(py, &error))? {
                 Case::Bar(case) => Any::Bar(case),
@@ -28,7 +28,7 @@ impl CaseData {
         })
     }
 
-    /// What is doubtful about it; with `in_memory`, its history is kept in memory.
+    /// Its plausibility warnings; with `in_memory`, its history is kept in memory.
     fn plausibility_warnings(&self, in_memory: bool) -> Vec<String> {
         each!(&self.case, case => case.plausibility_warnings(in_memory))
             .into_iter()
@@ -36,7 +36,7 @@ impl CaseData {
             .collect()
     }
 
-    /// What was reported when its mesh was read.
+    /// The import warnings of its mesh.
     fn import_warnings(&self) -> Vec<String> {
         each!(&self.case, case => case.problem.mesh().import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
     }

@@ -1,6 +1,6 @@
 //! Contact results as arrays.
 
-use crate::door;
+use crate::bridge;
 use crate::errors;
 use crate::run::Run;
 use crate::view;
@@ -16,7 +16,7 @@ pub(crate) fn of_run<const D: usize, const N: usize>(
     run: &Arc<Run<D, N>>,
 ) -> PyResult<Arc<ContactResults<D>>> {
     let worker = run.clone();
-    door::through(py, None, move |watch| worker.contact(watch))?.map_err(|error| errors::steps(py, &error))
+    bridge::blocking(py, None, move |watch| worker.contact(watch))?.map_err(|error| errors::steps(py, &error))
 }
 
 /// Arrays by the names of `percute.Contact`; what is large is shown without a copy.

@@ -5,7 +5,7 @@ use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::restore::restore;
 use crate::run::{Run, Stoppable};
-use crate::{contact, door, errors, view};
+use crate::{bridge, contact, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
@@ -140,14 +140,14 @@ fn estimate_one<const D: usize, const N: usize>(
     let start = Instant::now();
     let work = {
         let run = run.clone();
-        move |mut watch: door::Watch| {
+        move |mut watch: bridge::Watch| {
             let source = Stoppable { source: run.source(), watch: watch.clone() };
             let mut contact = ContactRecorder::new(&run.problem, run.times());
             let done = percute_estimator::estimate(&run.problem, &source, options, &request, &mut contact, &mut watch)?;
             Ok((done, contact.finish()))
         }
     };
-    let outcome = door::through(py, progress, work)?;
+    let outcome = bridge::blocking(py, progress, work)?;
     let ((simulation, estimate), contact) = outcome.map_err(|error| errors::estimate(py, &error))?;
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
     Ok(Arc::new(Made {
@@ -202,7 +202,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let contact = history.map(|run| contact::of_run(py, run)).transpose()?;
         let made = self.clone();
         let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
-        door::through(py, None, work)?.map_err(|error| errors::failure(py, &error))
+        bridge::blocking(py, None, work)?.map_err(|error| errors::failure(py, &error))
     }
 }
 
@@ -315,7 +315,7 @@ impl EstimateData {
     fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
         let text = each!(&self.made, made => {
             let made = made.clone();
-            door::through(py, None, move |_| made.report(&name))?
+            bridge::blocking(py, None, move |_| made.report(&name))?
         });
         text.map_err(|message| errors::percute_error(py, &message))
     }

@@ -4,7 +4,7 @@ use crate::any::Any;
 use crate::history::HistoryData;
 use crate::reference::{Told, told};
 use crate::run::{Run, Stoppable};
-use crate::{door, errors};
+use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
 use percute_core::history::StepSource;
 use percute_estimator::reference::{Recorder, ReferenceError, TrueError, bar_impact_error};
@@ -158,12 +158,12 @@ pub(crate) fn true_error_of_bar_impact<'py>(
         return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
     };
     let run = run.clone();
-    let outcome = door::through(py, None, move |watch| true_error(&run, &impact(values), watch))?;
+    let outcome = bridge::blocking(py, None, move |watch| true_error(&run, &impact(values), watch))?;
     let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
     told(py, &error)
 }
 
-fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: door::Watch) -> Result<TrueError, String> {
+fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: bridge::Watch) -> Result<TrueError, String> {
     let mut recorder = Recorder::new(&run.problem, run.times());
     let source = Stoppable { source: run.source(), watch };
     source.replay(&mut recorder).map_err(|error| error.to_string())?;

@@ -1,10 +1,10 @@
 //! Histories: simulated, shown as arrays, put together again.
 
 use crate::any::{AnyProblem, each, map};
-use crate::door::Watch;
+use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
-use crate::{contact, door, errors, estimate, view};
+use crate::{bridge, contact, errors, estimate, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, Step, StepSink};
@@ -97,7 +97,7 @@ impl HistoryData {
     fn arrays(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Vec<usize>, u64)>> {
         each!(&self.run, run => {
             let Some(file) = run.file().cloned() else { return Ok(Vec::new()) };
-            let arrays = door::through(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
+            let arrays = bridge::blocking(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
             Ok(arrays.into_iter().filter_map(|a| Some((a.name, a.shape, a.offset?))).collect())
         })
     }
@@ -130,7 +130,7 @@ impl HistoryData {
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 2]> {
         each!(&self.run, run => {
             let worker = run.clone();
-            let derived = door::through(py, None, move |watch| worker.motion(watch))?;
+            let derived = bridge::blocking(py, None, move |watch| worker.motion(watch))?;
             let motion = Arc::new(derived.map_err(|error| errors::steps(py, &error))?);
             Ok([
                 view::field(py, &motion, |m| &m.velocity, &run.shape())?,
@@ -148,7 +148,7 @@ impl HistoryData {
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         each!(&self.run, run => {
             let worker = run.clone();
-            let kept = door::through(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
+            let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
             columns(py, &kept.map_err(|error| errors::steps(py, &error))?)
         })
     }
@@ -182,7 +182,7 @@ fn read<const D: usize, const N: usize, T: Send + 'static>(
         }
         Ok(rows)
     };
-    door::through(py, None, work)?.map(Arc::new).map_err(|error| errors::file(py, &error))
+    bridge::blocking(py, None, work)?.map(Arc::new).map_err(|error| errors::file(py, &error))
 }
 
 /// An array for each quantity of the balance.

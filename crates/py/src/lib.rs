@@ -2,9 +2,9 @@
 //! `python/percute`.
 
 mod any;
+mod bridge;
 mod case;
 mod contact;
-mod door;
 mod errors;
 mod estimate;
 mod exact;
@@ -28,9 +28,9 @@ mod _percute {
     use std::ffi::OsString;
 
     #[pymodule_export]
-    use super::case::CaseData;
+    use super::bridge::ProgressNow;
     #[pymodule_export]
-    use super::door::ProgressNow;
+    use super::case::CaseData;
     #[pymodule_export]
     use super::estimate::{EstimateData, estimate, meaning};
     #[pymodule_export]

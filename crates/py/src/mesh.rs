@@ -1,7 +1,7 @@
 //! Meshes.
 
 use crate::any::{Any, AnyMesh, each, map};
-use crate::{door, errors, view};
+use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_io::Overwrite;
@@ -18,26 +18,26 @@ pub(crate) struct MeshData {
     pub(crate) mesh: AnyMesh,
 }
 
-type Groups<'py> = BTreeMap<String, PyReadonlyArray2<'py, i64>>;
-type Elements<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
+type EdgeGroups<'py> = BTreeMap<String, PyReadonlyArray2<'py, i64>>;
+type NumberGroups<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
 
 #[pymethods]
 impl MeshData {
     #[staticmethod]
     fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize) -> PyResult<Self> {
-        let mesh = door::through(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
+        let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
         Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     #[staticmethod]
     fn disc(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
-        let mesh = door::through(py, None, move |_| TriangleMesh::disc(radius, rings))?;
+        let mesh = bridge::blocking(py, None, move |_| TriangleMesh::disc(radius, rings))?;
         Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     #[staticmethod]
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
-        let mesh = door::through(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
+        let mesh = bridge::blocking(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
         Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
@@ -46,7 +46,7 @@ impl MeshData {
         let mut mesh = self.mesh.clone();
         for _ in 0..times {
             mesh = map!(mesh, mesh => {
-                let finer = door::through(py, None, move |_| mesh.refined())?;
+                let finer = bridge::blocking(py, None, move |_| mesh.refined())?;
                 Arc::new(finer.map_err(|e| errors::mesh(py, &e))?)
             });
         }
@@ -59,13 +59,13 @@ impl MeshData {
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
         cells: PyReadonlyArray2<'_, i64>,
-        groups: Groups<'_>,
-        elements: Elements<'_>,
+        edge_groups: EdgeGroups<'_>,
+        element_groups: NumberGroups<'_>,
     ) -> PyResult<Self> {
         let mesh = if points.as_array().ncols() == 1 {
-            Any::Bar(from_arrays(py, &points, &cells, &groups, &elements)?)
+            Any::Bar(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
         } else {
-            Any::Plane(from_arrays(py, &points, &cells, &groups, &elements)?)
+            Any::Plane(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
         };
         Ok(Self { mesh })
     }
@@ -73,7 +73,7 @@ impl MeshData {
     /// A mesh in a file of Gmsh.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
-        let read = door::through(py, None, move |_| gmsh::read(&path, scale))?;
+        let read = bridge::blocking(py, None, move |_| gmsh::read(&path, scale))?;
         let mesh = match read.map_err(|error| errors::gmsh(py, &error))? {
             MeshFile::Bar(read) => Any::Bar(Arc::new(read.mesh)),
             MeshFile::Plane(read) => Any::Plane(Arc::new(read.mesh)),
@@ -87,7 +87,7 @@ impl MeshData {
         let overwrite = Overwrite::allowed(overwrite);
         let written = each!(&self.mesh, mesh => {
             let mesh = mesh.clone();
-            door::through(py, None, move |_| gmsh::write(&path, overwrite, &mesh, format))?
+            bridge::blocking(py, None, move |_| gmsh::write(&path, overwrite, &mesh, format))?
         });
         written.map_err(|error| errors::gmsh(py, &error))
     }
@@ -118,7 +118,7 @@ impl MeshData {
 
     /// Name of each group of facets, with the nodes of each of its facets.
     #[getter]
-    fn groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn edge_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         each!(&self.mesh, mesh => {
             let groups = PyDict::new(py);
             for (name, facets) in mesh.facet_groups() {
@@ -131,7 +131,7 @@ impl MeshData {
 
     /// Name of each group of elements, with their numbers.
     #[getter]
-    fn elements<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn element_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         each!(&self.mesh, mesh => {
             let groups = PyDict::new(py);
             for (name, elements) in mesh.element_groups() {
@@ -163,21 +163,21 @@ fn from_arrays<const D: usize, const N: usize>(
     py: Python<'_>,
     points: &PyReadonlyArray2<'_, f64>,
     cells: &PyReadonlyArray2<'_, i64>,
-    groups: &Groups<'_>,
-    elements: &Elements<'_>,
+    edge_groups: &EdgeGroups<'_>,
+    element_groups: &NumberGroups<'_>,
 ) -> PyResult<Arc<Mesh<D, N>>> {
     let points = points.as_slice()?.as_chunks::<D>().0.to_vec();
     let cells = indices::<N>(py, "cells", cells.as_slice()?)?;
-    let mut facet_groups = FacetGroups::new();
-    for (name, members) in groups {
-        facet_groups.insert(name.clone(), indices(py, &format!("groups[{name:?}]"), members.as_slice()?)?);
+    let mut edges = FacetGroups::new();
+    for (name, members) in edge_groups {
+        edges.insert(name.clone(), indices(py, &format!("edge_groups[{name:?}]"), members.as_slice()?)?);
     }
-    let mut element_groups = ElementGroups::new();
-    for (name, members) in elements {
-        let members = indices::<1>(py, &format!("elements[{name:?}]"), members.as_slice()?)?;
-        element_groups.insert(name.clone(), members.into_iter().flatten().collect());
+    let mut elements = ElementGroups::new();
+    for (name, members) in element_groups {
+        let members = indices::<1>(py, &format!("element_groups[{name:?}]"), members.as_slice()?)?;
+        elements.insert(name.clone(), members.into_iter().flatten().collect());
     }
-    let mesh = door::through(py, None, move |_| Mesh::new(points, &cells, &facet_groups, &element_groups))?;
+    let mesh = bridge::blocking(py, None, move |_| Mesh::new(points, &cells, &edges, &elements))?;
     mesh.map(Arc::new).map_err(|error| errors::mesh(py, &error))
 }
 

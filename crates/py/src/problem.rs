@@ -2,7 +2,7 @@
 
 use crate::any::{Any, AnyProblem, each};
 use crate::mesh::MeshData;
-use crate::{door, errors, statement, view};
+use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Traction};
@@ -49,7 +49,7 @@ impl ProblemData {
             return Ok(step);
         }
         let problem = self.problem.clone();
-        let step = door::through(py, None, move |_| each!(&problem, p => critical_time_step(p)))?;
+        let step = bridge::blocking(py, None, move |_| each!(&problem, p => critical_time_step(p)))?;
         Ok(*self.critical_step.get_or_init(|| step))
     }
 }
@@ -190,7 +190,7 @@ fn build<const D: usize, const N: usize>(
         displacement: field(py, "initial_displacement", fields[1])?,
     };
     let (mesh, groups) = (mesh.clone(), stated.groups.clone());
-    let built = door::through(py, None, move |_| assemble(&mesh, stated))?;
+    let built = bridge::blocking(py, None, move |_| assemble(&mesh, stated))?;
     built.map(Arc::new).map_err(|error| errors::problem(py, &error, &groups))
 }
 

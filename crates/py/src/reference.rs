@@ -1,12 +1,12 @@
 //! The true error of histories, against finer simulations.
 
 use crate::any::{Any, AnyProblem};
-use crate::door::Watch;
+use crate::bridge::Watch;
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run, Stoppable};
 use crate::simulate::Times;
-use crate::{door, errors, time, view};
+use crate::{bridge, errors, time, view};
 use percute_core::dynamics::simulate;
 use percute_core::history::StepSource;
 use percute_core::problem::Problem;
@@ -78,7 +78,7 @@ fn compared<'py, const D: usize, const N: usize>(
     reference: Source<D, N>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<Told<'py>>> {
-    let found = door::through(py, progress, move |watch| match &reference {
+    let found = bridge::blocking(py, progress, move |watch| match &reference {
         Source::Kept(fine) => {
             let source = Stoppable { source: fine.source(), watch: watch.clone() };
             compare(&runs, &fine.problem, fine.times(), &watch, |sink| source.replay(sink).map_err(text))

@@ -1,6 +1,6 @@
 //! The evidence, computed again.
 
-use crate::{door, errors};
+use crate::{bridge, errors};
 use percute::reproduce::{Effort, ReproduceError, Reproduction, parts};
 use percute_core::observer::Observer;
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ pub(crate) fn reproduce(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PathBuf> {
     let effort = Effort { small, threads };
-    let made = door::through(py, progress, move |mut watch| all(&folder, &names, effort, overwrite, &mut watch))?;
+    let made = bridge::blocking(py, progress, move |mut watch| all(&folder, &names, effort, overwrite, &mut watch))?;
     made.map_err(|error| errors::reproduce(py, &error))
 }
 

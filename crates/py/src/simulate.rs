@@ -1,12 +1,12 @@
 //! Simulations, into memory or into a file.
 
 use crate::any::{Any, each};
+use crate::bridge::Watch;
 use crate::case::CaseData;
-use crate::door::Watch;
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
-use crate::{door, errors, time};
+use crate::{bridge, errors, time};
 use percute_core::dynamics::SimulationError;
 use percute_core::history::Discard;
 use percute_core::problem::Problem;
@@ -72,7 +72,7 @@ pub(crate) fn simulate_case(
     }
 }
 
-/// What is doubtful about a run; with `in_memory`, its history is kept in memory.
+/// Plausibility warnings about a run; with `in_memory`, its history is kept in memory.
 #[pyfunction]
 pub(crate) fn plausibility_warnings(
     py: Python<'_>,
@@ -97,7 +97,7 @@ pub(crate) fn plausibility_warnings(
 /// Opens the history in a file.
 #[pyfunction]
 pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryData> {
-    let opened = door::through(py, None, move |_| opened(&path))?;
+    let opened = bridge::blocking(py, None, move |_| opened(&path))?;
     Ok(HistoryData { run: opened.map_err(|error| errors::failure(py, &error))? })
 }
 
@@ -168,7 +168,7 @@ fn one<const D: usize, const N: usize>(
         let (problem, times, store) = (problem.clone(), times.clone(), store.clone());
         move |watch| into_file(&problem, &times, &store, watch)
     };
-    let outcome = door::through(py, progress, work);
+    let outcome = bridge::blocking(py, progress, work);
     match outcome.and_then(|done| done.map_err(|error| error.raised(py, kind.0))) {
         Ok(()) => open_history(py, store.path),
         // To open it takes time that whoever pressed Ctrl-C does not have.
@@ -207,7 +207,7 @@ fn into_memory<const D: usize, const N: usize>(
         let (problem, times, mut sink) = (problem.clone(), times.clone(), growing.clone());
         move |mut watch: Watch| percute_core::dynamics::simulate(&problem, &times, &mut sink, &mut watch)
     };
-    let outcome = door::through(py, progress, work);
+    let outcome = bridge::blocking(py, progress, work);
     let kept = growing.take();
     let data = |history, balance| {
         let run = Run::new(problem.clone(), history, options, balance);

@@ -2,7 +2,7 @@
 
 use crate::any::{Any, AnyMesh};
 use crate::mesh::MeshData;
-use crate::{contact, door, errors, estimate, view};
+use crate::{bridge, contact, errors, estimate, view};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use percute_estimator::Sample;
 use percute_io::estimate_file::{self, AnyContact, Field};
@@ -27,7 +27,7 @@ impl EstimateFileData {
     #[new]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let name = path.clone();
-        let file = door::through(py, None, move |_| estimate_file::open(&name))?;
+        let file = bridge::blocking(py, None, move |_| estimate_file::open(&name))?;
         let file = file.map_err(|error| errors::file(py, &error))?;
         let mesh = match file.mesh {
             estimate_file::AnyMesh::Bar(mesh) => Any::Bar(Arc::new(mesh)),
@@ -58,7 +58,7 @@ impl EstimateFileData {
     /// What contact did, read now; none if the file does not hold it.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let path = self.path.clone();
-        let found = door::through(py, None, move |_| estimate_file::contact(&path))?;
+        let found = bridge::blocking(py, None, move |_| estimate_file::contact(&path))?;
         Ok(match found.map_err(|error| errors::file(py, &error))? {
             None => None,
             Some(AnyContact::Bar(results)) => Some(contact::arrays(py, &Arc::new(results))?),
@@ -69,7 +69,7 @@ impl EstimateFileData {
     /// Instants of the maps, and the data sets of their fields with a row for each instant, read now.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<(Vec<f64>, Bound<'py, PyDict>)> {
         let path = self.path.clone();
-        let maps = door::through(py, None, move |_| estimate_file::maps(&path))?;
+        let maps = bridge::blocking(py, None, move |_| estimate_file::maps(&path))?;
         let maps = maps.map_err(|error| errors::file(py, &error))?;
         let fields = PyDict::new(py);
         for Field { name, shape, values } in maps.fields {
@@ -84,6 +84,6 @@ impl EstimateFileData {
 /// Whether a file holds an estimate; else it may hold a history.
 #[pyfunction]
 pub(crate) fn is_estimate(py: Python<'_>, path: PathBuf) -> PyResult<bool> {
-    let found = door::through(py, None, move |_| kind(&path))?;
+    let found = bridge::blocking(py, None, move |_| kind(&path))?;
     found.map(|found| found == Kind::Estimate).map_err(|error| errors::file(py, &error))
 }

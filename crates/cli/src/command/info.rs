@@ -50,14 +50,17 @@ fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         return Err(Failure::Argument(format!("{file}: this is neither a case file nor a history or estimate file")));
     }
     Ok(match case(file)? {
-        Case::Bar(case) => doubted(&case, console)?,
-        Case::Plane(case) => doubted(&case, console)?,
+        Case::Bar(case) => with_warnings(&case, console)?,
+        Case::Plane(case) => with_warnings(&case, console)?,
     })
 }
 
-/// A case, of which is told what is doubtful.
-fn doubted<const D: usize, const N: usize>(case: &CaseOf<D, N>, console: &mut Console<'_>) -> Result<Info, Failure> {
-    console.plausibility_warning(case, false);
+/// A case, with its warnings on standard error.
+fn with_warnings<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    console: &mut Console<'_>,
+) -> Result<Info, Failure> {
+    console.warn_about(case, false);
     console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     Ok(of_case(case)?)
 }

@@ -83,15 +83,11 @@ impl Console<'_> {
         let _ = writeln!(self.err, "{text}");
     }
 
-    /// Says what is doubtful about a case, and gives the names of it.
-    fn plausibility_warning<const D: usize, const N: usize>(
-        &mut self,
-        case: &CaseOf<D, N>,
-        quiet: bool,
-    ) -> Vec<&'static str> {
-        let plausibility_warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };
-        self.warn(&plausibility_warnings);
-        plausibility_warnings.iter().map(|plausibility_warning| plausibility_warning.name).collect()
+    /// Prints the plausibility warnings about a case and returns their names.
+    fn warn_about<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
+        let warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };
+        self.warn(&warnings);
+        warnings.iter().map(|warning| warning.name).collect()
     }
 
     /// Says warnings.

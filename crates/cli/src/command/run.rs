@@ -41,7 +41,7 @@ where
     within("--instants", instants, case.times.end())?;
     let wanted = || Request { steps: instants.steps(&case.times, options.every), fields };
     let request = request(stored, "--estimate", maps, wanted)?;
-    let told = console.plausibility_warning(case, work.quiet);
+    let told = console.warn_about(case, work.quiet);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();

@@ -31,7 +31,7 @@ fn simulate<const D: usize, const N: usize>(
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(Output { what: "history", file: &named });
     check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
-    console.plausibility_warning(case, quiet);
+    console.warn_about(case, quiet);
     if !quiet {
         console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     }

@@ -69,7 +69,7 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
             (None, advice, MeshError::DuplicateNodes { first: node(first), second: node(second), distance })
         }
         MeshError::Degenerate { element: e, nodes: of, volume, diameter } => {
-            let advice = "; in Gmsh, mesh again with another size there, or mend the geometry";
+            let advice = "; in Gmsh, mesh again with another size there, or correct the geometry";
             let error = MeshError::Degenerate { element: element(e), nodes: nodes(of), volume, diameter };
             (at(e), advice, error)
         }

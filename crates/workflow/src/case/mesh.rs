@@ -9,7 +9,8 @@ use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause, MeshFile};
 use std::path::PathBuf;
 
-const KEYS: [&str; 9] = ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "groups", "elements"];
+const KEYS: [&str; 9] =
+    ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "edge_groups", "element_groups"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
@@ -43,7 +44,7 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
         return Err(ways.get(1).map_or_else(|| table.error(message), surplus));
     };
     if table.get("points").is_none() {
-        for key in ["cells", "groups", "elements"] {
+        for key in ["cells", "edge_groups", "element_groups"] {
             let why = "goes with `points`; a mesh that is generated or in a file has its own elements and groups";
             table.refuse(key, why)?;
         }
@@ -135,14 +136,14 @@ fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N
         .map(Value::nodes)
         .collect::<Result<Vec<_>, _>>()?;
     let mut facets = FacetGroups::new();
-    if let Some(groups) = table.get("groups") {
+    if let Some(groups) = table.get("edge_groups") {
         for (name, members) in groups.any_table(GROUPS)?.entries() {
             let members = members.list("edges (a bar: points), each the numbers of its nodes")?;
             facets.insert(name.to_string(), members.iter().map(Value::nodes).collect::<Result<_, _>>()?);
         }
     }
     let mut elements = ElementGroups::new();
-    if let Some(groups) = table.get("elements") {
+    if let Some(groups) = table.get("element_groups") {
         for (name, members) in groups.any_table(ELEMENTS)?.entries() {
             let members = members.list("element numbers, counted from 0")?;
             elements.insert(name.to_string(), members.iter().map(|m| m.count(0)).collect::<Result<_, _>>()?);
@@ -163,8 +164,8 @@ fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
         MeshError::NonManifoldFacet { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
         MeshError::Overlap { elements } | MeshError::PartsTouch { elements } => entry("cells", elements[1]),
         MeshError::NonManifoldNode { node, .. } => entry("points", *node),
-        MeshError::NoSuchFacet { group, .. } => named("groups", group),
-        MeshError::NoSuchElement { group, .. } => named("elements", group),
+        MeshError::NoSuchFacet { group, .. } => named("edge_groups", group),
+        MeshError::NoSuchElement { group, .. } => named("element_groups", group),
         MeshError::Generator { .. } | MeshError::TooLarge { .. } => None,
     };
     value.map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))

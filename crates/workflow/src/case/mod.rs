@@ -6,8 +6,8 @@
 //!   `top`), `disc = { radius, rings }` around the origin (outline `boundary`), `bar = { length, elements }` (ends
 //!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres per
 //!   unit of length, 1 unless given); or arrays: `points` and `cells`, with
-//!   `groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
-//!   `elements = { name = [element, …] }`;
+//!   `edge_groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
+//!   `element_groups = { name = [element, …] }`;
 //! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
 //!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
 //! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;

@@ -1,4 +1,4 @@
-//! What is doubtful about a case, at its line.
+//! Plausibility warnings about a case, with their lines.
 
 use super::{CaseOf, parsed, place};
 use crate::case::table::Table;
@@ -8,7 +8,7 @@ use crate::report::{Warning, few_samples};
 use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
-    /// What may be meant, but more likely is not, each with its line: to be told before the run. With `in_memory`, the
+    /// Statements that are possible but more likely slips, each with its line, for use before the run. With `in_memory`, the
     /// history is kept in memory.
     #[must_use]
     pub fn plausibility_warnings(&self, in_memory: bool) -> Vec<Warning> {

@@ -85,9 +85,8 @@ fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let drift = percent(facts.drift);
-    let message = format!(
-        "the energy balance is off by {drift} of the largest energy; a smaller time step or a finer mesh will mend it"
-    );
+    let message =
+        format!("the energy balance is off by {drift} of the largest energy; take a smaller time step or a finer mesh");
     warning("energy_drift", format!("energy balance off by {drift}"), message)
 }
 

@@ -1,8 +1,8 @@
-//! The one door between Python and the work.
+//! The blocking bridge between Python and the work.
 //!
-//! Work runs in a thread of its own and owns what it needs. The calling thread waits without the GIL, so that
-//! other Python threads run, and takes it every 50 ms to look for signals and to tell progress. So Ctrl-C is
-//! heard whatever the work is doing; work that cannot stop at once is told to stop and left behind.
+//! Each task runs in a thread of its own and owns its data. The calling thread waits without the GIL, so that
+//! other Python threads run. Every 50 ms it takes the GIL, checks for signals and reports progress. Ctrl-C thus
+//! works during any task; a task that cannot stop at once gets the order to stop and ends later.
 
 use crate::errors::percute_error;
 use percute_core::observer::{Observer, Progress};
@@ -15,9 +15,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often signals are looked for.
+/// How often signals are checked.
 const POLL: Duration = Duration::from_millis(50);
-/// How long work that was told to stop is waited for: with the above, well below half a second.
+/// How long the caller waits for a task that has the order to stop: with the above, well below half a second.
 const GRACE: Duration = Duration::from_millis(200);
 
 /// How far a computation is, as a progress callback gets it.
@@ -45,12 +45,12 @@ impl ProgressNow {
 
 /// What the caller and the work share.
 #[derive(Debug, Default)]
-pub(crate) struct Errand {
+pub(crate) struct Task {
     stop: AtomicBool,
     progress: Mutex<Option<Progress>>,
 }
 
-impl Errand {
+impl Task {
     /// Whether the work should stop.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Relaxed)
@@ -61,9 +61,9 @@ impl Errand {
     }
 }
 
-/// The work's side of an errand.
+/// The work's side of a task.
 #[derive(Clone, Debug)]
-pub(crate) struct Watch(pub(crate) Arc<Errand>);
+pub(crate) struct Watch(pub(crate) Arc<Task>);
 
 impl Observer for Watch {
     fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
@@ -72,24 +72,24 @@ impl Observer for Watch {
     }
 }
 
-/// Does work in a thread of its own and returns what it gives.
+/// Does work in a thread of its own and returns its result.
 ///
 /// # Errors
 /// What a signal handler or `tell`, the progress callback, raised; a panic of the work.
-pub(crate) fn through<T: Send + 'static>(
+pub(crate) fn blocking<T: Send + 'static>(
     py: Python<'_>,
     tell: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
     let watch = Watch(Arc::default());
-    let errand = watch.0.clone();
+    let task = watch.0.clone();
     let (sender, mut receiver) = sync_channel(1);
-    // Nobody listens to work that was left behind.
+    // Nothing receives the result of a task that was left.
     let job = move || _ = sender.send(work(watch));
     let worker = std::thread::Builder::new().name("percute".into()).spawn(job)?;
-    let waited = wait(py, &errand, &mut receiver, tell);
+    let waited = wait(py, &task, &mut receiver, tell);
     if waited.is_err() {
-        errand.stop.store(true, Relaxed);
+        task.stop.store(true, Relaxed);
         let receiver = &mut receiver;
         py.detach(move || _ = receiver.recv_timeout(GRACE));
     }
@@ -105,7 +105,7 @@ pub(crate) fn through<T: Send + 'static>(
 /// Waits for the outcome; `None` if the work ended without.
 fn wait<T: Send>(
     py: Python<'_>,
-    errand: &Errand,
+    task: &Task,
     receiver: &mut Receiver<T>,
     tell: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Option<T>> {
@@ -114,20 +114,20 @@ fn wait<T: Send>(
         let receiver = &mut *receiver;
         match py.detach(move || receiver.recv_timeout(POLL)) {
             Ok(outcome) => {
-                tell_progress(tell, errand, &mut told)?;
+                tell_progress(tell, task, &mut told)?;
                 return Ok(Some(outcome));
             }
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {
                 py.check_signals()?;
-                tell_progress(tell, errand, &mut told)?;
+                tell_progress(tell, task, &mut told)?;
             }
         }
     }
 }
 
-fn tell_progress(tell: Option<&Bound<'_, PyAny>>, errand: &Errand, told: &mut Option<Progress>) -> PyResult<()> {
-    let (Some(tell), Some(now)) = (tell, errand.progress()) else { return Ok(()) };
+fn tell_progress(tell: Option<&Bound<'_, PyAny>>, task: &Task, told: &mut Option<Progress>) -> PyResult<()> {
+    let (Some(tell), Some(now)) = (tell, task.progress()) else { return Ok(()) };
     if *told != Some(now) {
         *told = Some(now);
         tell.call1((ProgressNow { stage: now.stage.into(), done: now.done, total: now.total },))?;
