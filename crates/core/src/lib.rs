@@ -19,6 +19,7 @@ pub mod observer;
 pub mod obstacle;
 pub mod problem;
 mod ratio;
+pub mod simplex;
 pub mod time;
 
 pub use ratio::ratio;

@@ -105,16 +105,16 @@ impl<const D: usize> Plane<D> {
 
     /// Splits a vector into its normal component and its tangential part, eq. \[1\].
     ///
-    /// In 2D the tangential part is built from the tangent, not by subtraction: it is orthogonal to
-    /// the normal to rounding of itself, however large the normal component is.
+    /// The tangential part comes from the antisymmetric products w_cb = v_c n_b − v_b n_c, not by subtraction of the
+    /// normal part: it is orthogonal to the normal to rounding of itself, however large the normal component is.
     #[inline]
     #[must_use]
     pub fn split(&self, v: &[f64; D]) -> (f64, [f64; D]) {
-        let mut tangential = [0.0; D];
-        if D == 2 {
-            let tangent = [-self.normal[1], self.normal[0]];
-            let along = v[0] * tangent[0] + v[1] * tangent[1];
-            (0..2).for_each(|c| tangential[c] = along * tangent[c]);
+        let (n, mut tangential) = (&self.normal, [0.0; D]);
+        for c in 0..D {
+            for b in (0..D).filter(|&b| b != c) {
+                tangential[c] += (v[c] * n[b] - v[b] * n[c]) * n[b];
+            }
         }
         (dot(v, &self.normal), tangential)
     }

@@ -110,7 +110,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             arms,
             inverse_reach: 1.0 / reach,
             inertia: Inertia::new(choice, &points),
-            stress: StressMap::new(&points, &problem.mesh().cell_geometry(id), law),
+            stress: StressMap::new(problem.mesh().simplex(), &points, law),
             start: element.gather(problem.initial_velocity()),
         }
     }

@@ -30,6 +30,8 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     pub(crate) elements: Vec<Element<D, N>>,
     /// For each facet, its place among the loaded facets, then the candidate facets of contact.
     slots: Vec<u32>,
+    /// For each local node, the facets by which a walk around it enters and leaves an element.
+    walk: [[Option<usize>; 2]; N],
     /// Number of loaded facets.
     loaded: usize,
     /// Where the links of each contact node's star begin in [`TimeLevel::flux_before`].
@@ -59,7 +61,8 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
-        Self { problem, elements, slots, loaded, contact_links }
+        let walk = problem.mesh().simplex().walk();
+        Self { problem, elements, slots, walk, loaded, contact_links }
     }
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.

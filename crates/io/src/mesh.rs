@@ -7,6 +7,7 @@ use crate::write::{attribute, group, numbers, unit};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::simplex::{Element, Simplex};
 
 /// Bars and triangles as VTK numbers them.
 pub(crate) const fn vtk_type(dimension: usize) -> u8 {
@@ -60,7 +61,10 @@ pub(crate) fn write_groups<const D: usize, const N: usize>(ours: &Group, mesh: &
 }
 
 /// Reads the mesh: points, elements and groups, with their order and orientation.
-pub(crate) fn read<const D: usize, const N: usize>(opened: &Opened) -> Result<Mesh<D, N>, FileCause> {
+pub(crate) fn read<const D: usize, const N: usize>(opened: &Opened) -> Result<Mesh<D, N>, FileCause>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let points = vtk.data("Points")?;

@@ -4,6 +4,7 @@ use crate::any::{Any, AnyMesh, each, map};
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_core::simplex::{Element, Simplex};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, MeshFile, Version};
 use pyo3::prelude::*;
@@ -165,7 +166,10 @@ fn from_arrays<const D: usize, const N: usize>(
     cells: &PyReadonlyArray2<'_, i64>,
     edge_groups: &EdgeGroups<'_>,
     element_groups: &NumberGroups<'_>,
-) -> PyResult<Arc<Mesh<D, N>>> {
+) -> PyResult<Arc<Mesh<D, N>>>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let points = points.as_slice()?.as_chunks::<D>().0.to_vec();
     let cells = indices::<N>(py, "cells", cells.as_slice()?)?;
     let mut edges = FacetGroups::new();

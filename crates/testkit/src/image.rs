@@ -2,6 +2,7 @@
 
 use crate::Random;
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::simplex::{Element, Simplex};
 
 /// What [`Mesh::new`] takes.
 struct Parts<const D: usize, const N: usize> {
@@ -28,7 +29,10 @@ impl<const D: usize, const N: usize> Parts<D, N> {
         }
     }
 
-    fn mesh(self) -> Result<Mesh<D, N>, MeshError> {
+    fn mesh(self) -> Result<Mesh<D, N>, MeshError>
+    where
+        Element<D, N>: Simplex<D, N>,
+    {
         Mesh::new(self.points, &self.cells, &self.facet_groups, &self.element_groups)
     }
 }
@@ -51,7 +55,7 @@ pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshErro
 pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
     let mut parts = Parts::of(mesh);
     parts.points.iter_mut().for_each(|p| p[0] = -p[0]);
-    // The mirror turns the elements round; the core would mend and count them.
+    // The mirror reverses the orientation; the core would reorient the elements and count them.
     parts.cells.iter_mut().for_each(|cell| cell.swap(1, 2));
     parts.mesh()
 }
@@ -60,7 +64,10 @@ pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
 ///
 /// # Errors
 /// None that the mesh did not have, unless `by` is not finite.
-pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D]) -> Result<Mesh<D, N>, MeshError> {
+pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D]) -> Result<Mesh<D, N>, MeshError>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let mut parts = Parts::of(mesh);
     parts.points.iter_mut().for_each(|p| (0..D).for_each(|c| p[c] += by[c]));
     parts.mesh()
@@ -98,15 +105,18 @@ fn permuted<T: Copy>(new: &[usize], values: &[T]) -> Vec<T> {
 pub fn renumbered<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     seed: u64,
-) -> Result<(Mesh<D, N>, Renumbering), MeshError> {
+) -> Result<(Mesh<D, N>, Renumbering), MeshError>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let mut random = Random::new(seed);
     let node = random.permutation(mesh.node_count());
     let element = random.permutation(mesh.element_count());
     let mut parts = Parts::of(mesh);
     for cell in &mut parts.cells {
         *cell = cell.map(|n| node[n]);
-        if D > 1 {
-            // Turning a triangle keeps its orientation, turning a bar would not.
+        if N % 2 == 1 {
+            // A rotation of an odd number of nodes keeps the orientation.
             cell.rotate_left((random.bits() % N as u64) as usize);
         }
     }

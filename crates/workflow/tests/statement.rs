@@ -9,6 +9,7 @@ use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh
 use percute_core::observer::Unobserved;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
+use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 use percute_testkit::{Random, strategy::rectangle};
@@ -37,7 +38,10 @@ fn same<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Optio
 }
 
 /// A mesh whose groups of facets have other names, and a first half and a second half of elements.
-fn named<const D: usize, const N: usize>(mesh: &Mesh<D, N>, sides: &[&str], names: &[String]) -> Mesh<D, N> {
+fn named<const D: usize, const N: usize>(mesh: &Mesh<D, N>, sides: &[&str], names: &[String]) -> Mesh<D, N>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let nodes = |side: &str| {
         let facets = &mesh.facet_groups()[side];
         facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index())).collect::<Vec<_>>()

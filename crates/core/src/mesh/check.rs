@@ -1,9 +1,10 @@
 //! Every check that a mesh must pass.
 
-use super::geometry::{diameter, signed_volume};
+use super::geometry::diameter;
 use super::{ElementGroups, Facet, FacetGroups};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::problem::{facet, short};
+use crate::simplex::Simplex;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
@@ -220,13 +221,14 @@ pub(super) fn duplicate_points<const D: usize>(points: &[[f64; D]], size: f64) -
 
 /// Turns negatively oriented elements round and counts them; refuses degenerate ones.
 pub(super) fn orient<const D: usize, const N: usize>(
+    simplex: &dyn Simplex<D, N>,
     points: &[[f64; D]],
     cells: &mut [[NodeId; N]],
 ) -> Result<usize, MeshError> {
     let mut reoriented = 0;
     for (element, cell) in cells.iter_mut().enumerate() {
         let corners = cell.map(|node| points[node.index()]);
-        let (volume, diameter) = (signed_volume(&corners), diameter(&corners));
+        let (volume, diameter) = (simplex.signed_volume(&corners), diameter(&corners));
         if volume.abs() <= DEGENERATE * diameter.powi(D as i32) {
             let nodes = cell.iter().map(|n| n.index()).collect();
             return Err(MeshError::Degenerate { element, nodes, volume, diameter });
@@ -279,4 +281,18 @@ pub(super) fn element_groups(
         named.insert(group.clone(), ids);
     }
     Ok(named)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2³⁰ elements and more than 2³²/4 are too many. Elements without nodes take no memory.
+    #[test]
+    fn too_large() {
+        const MANY: usize = 1 << 30;
+        static CELLS: [[usize; 0]; MANY] = [[]; MANY];
+        let most = u32::MAX as usize / 4;
+        assert_eq!(cells(1, &CELLS).unwrap_err(), MeshError::TooLarge { what: "elements", count: MANY, most });
+    }
 }

@@ -13,12 +13,12 @@ mod star;
 mod topology;
 
 pub use check::MeshError;
-pub use geometry::CellGeometry;
 pub use import_warning::ImportWarning;
-pub use star::{Star, Stars, entry_and_exit};
+pub use star::{Star, Stars};
 pub use topology::Facet;
 
 use crate::ids::{ElementId, FacetId, NodeId};
+use crate::simplex::{CellGeometry, Element, Simplex};
 use std::collections::BTreeMap;
 
 /// A mesh of 2-node bars.
@@ -35,6 +35,7 @@ pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 /// non-manifold facets and nodes. Elements are positively oriented; separate parts do not touch.
 #[derive(Clone, Debug)]
 pub struct Mesh<const D: usize, const N: usize> {
+    simplex: &'static dyn Simplex<D, N>,
     points: Vec<[f64; D]>,
     cells: Vec<[NodeId; N]>,
     facets: Vec<Facet<D>>,
@@ -61,18 +62,32 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         cells: &[[usize; N]],
         facet_groups: &FacetGroups<D>,
         element_groups: &ElementGroups,
+    ) -> Result<Self, MeshError>
+    where
+        Element<D, N>: Simplex<D, N>,
+    {
+        Self::checked(&Element, points, cells, facet_groups, element_groups)
+    }
+
+    fn checked(
+        simplex: &'static dyn Simplex<D, N>,
+        points: Vec<[f64; D]>,
+        cells: &[[usize; N]],
+        facet_groups: &FacetGroups<D>,
+        element_groups: &ElementGroups,
     ) -> Result<Self, MeshError> {
         check::points(&points)?;
         let mut cells = check::cells(points.len(), cells)?;
         let size = geometry::bounding_box_diagonal(&points);
         check::duplicate_points(&points, size)?;
-        let reoriented = check::orient(&points, &mut cells)?;
+        let reoriented = check::orient(simplex, &points, &mut cells)?;
         let (facets, cell_facets) = topology::facets(&cells)?;
-        let stars = Stars::new(points.len(), &cells, &facets, &cell_facets)?;
-        let parts = parts::separate(&points, &cells, &facets, check::DUPLICATE * size)?;
+        let stars = Stars::new(simplex, points.len(), &cells, &facets, &cell_facets)?;
+        let parts = parts::separate(simplex, &points, &cells, &facets, check::DUPLICATE * size)?;
         let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
+            simplex,
             points,
             cells,
             facets,
@@ -85,6 +100,12 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             parts,
             import_warnings: Vec::new(),
         })
+    }
+
+    /// Its kind of element.
+    #[must_use]
+    pub fn simplex(&self) -> &'static dyn Simplex<D, N> {
+        self.simplex
     }
 
     /// Coordinates of the nodes (m).
@@ -186,7 +207,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// Volume and shape-function gradients of an element (length in 1D, area in 2D).
     #[must_use]
     pub fn cell_geometry(&self, element: ElementId) -> CellGeometry<D, N> {
-        CellGeometry::new(&self.cell_points(element))
+        self.simplex.geometry(&self.cell_points(element))
     }
 
     /// The local number of `node` in `element`.

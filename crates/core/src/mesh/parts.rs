@@ -5,10 +5,13 @@
 
 use super::{Facet, MeshError};
 use crate::ids::{ElementId, NodeId};
+use crate::simplex::Simplex;
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// Counts the parts; if there are several, they must be further apart than `tolerance` (m).
 pub(super) fn separate<const D: usize, const N: usize>(
+    simplex: &dyn Simplex<D, N>,
     points: &[[f64; D]],
     cells: &[[NodeId; N]],
     facets: &[Facet<D>],
@@ -20,7 +23,8 @@ pub(super) fn separate<const D: usize, const N: usize>(
         let part_of = |e: ElementId| part[cells[e.index()][0].index()];
         let corners = |e: ElementId| cells[e.index()].map(|node| points[node.index()]);
         let grid = Grid::new(points[0], (0..cells.len()).map(|e| corners(ElementId::new(e))), tolerance);
-        apart(grid, cells.len(), facets, part_of, corners)?;
+        let meet = |a: ElementId, b: ElementId| meet(simplex, &corners(a), &corners(b), tolerance);
+        apart(grid, cells.len(), facets, part_of, corners, meet)?;
     }
     Ok(count)
 }
@@ -58,6 +62,7 @@ fn apart<const D: usize, const N: usize>(
     facets: &[Facet<D>],
     part_of: impl Fn(ElementId) -> NodeId,
     corners: impl Fn(ElementId) -> [[f64; D]; N],
+    meet: impl Fn(ElementId, ElementId) -> bool,
 ) -> Result<(), MeshError> {
     let mut outer = vec![false; element_count];
     for facet in facets.iter().filter(|facet| facet.neighbour.is_none()) {
@@ -65,14 +70,12 @@ fn apart<const D: usize, const N: usize>(
     }
     for at_boundary in [true, false] {
         for element in (0..element_count).filter(|&e| outer[e] == at_boundary).map(ElementId::new) {
-            let own = corners(element);
-            for key in grid.keys(&own) {
+            for key in grid.keys(&corners(element)) {
                 if at_boundary {
                     grid.cells.entry(key).or_default();
                 }
                 let Some(there) = grid.cells.get_mut(&key) else { continue };
-                let meets =
-                    |&other: &ElementId| part_of(other) != part_of(element) && meet(&own, &corners(other), grid.margin);
+                let meets = |&other: &ElementId| part_of(other) != part_of(element) && meet(element, other);
                 if let Some(&other) = there.iter().find(|other| meets(other)) {
                     let (first, second) = (element.min(other), element.max(other));
                     return Err(MeshError::PartsTouch { elements: [first.index(), second.index()] });
@@ -117,11 +120,14 @@ impl<const D: usize> Grid<D> {
         let key = |x: f64, c: usize| ((x - self.origin[c]) / self.spacing).floor() as i64;
         let first: [i64; D] = std::array::from_fn(|c| key(low[c] - self.margin, c));
         let last: [i64; D] = std::array::from_fn(|c| key(high[c] + self.margin, c));
-        let (rows, columns) = (first[D - 1]..=last[D - 1], first[0]..=last[0]);
-        rows.flat_map(move |y| {
-            // In 1D the row is the cell.
-            let columns = if D == 1 { y..=y } else { columns.clone() };
-            columns.map(move |x| std::array::from_fn(|c| if c == 0 { x } else { y }))
+        // Like an odometer: the first axis goes round, then the next one moves on.
+        std::iter::successors(Some(first), move |key| {
+            let c = (0..D).find(|&c| key[c] < last[c])?;
+            Some(std::array::from_fn(|a| match a.cmp(&c) {
+                Ordering::Less => first[a],
+                Ordering::Equal => key[a] + 1,
+                Ordering::Greater => key[a],
+            }))
         })
     }
 }
@@ -132,21 +138,14 @@ fn bounds<const D: usize, const N: usize>(corners: &[[f64; D]; N]) -> [[f64; D];
 }
 
 /// Whether two simplices are at most `tolerance` apart: then no direction separates them by more.
-/// The distance is taken along a normal of an edge, or from corner to corner.
-fn meet<const D: usize, const N: usize>(a: &[[f64; D]; N], b: &[[f64; D]; N], tolerance: f64) -> bool {
-    let difference = |p: &[f64; D], q: &[f64; D]| -> [f64; D] { std::array::from_fn(|c| q[c] - p[c]) };
-    let separates = |direction: [f64; D]| gap(a, b, direction) > tolerance;
-    let normals = [a, b].into_iter().flat_map(|corners| {
-        (0..N).map(move |k| {
-            let edge = difference(&corners[k], &corners[(k + 1) % N]);
-            // A quarter turn in 2D; in 1D the only direction there is.
-            let mut normal = [edge[D - 1]; D];
-            normal[D - 1] = -edge[0];
-            normal
-        })
-    });
-    let between = a.iter().flat_map(|p| b.iter().map(move |q| difference(p, q)));
-    !normals.chain(between).any(separates)
+fn meet<const D: usize, const N: usize>(
+    simplex: &dyn Simplex<D, N>,
+    a: &[[f64; D]; N],
+    b: &[[f64; D]; N],
+    tolerance: f64,
+) -> bool {
+    let between = a.iter().flat_map(|p| b.iter().map(move |q| std::array::from_fn(|c| q[c] - p[c])));
+    !simplex.separating_directions(a, b).into_iter().chain(between).any(|direction| gap(a, b, direction) > tolerance)
 }
 
 /// How far two simplices are apart along a direction (m), negative if they cover each other there.

@@ -1,75 +1,71 @@
 //! Nested finer meshes.
 
-use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
-use crate::ids::{ElementId, FacetId};
+use super::{ElementGroups, FacetGroups, Mesh, MeshError};
+use crate::simplex::Child;
 
-impl BarMesh {
-    /// The mesh with each element cut in two.
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// The mesh with each element cut by the middles of its edges, a bar into two elements and a triangle into four, for
+    /// true errors against a nested mesh.
     ///
-    /// Nodes keep their numbers, and the middle of element e becomes node `node_count() + e`; element e becomes the elements
-    /// 2 e and 2 e + 1; groups name the same ends and elements as before.
-    ///
-    /// # Errors
-    /// A mesh so fine that middles cannot be told from ends, or with more nodes than there are numbers.
-    pub fn refined(&self) -> Result<Self, MeshError> {
-        let (mut points, mut cells) = (self.points.clone(), Vec::with_capacity(2 * self.element_count()));
-        for cell in &self.cells {
-            let [a, b] = cell.map(|node| node.index());
-            cells.extend([[a, points.len()], [points.len(), b]]);
-            points.push([0.5 * (points[a][0] + points[b][0])]);
-        }
-        let ends = |group: &Vec<FacetId>| {
-            group.iter().flat_map(|f| self.facets[f.index()].nodes).map(|n| [n.index()]).collect()
-        };
-        let halves = |group: &Vec<ElementId>| group.iter().flat_map(|e| [2 * e.index(), 2 * e.index() + 1]).collect();
-        let facets: FacetGroups<1> =
-            self.facet_groups.iter().map(|(name, group)| (name.clone(), ends(group))).collect();
-        let elements: ElementGroups =
-            self.element_groups.iter().map(|(name, group)| (name.clone(), halves(group))).collect();
-        Self::new(points, &cells, &facets, &elements)
-    }
-}
-
-impl TriangleMesh {
-    /// The mesh with each triangle cut into four by the middles of its edges, for true errors against a nested mesh.
-    ///
-    /// Nodes keep their numbers, and the middle of edge f becomes node `node_count() + f`; element e becomes the elements
-    /// 4 e to 4 e + 3; groups name the same edges and elements as before. A polygon stays the polygon it was.
+    /// Nodes keep their numbers, and the middles of the edges follow in the order of the nodes of these edges; element e of n
+    /// new ones each becomes the elements n e to n e + n − 1; groups name the same facets and elements as before. A
+    /// polygon stays the polygon it was.
     ///
     /// # Errors
     /// A mesh so fine that middles cannot be told from corners, or with more nodes than there are numbers.
     pub fn refined(&self) -> Result<Self, MeshError> {
+        let edges = self.edges();
         let mut points = self.points.clone();
-        points.extend(self.facets.iter().map(|facet| {
-            let [p, q] = facet.nodes.map(|node| self.points[node.index()]);
-            [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]
+        points.extend(edges.iter().map(|&[a, b]| {
+            let (p, q) = (&self.points[a], &self.points[b]);
+            std::array::from_fn(|c| 0.5 * (p[c] + q[c]))
         }));
-        let middle = |facet: usize| self.node_count() + facet;
-        let mut cells = Vec::with_capacity(4 * self.element_count());
-        for (cell, facets) in self.cells.iter().zip(&self.cell_facets) {
-            let [a, b, c] = cell.map(|node| node.index());
-            let [bc, ca, ab] = facets.map(|facet| middle(facet.index()));
-            cells.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-        }
-        let halves = |facet: usize| {
-            let [a, b] = self.facets[facet].nodes.map(|node| node.index());
-            [[a, middle(facet)], [middle(facet), b]]
+        let node = |a: usize, b: usize| match edges.binary_search(&[a.min(b), a.max(b)]) {
+            Ok(edge) => self.node_count() + edge,
+            // A corner: no edge joins a node with itself.
+            Err(_) => a,
         };
-        let edges = self.facet_groups.iter();
-        let edges: FacetGroups<2> =
-            edges.map(|(name, group)| (name.clone(), group.iter().flat_map(|f| halves(f.index())).collect())).collect();
-        let elements = self.element_groups.iter();
-        let elements: ElementGroups = elements
-            .map(|(name, group)| (name.clone(), group.iter().flat_map(|e| 4 * e.index()..4 * e.index() + 4).collect()))
-            .collect();
-        Self::new(points, &cells, &edges, &elements)
+        let children = self.simplex.children();
+        let cells = self.cells.iter().map(|cell| cell.map(|n| n.index()));
+        let cells: Vec<_> = cells.flat_map(|cell| cut(cell, children, &node)).collect();
+        let facet = |facet: usize| self.facets[facet].nodes.map(|n| n.index());
+        let facets = self.facet_groups.iter().map(|(name, group)| {
+            let parts = group.iter().flat_map(|f| cut(facet(f.index()), self.simplex.facet_children(), &node));
+            (name.clone(), parts.collect())
+        });
+        let elements = self.element_groups.iter().map(|(name, group)| {
+            let parts = group.iter().flat_map(|e| (0..children.len()).map(|part| children.len() * e.index() + part));
+            (name.clone(), parts.collect())
+        });
+        let (facets, elements): (FacetGroups<D>, ElementGroups) = (facets.collect(), elements.collect());
+        Self::checked(self.simplex, points, &cells, &facets, &elements)
     }
+
+    /// The nodes of each edge, ascending, in ascending order.
+    fn edges(&self) -> Vec<[usize; 2]> {
+        let pairs = (0..N).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let edges = self.cells.iter().flat_map(|cell| pairs.clone().map(|(i, j)| [cell[i].index(), cell[j].index()]));
+        let mut edges: Vec<_> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+}
+
+/// The children of a simplex with these nodes, where `middle` is the node between two others.
+fn cut<const M: usize>(
+    nodes: [usize; M],
+    children: &'static [Child<M>],
+    middle: &impl Fn(usize, usize) -> usize,
+) -> impl Iterator<Item = [usize; M]> {
+    children.iter().map(move |child| child.map(|[i, j]| middle(nodes[i], nodes[j])))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ids::ElementId;
+    use crate::mesh::{BarMesh, TriangleMesh};
 
     /// Each of the four parts has a quarter of the area and lies in its parent; groups cover what they covered.
     #[test]
@@ -104,5 +100,17 @@ mod tests {
         assert_eq!(fine.facet_groups()["rim"].len(), 4);
         // Rounding of four lengths below 1.
         assert!((length(&fine) - length(&coarse)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn bars_are_halved() {
+        let fine = BarMesh::uniform_bar(2.0, 2).unwrap().refined().unwrap();
+        assert_eq!(fine.points(), [[0.0], [1.0], [2.0], [0.5], [1.5]]);
+        assert_eq!(
+            fine.cells().iter().map(|cell| cell.map(|n| n.index())).collect::<Vec<_>>(),
+            [[0, 3], [3, 1], [1, 4], [4, 2]]
+        );
+        let end = fine.facet_groups()["end"][0];
+        assert_eq!(fine.facets()[end.index()].nodes[0].index(), 2);
     }
 }

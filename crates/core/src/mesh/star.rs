@@ -2,6 +2,7 @@
 
 use super::{Facet, MeshError};
 use crate::ids::{ElementId, FacetId, NodeId};
+use crate::simplex::Simplex;
 
 /// The stars of all nodes, one after the other.
 ///
@@ -33,17 +34,6 @@ impl Star<'_> {
     }
 }
 
-/// Local numbers of the facets through which a counterclockwise walk around local node `i` enters
-/// and leaves an element; in 1D only one of them exists.
-#[must_use]
-pub const fn entry_and_exit<const D: usize>(i: usize) -> [Option<usize>; 2] {
-    match (D, i) {
-        (1, 0) => [Some(1), None],
-        (1, _) => [None, Some(0)],
-        _ => [Some((i + 2) % 3), Some((i + 1) % 3)],
-    }
-}
-
 impl Stars {
     /// The star of a node.
     #[inline]
@@ -71,16 +61,17 @@ impl Stars {
 
     /// Walks every star; a star that falls into several chains is a non-manifold node.
     pub(super) fn new<const D: usize, const N: usize>(
+        simplex: &dyn Simplex<D, N>,
         node_count: usize,
         cells: &[[NodeId; N]],
         facets: &[Facet<D>],
         cell_facets: &[[FacetId; N]],
     ) -> Result<Self, MeshError> {
-        let incident = incident_elements(node_count, cells);
+        let (walk, incident) = (simplex.walk(), incident_elements(node_count, cells));
         let mut stars = Self { offsets: vec![0], ..Self::default() };
         let sides = |element: ElementId, node: NodeId| {
             let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
-            entry_and_exit::<D>(local).map(|side| side.map(|k| cell_facets[element.index()][k]))
+            walk[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
         };
         let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets[f.index()].neighbour.is_none());
         for (i, around) in incident.iter().enumerate() {

@@ -26,7 +26,7 @@ impl<const D: usize> Facet<D> {
     #[inline]
     #[must_use]
     pub fn position(&self, node: NodeId) -> usize {
-        usize::from(D == 2 && self.nodes[0] != node)
+        self.nodes.iter().position(|&other| other == node).unwrap_or(0)
     }
 }
 
@@ -41,11 +41,14 @@ fn opposite<const D: usize, const N: usize>(cell: &[NodeId; N], k: usize) -> [No
     nodes
 }
 
-/// Whether a facet, seen from its element in counterclockwise order, runs from the lower to the
-/// higher node; in 1D, whether it is the right end. Two elements on either side differ.
-fn runs_up<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeId; D], ElementId, u8)) -> bool {
+/// Whether a facet, seen from its element in counterclockwise order, has its nodes in an even permutation of their
+/// ascending order; in 1D, whether it is the right end. Two elements on either side differ.
+fn is_even<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeId; D], ElementId, u8)) -> bool {
     let (cell, k) = (&cells[side.1.index()], usize::from(side.2));
-    if D == 1 { k == 0 } else { cell[(k + 1) % N] < cell[(k + 2) % N] }
+    let node = |p: usize| cell[(k + 1 + p) % N];
+    let inversions = (0..D).map(|p| (0..p).filter(|&q| node(q) > node(p)).count()).sum::<usize>();
+    // The nodes follow each other from k + 1 on: a rotation of the element's by k + 1 places, each of them D transpositions.
+    (inversions + k * D).is_multiple_of(2)
 }
 
 /// All facets in the order of their nodes, and those of each element.
@@ -71,7 +74,7 @@ pub(super) fn facets<const D: usize, const N: usize>(
             });
         }
         if let [one, other] = shared
-            && runs_up(cells, one) == runs_up(cells, other)
+            && is_even(cells, one) == is_even(cells, other)
         {
             return Err(MeshError::Overlap { elements: [one.1.index(), other.1.index()] });
         }

@@ -1,6 +1,6 @@
 //! Each [`MeshError`] from a bad mesh.
 
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
 
 fn triangles(points: &[[f64; 2]], cells: &[[usize; 3]]) -> Result<TriangleMesh, MeshError> {
     TriangleMesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
@@ -23,15 +23,6 @@ fn square_with(facets: &[(&str, [usize; 2])], elements: &[(&str, usize)]) -> Res
 fn empty() {
     assert_eq!(bars(&[], &[]).unwrap_err(), MeshError::Empty { nodes: 0, elements: 0 });
     assert_eq!(triangles(&CORNERS, &[]).unwrap_err(), MeshError::Empty { nodes: 5, elements: 0 });
-}
-
-/// 2³⁰ elements and more than 2³²/4 are too many. Elements without nodes take no memory.
-#[test]
-fn too_large() {
-    const MANY: usize = 1 << 30;
-    static CELLS: [[usize; 0]; MANY] = [[]; MANY];
-    let error = Mesh::<1, 0>::new(vec![[0.0]], &CELLS, &FacetGroups::new(), &ElementGroups::new()).unwrap_err();
-    assert_eq!(error, MeshError::TooLarge { what: "elements", count: MANY, most: u32::MAX as usize / 4 });
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod triangle;
 
 use bar::BarStress;
 use percute_core::material::Elastic;
-use percute_core::mesh::CellGeometry;
+use percute_core::simplex::{Shape, Simplex};
 use triangle::TriangleStress;
 
 /// What an element's stress must balance, per unit of section or thickness.
@@ -43,15 +43,16 @@ pub(crate) enum StressMap {
 
 impl StressMap {
     pub(crate) fn new<const D: usize, const N: usize>(
+        simplex: &dyn Simplex<D, N>,
         points: &[[f64; D]; N],
-        geometry: &CellGeometry<D, N>,
         law: &Elastic,
     ) -> Self {
-        if D == 1 {
-            Self::Bar(BarStress::new(geometry.volume, law))
-        } else {
-            let corners = std::array::from_fn(|i| [points[i][0], points[i][D - 1]]);
-            Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
+        match simplex.shape() {
+            Shape::Bar => Self::Bar(BarStress::new(simplex.signed_volume(points), law)),
+            Shape::Triangle => {
+                let corners = std::array::from_fn(|i| [points[i][0], points[i][1]]);
+                Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
+            }
         }
     }
 

@@ -112,7 +112,7 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
     fn moment(&self, e: ElementId, exit: usize, stress: &[[f64; D]; D]) -> [f64; D] {
         let data = &self.all.elements[e.index()];
         let i = data.nodes.iter().position(|&n| n == self.node).unwrap_or(0);
-        let facet = percute_core::mesh::entry_and_exit::<D>(i)[exit];
+        let facet = self.all.walk[i][exit];
         facet.map_or([0.0; D], |k| data.internal_force(k, stress).map(|f| -f))
     }
 

@@ -6,6 +6,7 @@ use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, Mesh, TriangleMesh};
 use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Builder, Initial, Problem, TriangleProblem};
+use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use std::f64::consts::TAU;
 
@@ -65,7 +66,10 @@ pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce<D> {
 pub(crate) fn in_two_groups<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     first: impl Fn([f64; D]) -> bool,
-) -> Mesh<D, N> {
+) -> Mesh<D, N>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
     let nodes = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
     let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(nodes).collect())).collect();

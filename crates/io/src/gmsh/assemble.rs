@@ -7,6 +7,7 @@ use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
 use super::{MeshFile, MeshOf, import_warnings};
 use percute_core::mesh::{Mesh, MeshError};
+use percute_core::simplex::{self, Simplex};
 use std::mem::take;
 
 /// Makes the mesh of a file: of triangles if there are any, else of bars.
@@ -34,7 +35,10 @@ fn assemble<const D: usize, const N: usize>(
     facets: Vec<Element<D>>,
     points: Option<&Sorted<1>>,
     scale: f64,
-) -> Result<MeshOf<D, N>, Fault> {
+) -> Result<MeshOf<D, N>, Fault>
+where
+    simplex::Element<D, N>: Simplex<D, N>,
+{
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);

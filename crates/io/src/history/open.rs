@@ -7,6 +7,7 @@ use crate::kind::Kind;
 use crate::mesh::{read, vectors};
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
+use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use std::path::Path;
 
@@ -35,7 +36,10 @@ fn contents<const D: usize, const N: usize>(
     path: &Path,
     identity: Identity,
     opened: &Opened,
-) -> Result<HistoryFile<D, N>, FileCause> {
+) -> Result<HistoryFile<D, N>, FileCause>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let mesh = read::<D, N>(opened)?;

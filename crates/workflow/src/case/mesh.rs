@@ -5,6 +5,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::simplex::{Element, Simplex};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause, MeshFile};
 use std::path::PathBuf;
@@ -127,7 +128,10 @@ fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<AnyMesh, CaseErr
 }
 
 /// A mesh from points, cells, groups of facets and groups of elements.
-fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N>, CaseError> {
+fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N>, CaseError>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m")?;
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
     let cells = cells

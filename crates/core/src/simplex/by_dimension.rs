@@ -1,0 +1,50 @@
+//! A bar or a plane problem, found out at run time.
+
+/// Something of a bar or the same of a plane body, such as a mesh, a problem or a file that holds one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ByDimension<B, P> {
+    /// Of a bar: 1D.
+    Bar(B),
+    /// Of a plane body: 2D.
+    Plane(P),
+}
+
+impl<B, P> ByDimension<B, P> {
+    /// The bar, unless it is a plane body.
+    pub fn bar(self) -> Option<B> {
+        match self {
+            Self::Bar(bar) => Some(bar),
+            Self::Plane(_) => None,
+        }
+    }
+
+    /// The plane body, unless it is a bar.
+    pub fn plane(self) -> Option<P> {
+        match self {
+            Self::Bar(_) => None,
+            Self::Plane(plane) => Some(plane),
+        }
+    }
+}
+
+/// Does the same with a [`ByDimension`](crate::simplex::ByDimension) in each dimension: `each_dimension!(any, it => it.count())`.
+#[macro_export]
+macro_rules! each_dimension {
+    ($any:expr, $it:pat => $body:expr) => {
+        match $any {
+            $crate::simplex::ByDimension::Bar($it) => $body,
+            $crate::simplex::ByDimension::Plane($it) => $body,
+        }
+    };
+}
+
+/// The same, with a [`ByDimension`](crate::simplex::ByDimension) as its result.
+#[macro_export]
+macro_rules! map_dimension {
+    ($any:expr, $it:pat => $body:expr) => {
+        match $any {
+            $crate::simplex::ByDimension::Bar($it) => $crate::simplex::ByDimension::Bar($body),
+            $crate::simplex::ByDimension::Plane($it) => $crate::simplex::ByDimension::Plane($body),
+        }
+    };
+}

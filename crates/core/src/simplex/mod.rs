@@ -1,0 +1,129 @@
+//! The elements: all that depends on the dimension.
+//!
+//! [`Simplex`] is written once for each element: [`Bar`] and [`Triangle`]. A mesh knows its simplex, so that other code is
+//! generic over the dimension `D` and the nodes of an element `N = D + 1`. Code that exists for some elements only
+//! matches on [`Shape`]; a new shape does not compile before each of these matches has its case.
+
+mod bar;
+mod by_dimension;
+mod triangle;
+
+pub use by_dimension::ByDimension;
+use std::fmt::Debug;
+
+/// The element of dimension `D` with `N` nodes, if [`Simplex`] is written for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Element<const D: usize, const N: usize>;
+
+/// The 2-node bar.
+pub type Bar = Element<1, 2>;
+/// The 3-node triangle.
+pub type Triangle = Element<2, 3>;
+
+/// The shape of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A line of two nodes.
+    Bar,
+    /// A plane triangle of three nodes.
+    Triangle,
+}
+
+/// Corners of a child in a refined element: a pair of equal nodes is that node, a pair of different nodes the middle between
+/// them.
+pub type Child<const N: usize> = [[usize; 2]; N];
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Bar {}
+    impl Sealed for super::Triangle {}
+}
+
+/// One kind of element. Facet k lies opposite to node k.
+pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + Sync {
+    /// Its shape.
+    fn shape(&self) -> Shape;
+
+    /// Length (m) or area (m²), negative if the corners are in the wrong order.
+    fn signed_volume(&self, points: &[[f64; D]; N]) -> f64;
+
+    /// ∇φ_k (1/m) of a node other than the first, in an element of this volume.
+    fn gradient(&self, points: &[[f64; D]; N], volume: f64, k: usize) -> [f64; D];
+
+    /// Directions, of any length, one of which separates two elements if no line from corner to corner does.
+    fn separating_directions(&self, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> Vec<[f64; D]>;
+
+    /// For each node, the facets by which a counterclockwise walk around it enters and leaves an element; a bar has one
+    /// of them.
+    fn walk(&self) -> [[Option<usize>; 2]; N];
+
+    /// The elements that an element is cut into by the middles of its edges.
+    fn children(&self) -> &'static [Child<N>];
+
+    /// The facets that a facet is cut into by the middles of its edges.
+    fn facet_children(&self) -> &'static [Child<D>];
+
+    /// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each piece on
+    /// which the linear `switch` with these nodal values keeps its sign.
+    fn facet_mean(&self, switch: &[f64; D], quantity: &dyn Fn(&[f64; D]) -> f64) -> f64;
+
+    /// Volume and gradients of the element with these corners, positively oriented.
+    fn geometry(&self, points: &[[f64; D]; N]) -> CellGeometry<D, N> {
+        let volume = self.signed_volume(points);
+        let mut gradients = [[0.0; D]; N];
+        for k in 1..N {
+            gradients[k] = self.gradient(points, volume, k);
+        }
+        for c in 0..D {
+            gradients[0][c] = -(1..N).map(|k| gradients[k][c]).sum::<f64>();
+        }
+        CellGeometry { volume, gradients }
+    }
+}
+
+/// Volume and shape-function gradients of a P1 simplex.
+#[derive(Clone, Copy, Debug)]
+pub struct CellGeometry<const D: usize, const N: usize> {
+    /// Length (m) or area (m²), without section or thickness.
+    pub volume: f64,
+    /// ∇φ_i of each node (1/m); they sum to zero.
+    pub gradients: [[f64; D]; N],
+}
+
+impl<const D: usize, const N: usize> CellGeometry<D, N> {
+    /// Outward unit normal and measure of the facet opposite to local node `k`: −∇φ_k/|∇φ_k|
+    /// and D·|E|·|∇φ_k|.
+    #[must_use]
+    pub fn facet_normal(&self, k: usize) -> ([f64; D], f64) {
+        let norm = self.gradients[k].iter().map(|g| g * g).sum::<f64>().sqrt();
+        (self.gradients[k].map(|g| -g / norm), D as f64 * self.volume * norm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gradients_reproduce_a_linear_field() {
+        let points = [[0.1, 0.2], [1.3, 0.4], [0.3, 0.9]];
+        let cell = Triangle {}.geometry(&points);
+        let value = |p: &[f64; 2]| 3.0 + 2.0 * p[0] - 5.0 * p[1];
+        for (c, expected) in [2.0, -5.0].into_iter().enumerate() {
+            let slope: f64 = (0..3).map(|i| value(&points[i]) * cell.gradients[i][c]).sum();
+            assert!((slope - expected).abs() < 1e-13, "{slope} against {expected}");
+        }
+    }
+
+    #[test]
+    fn normals_close_the_boundary() {
+        let cell = Triangle {}.geometry(&[[0.0, 0.0], [2.0, 0.1], [0.3, 1.7]]);
+        for c in 0..2 {
+            let sum: f64 = (0..3).map(|k| cell.facet_normal(k)).map(|(n, length)| n[c] * length).sum();
+            assert!(sum.abs() < 1e-14);
+        }
+        let bar = Bar {}.geometry(&[[1.0], [3.0]]);
+        assert_eq!(bar.facet_normal(0), ([1.0], 1.0));
+        assert_eq!(bar.facet_normal(1), ([-1.0], 1.0));
+    }
+}

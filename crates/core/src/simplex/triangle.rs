@@ -1,0 +1,52 @@
+//! The triangle of three nodes.
+
+use super::{Child, Shape, Simplex, Triangle};
+
+impl Simplex<2, 3> for Triangle {
+    fn shape(&self) -> Shape {
+        Shape::Triangle
+    }
+
+    fn signed_volume(&self, points: &[[f64; 2]; 3]) -> f64 {
+        let edge = |k: usize, c: usize| points[k][c] - points[0][c];
+        0.5 * (edge(1, 0) * edge(2, 1) - edge(2, 0) * edge(1, 1))
+    }
+
+    /// The opposite edge turned by a quarter, over twice the area.
+    fn gradient(&self, points: &[[f64; 2]; 3], volume: f64, k: usize) -> [f64; 2] {
+        let (a, b) = (&points[(k + 1) % 3], &points[(k + 2) % 3]);
+        [(a[1] - b[1]) / (2.0 * volume), (b[0] - a[0]) / (2.0 * volume)]
+    }
+
+    /// The normals of all edges.
+    fn separating_directions(&self, a: &[[f64; 2]; 3], b: &[[f64; 2]; 3]) -> Vec<[f64; 2]> {
+        let normal = |[p, q]: [&[f64; 2]; 2]| [q[1] - p[1], p[0] - q[0]];
+        [a, b].into_iter().flat_map(|t| [[&t[0], &t[1]], [&t[1], &t[2]], [&t[2], &t[0]]]).map(normal).collect()
+    }
+
+    fn walk(&self) -> [[Option<usize>; 2]; 3] {
+        [[Some(2), Some(1)], [Some(0), Some(2)], [Some(1), Some(0)]]
+    }
+
+    fn children(&self) -> &'static [Child<3>] {
+        &[[[0, 0], [0, 1], [0, 2]], [[0, 1], [1, 1], [1, 2]], [[0, 2], [1, 2], [2, 2]], [[0, 1], [1, 2], [0, 2]]]
+    }
+
+    fn facet_children(&self) -> &'static [Child<2>] {
+        &[[[0, 0], [0, 1]], [[0, 1], [1, 1]]]
+    }
+
+    /// Two Gauss points on each side of the place where the sign changes.
+    fn facet_mean(&self, &[first, last]: &[f64; 2], quantity: &dyn Fn(&[f64; 2]) -> f64) -> f64 {
+        let turn = if first * last < 0.0 { first / (first - last) } else { 1.0 };
+        let gauss = 0.5 / 3.0_f64.sqrt();
+        let mut mean = 0.0;
+        for (from, to) in [(0.0, turn), (turn, 1.0)] {
+            for at in [0.5 - gauss, 0.5 + gauss] {
+                let s = from + at * (to - from);
+                mean += 0.5 * (to - from) * quantity(&[1.0 - s, s]);
+            }
+        }
+        mean
+    }
+}
