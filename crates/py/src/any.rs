@@ -1,41 +1,11 @@
-//! One of two dimensions: which one is known only once Python has said it.
+//! Meshes and problems of either dimension, shared.
 
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{BarProblem, TriangleProblem};
+use percute_core::simplex::ByDimension;
 use std::sync::Arc;
 
-/// Something of a bar or of a plane body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Any<B, P> {
-    /// Of a bar: 1D.
-    Bar(B),
-    /// Of a plane body: 2D.
-    Plane(P),
-}
-
 /// A mesh of either dimension, shared.
-pub(crate) type AnyMesh = Any<Arc<BarMesh>, Arc<TriangleMesh>>;
+pub(crate) type AnyMesh = ByDimension<Arc<BarMesh>, Arc<TriangleMesh>>;
 /// A problem of either dimension, shared.
-pub(crate) type AnyProblem = Any<Arc<BarProblem>, Arc<TriangleProblem>>;
-
-/// Does the same in both dimensions.
-macro_rules! each {
-    ($any:expr, $it:ident => $body:expr) => {
-        match $any {
-            $crate::any::Any::Bar($it) => $body,
-            $crate::any::Any::Plane($it) => $body,
-        }
-    };
-}
-
-/// The same, keeping the dimension of the result.
-macro_rules! map {
-    ($any:expr, $it:ident => $body:expr) => {
-        match $any {
-            $crate::any::Any::Bar($it) => $crate::any::Any::Bar($body),
-            $crate::any::Any::Plane($it) => $crate::any::Any::Plane($body),
-        }
-    };
-}
-
-pub(crate) use {each, map};
+pub(crate) type AnyProblem = ByDimension<Arc<BarProblem>, Arc<TriangleProblem>>;

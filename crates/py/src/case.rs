@@ -1,8 +1,8 @@
 //! Case files.
 
-use crate::any::{Any, each};
 use crate::{bridge, errors};
-use percute_workflow::case::{Case, CaseOf, Instants, Source};
+use percute_core::each_dimension;
+use percute_workflow::case::{Case, Instants, Source, parse};
 use percute_workflow::outputs;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct CaseData {
-    pub(crate) case: Any<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>,
+    pub(crate) case: Case,
 }
 
 #[pymethods]
@@ -19,18 +19,13 @@ impl CaseData {
     /// Reads the text of a case of this name; the files that it reads are relative to `folder`.
     #[new]
     fn parse(py: Python<'_>, name: String, text: String, folder: PathBuf) -> PyResult<Self> {
-        let case = bridge::blocking(py, None, move |_| Case::parse(Source::new(name, text).in_folder(folder)))?;
-        Ok(Self {
-            case: match case.map_err(|error| errors::case(py, &error))? {
-                Case::Bar(case) => Any::Bar(case),
-                Case::Plane(case) => Any::Plane(case),
-            },
-        })
+        let case = bridge::blocking(py, None, move |_| parse(Source::new(name, text).in_folder(folder)))?;
+        Ok(Self { case: case.map_err(|error| errors::case(py, &error))? })
     }
 
     /// Its plausibility warnings; with `in_memory`, its history is kept in memory.
     fn plausibility_warnings(&self, in_memory: bool) -> Vec<String> {
-        each!(&self.case, case => case.plausibility_warnings(in_memory))
+        each_dimension!(&self.case, case => case.plausibility_warnings(in_memory))
             .into_iter()
             .map(|plausibility_warning| plausibility_warning.message)
             .collect()
@@ -38,7 +33,7 @@ impl CaseData {
 
     /// The import warnings of its mesh.
     fn import_warnings(&self) -> Vec<String> {
-        each!(&self.case, case => case.problem.mesh().import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
+        each_dimension!(&self.case, case => case.problem.mesh().import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
     }
 
     /// The files of a run, checked before any work: the history in `store` or as the case says, and the estimate,
@@ -50,12 +45,12 @@ impl CaseData {
         store: Option<PathBuf>,
         overwrite: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let output = each!(&self.case, case => &case.output);
+        let output = each_dimension!(&self.case, case => &case.output);
         let chosen = [
             outputs::chosen(["`store`", "[output] history"], store.as_deref(), output.history.as_deref()),
             outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
         ];
-        let inputs = each!(&self.case, read => read.inputs(case.as_deref()));
+        let inputs = each_dimension!(&self.case, read => read.inputs(case.as_deref()));
         let checked = outputs::check(&inputs, &chosen, None, overwrite);
         checked.map_err(|error| errors::output(py, &error))?;
         let asked = PyDict::new(py);

@@ -1,6 +1,5 @@
 //! Estimates of histories.
 
-use crate::any::{Any, each, map};
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::restore::restore;
@@ -10,7 +9,9 @@ use numpy::{PyArray1, PyArrayDyn};
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
+use percute_core::{each_dimension, map_dimension};
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample, UnknownName};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
@@ -54,7 +55,7 @@ pub(crate) enum Told<const D: usize> {
 /// An estimate of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct EstimateData {
-    pub(crate) made: Any<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
+    pub(crate) made: ByDimension<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
 }
 
 /// A number of each element.
@@ -102,8 +103,12 @@ pub(crate) fn estimate(
     let instants = instants.map(Instants::from);
     Ok(EstimateData {
         made: match &history.run {
-            Any::Bar(run) => Any::Bar(estimate_one(py, run, options, instants.as_ref(), fields, progress)?),
-            Any::Plane(run) => Any::Plane(estimate_one(py, run, options, instants.as_ref(), fields, progress)?),
+            ByDimension::Bar(run) => {
+                ByDimension::Bar(estimate_one(py, run, options, instants.as_ref(), fields, progress)?)
+            }
+            ByDimension::Plane(run) => {
+                ByDimension::Plane(estimate_one(py, run, options, instants.as_ref(), fields, progress)?)
+            }
         },
     })
 }
@@ -209,27 +214,27 @@ impl<const D: usize, const N: usize> Made<D, N> {
 #[pymethods]
 impl EstimateData {
     fn problem(&self) -> ProblemData {
-        ProblemData::new(map!(&self.made, m => m.problem.clone()))
+        ProblemData::new(map_dimension!(&self.made, m => m.problem.clone()))
     }
 
     /// All instants planned (s).
     fn times(&self) -> Vec<f64> {
-        each!(&self.made, m => m.times.instants().to_vec())
+        each_dimension!(&self.made, m => m.times.instants().to_vec())
     }
 
     /// An estimate put together again from what the other methods give.
     #[staticmethod]
     fn restore(problem: &ProblemData, state: &Bound<'_, PyAny>) -> PyResult<Self> {
         let made = match &problem.problem {
-            Any::Bar(problem) => Any::Bar(Arc::new(restore(problem, &state.extract()?)?)),
-            Any::Plane(problem) => Any::Plane(Arc::new(restore(problem, &state.extract()?)?)),
+            ByDimension::Bar(problem) => ByDimension::Bar(Arc::new(restore(problem, &state.extract()?)?)),
+            ByDimension::Plane(problem) => ByDimension::Plane(Arc::new(restore(problem, &state.extract()?)?)),
         };
         Ok(Self { made })
     }
 
     /// The measures: those of `percute.Estimate` that are single numbers.
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (error, time_of_sup, steps, end, kept) = each!(&self.made, m => {
+        let (error, time_of_sup, steps, end, kept) = each_dimension!(&self.made, m => {
             let e = &m.estimate;
             (e.error, e.time_of_sup, e.steps, e.end, e.kept_impulse)
         });
@@ -249,22 +254,22 @@ impl EstimateData {
 
     /// Parts of η at the time of the sup: kinetic, elastic, contact (J).
     fn parts(&self) -> (f64, f64, f64) {
-        let parts = each!(&self.made, m => m.estimate.parts);
+        let parts = each_dimension!(&self.made, m => m.estimate.parts);
         (parts.kinetic, parts.elastic, parts.contact)
     }
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        columns(py, each!(&self.made, m => &m.estimate.over_time))
+        columns(py, each_dimension!(&self.made, m => &m.estimate.over_time))
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.made, m => view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()]))
+        each_dimension!(&self.made, m => view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()]))
     }
 
     fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let residuals = PyDict::new(py);
-        for (name, value) in each!(&self.made, m => m.estimate.residuals.entries()) {
+        for (name, value) in each_dimension!(&self.made, m => m.estimate.residuals.entries()) {
             residuals.set_item(name, value)?;
         }
         Ok(residuals)
@@ -272,25 +277,25 @@ impl EstimateData {
 
     /// Whether the history brought velocities, and accelerations.
     fn given(&self) -> (bool, bool) {
-        let given = each!(&self.made, m => m.estimate.given);
+        let given = each_dimension!(&self.made, m => m.estimate.given);
         (given.velocity, given.acceleration)
     }
 
     /// Names of the method's choices, and the samples taken.
     fn options(&self) -> (String, String, usize) {
-        let options = each!(&self.made, m => m.options);
+        let options = each_dimension!(&self.made, m => m.options);
         (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
     }
 
     /// The elements that contribute most, largest first.
     fn worst_elements(&self, count: usize) -> Vec<(usize, f64)> {
-        let worst = each!(&self.made, m => m.estimate.worst_elements(count));
+        let worst = each_dimension!(&self.made, m => m.estimate.worst_elements(count));
         worst.into_iter().map(|(element, error)| (element.index(), error)).collect()
     }
 
     /// Each map as its arguments.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
+        each_dimension!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
     }
 
     /// Writes an estimate file; contact results come from the history.
@@ -304,16 +309,18 @@ impl EstimateData {
     ) -> PyResult<()> {
         let overwrite = Overwrite::allowed(overwrite);
         match (&self.made, history.map(|history| &history.run)) {
-            (Any::Bar(made), Some(Any::Bar(run))) => made.saved(py, path, overwrite, name, Some(run)),
-            (Any::Plane(made), Some(Any::Plane(run))) => made.saved(py, path, overwrite, name, Some(run)),
-            (Any::Bar(made), _) => made.saved(py, path, overwrite, name, None),
-            (Any::Plane(made), _) => made.saved(py, path, overwrite, name, None),
+            (ByDimension::Bar(made), Some(ByDimension::Bar(run))) => made.saved(py, path, overwrite, name, Some(run)),
+            (ByDimension::Plane(made), Some(ByDimension::Plane(run))) => {
+                made.saved(py, path, overwrite, name, Some(run))
+            }
+            (ByDimension::Bar(made), _) => made.saved(py, path, overwrite, name, None),
+            (ByDimension::Plane(made), _) => made.saved(py, path, overwrite, name, None),
         }
     }
 
     /// The document of `percute run --json`.
     fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
-        let text = each!(&self.made, made => {
+        let text = each_dimension!(&self.made, made => {
             let made = made.clone();
             bridge::blocking(py, None, move |_| made.report(&name))?
         });

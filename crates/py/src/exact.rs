@@ -1,12 +1,12 @@
 //! Closed-form solutions, and the true error of a bar that strikes a plane.
 
-use crate::any::Any;
 use crate::history::HistoryData;
 use crate::reference::{Told, told};
 use crate::run::{Run, Stoppable};
 use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
 use percute_core::history::StepSource;
+use percute_core::simplex::ByDimension;
 use percute_estimator::reference::{Recorder, ReferenceError, TrueError, bar_impact_error};
 use percute_exact::{BarEnds, BarImpact, BarMode, BarRamp, BlockMode, BouncingBar, ClampedRod, RigidSlide, Wave};
 use pyo3::prelude::*;
@@ -154,7 +154,7 @@ pub(crate) fn true_error_of_bar_impact<'py>(
     values: [f64; 6],
     history: &HistoryData,
 ) -> PyResult<Told<'py>> {
-    let Any::Bar(run) = &history.run else {
+    let ByDimension::Bar(run) = &history.run else {
         return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
     };
     let run = run.clone();

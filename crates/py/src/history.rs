@@ -1,6 +1,6 @@
 //! Histories: simulated, shown as arrays, put together again.
 
-use crate::any::{AnyProblem, each, map};
+use crate::any::AnyProblem;
 use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
@@ -10,6 +10,7 @@ use percute_core::dynamics::Balance;
 use percute_core::history::{History, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
@@ -47,7 +48,7 @@ impl HistoryData {
             reaction: reaction.as_slice()?,
             touching: touching.as_slice()?,
         };
-        Ok(Self { run: map!(&problem.problem, p => Arc::new(given.run(py, p, &times)?)) })
+        Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times)?)) })
     }
 
     #[getter]
@@ -58,7 +59,7 @@ impl HistoryData {
     /// All instants planned (s).
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.run, run => {
+        each_dimension!(&self.run, run => {
             let instants = run.times().instants().len();
             view::view(py, run, |r| r.times().instants(), &[instants])
         })
@@ -67,35 +68,35 @@ impl HistoryData {
     /// Number of instants held.
     #[getter]
     fn count(&self) -> usize {
-        each!(&self.run, run => run.count())
+        each_dimension!(&self.run, run => run.count())
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        each!(&self.run, run => run.count() == run.times().instants().len())
+        each_dimension!(&self.run, run => run.count() == run.times().instants().len())
     }
 
     /// Arguments of `estimate` that it takes unless told otherwise.
     fn options(&self) -> (String, String, usize) {
-        let options = each!(&self.run, run => run.options);
+        let options = each_dimension!(&self.run, run => run.options);
         (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
     }
 
     /// Nodes of the rows of reactions and touching status.
     #[getter]
     fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        each!(&self.run, run => view::column(py, &run.contact_nodes(), |n| *n as i64))
+        each_dimension!(&self.run, run => view::column(py, &run.contact_nodes(), |n| *n as i64))
     }
 
     /// The file that holds the steps, or none.
     #[getter]
     fn path(&self) -> Option<PathBuf> {
-        each!(&self.run, run => run.file().map(|file| file.path().to_path_buf()))
+        each_dimension!(&self.run, run => run.file().map(|file| file.path().to_path_buf()))
     }
 
     /// Name, shape and first byte of each array in the file that can be mapped into memory.
     fn arrays(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Vec<usize>, u64)>> {
-        each!(&self.run, run => {
+        each_dimension!(&self.run, run => {
             let Some(file) = run.file().cloned() else { return Ok(Vec::new()) };
             let arrays = bridge::blocking(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
             Ok(arrays.into_iter().filter_map(|a| Some((a.name, a.shape, a.offset?))).collect())
@@ -104,7 +105,7 @@ impl HistoryData {
 
     /// From memory as it is; from a file a copy.
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.run, run => match run.memory() {
+        each_dimension!(&self.run, run => match run.memory() {
             Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::displacement), &run.shape()),
             None => view::field(py, &read(py, run, HistoryFile::displacement)?, Vec::as_slice, &run.shape()),
         })
@@ -112,7 +113,7 @@ impl HistoryData {
 
     /// Likewise.
     fn reaction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.run, run => match run.memory() {
+        each_dimension!(&self.run, run => match run.memory() {
             Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::reaction), &run.contact_shape()),
             None => view::field(py, &read(py, run, HistoryFile::reaction)?, Vec::as_slice, &run.contact_shape()),
         })
@@ -120,7 +121,7 @@ impl HistoryData {
 
     /// Likewise.
     fn touching<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        each!(&self.run, run => match run.memory() {
+        each_dimension!(&self.run, run => match run.memory() {
             Some(_) => view::view(py, run, |r| r.memory().map_or(&[], History::touching), &run.contact_shape()),
             None => view::view(py, &read(py, run, HistoryFile::touching)?, Vec::as_slice, &run.contact_shape()),
         })
@@ -128,7 +129,7 @@ impl HistoryData {
 
     /// Velocity and acceleration, derived now.
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 2]> {
-        each!(&self.run, run => {
+        each_dimension!(&self.run, run => {
             let worker = run.clone();
             let derived = bridge::blocking(py, None, move |watch| worker.motion(watch))?;
             let motion = Arc::new(derived.map_err(|error| errors::steps(py, &error))?);
@@ -141,12 +142,12 @@ impl HistoryData {
 
     /// What contact did, computed now or before: arrays by name, see `python/percute/contact.py`.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each!(&self.run, run => contact::arrays(py, &contact::of_run(py, run)?))
+        each_dimension!(&self.run, run => contact::arrays(py, &contact::of_run(py, run)?))
     }
 
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each!(&self.run, run => {
+        each_dimension!(&self.run, run => {
             let worker = run.clone();
             let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
             columns(py, &kept.map_err(|error| errors::steps(py, &error))?)
@@ -156,7 +157,7 @@ impl HistoryData {
 
 impl HistoryData {
     fn any_problem(&self) -> AnyProblem {
-        map!(&self.run, run => run.problem.clone())
+        map_dimension!(&self.run, run => run.problem.clone())
     }
 }
 

@@ -1,12 +1,14 @@
 //! Meshes.
 
-use crate::any::{Any, AnyMesh, each, map};
+use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_core::simplex::ByDimension;
 use percute_core::simplex::{Element, Simplex};
+use percute_core::{each_dimension, map_dimension};
 use percute_io::Overwrite;
-use percute_io::gmsh::{self, Format, MeshFile, Version};
+use percute_io::gmsh::{self, Format, Version};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -27,26 +29,26 @@ impl MeshData {
     #[staticmethod]
     fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
-        Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     #[staticmethod]
     fn disc(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| TriangleMesh::disc(radius, rings))?;
-        Ok(Self { mesh: Any::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     #[staticmethod]
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
-        Ok(Self { mesh: Any::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
     }
 
     /// The mesh with each element cut into halves (a bar) or quarters, so many times.
     fn refined(&self, py: Python<'_>, times: usize) -> PyResult<Self> {
         let mut mesh = self.mesh.clone();
         for _ in 0..times {
-            mesh = map!(mesh, mesh => {
+            mesh = map_dimension!(mesh, mesh => {
                 let finer = bridge::blocking(py, None, move |_| mesh.refined())?;
                 Arc::new(finer.map_err(|e| errors::mesh(py, &e))?)
             });
@@ -64,9 +66,9 @@ impl MeshData {
         element_groups: NumberGroups<'_>,
     ) -> PyResult<Self> {
         let mesh = if points.as_array().ncols() == 1 {
-            Any::Bar(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
+            ByDimension::Bar(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
         } else {
-            Any::Plane(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
+            ByDimension::Plane(from_arrays(py, &points, &cells, &edge_groups, &element_groups)?)
         };
         Ok(Self { mesh })
     }
@@ -75,18 +77,15 @@ impl MeshData {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
         let read = bridge::blocking(py, None, move |_| gmsh::read(&path, scale))?;
-        let mesh = match read.map_err(|error| errors::gmsh(py, &error))? {
-            MeshFile::Bar(read) => Any::Bar(Arc::new(read.mesh)),
-            MeshFile::Plane(read) => Any::Plane(Arc::new(read.mesh)),
-        };
-        Ok(Self { mesh })
+        let read = read.map_err(|error| errors::gmsh(py, &error))?;
+        Ok(Self { mesh: map_dimension!(read, read => Arc::new(read.mesh)) })
     }
 
     /// Writes a file of Gmsh, of version 2.2 if it is `old` and of 4.1 otherwise.
     fn write(&self, py: Python<'_>, path: PathBuf, old: bool, binary: bool, overwrite: bool) -> PyResult<()> {
         let format = Format { version: if old { Version::V22 } else { Version::V41 }, binary };
         let overwrite = Overwrite::allowed(overwrite);
-        let written = each!(&self.mesh, mesh => {
+        let written = each_dimension!(&self.mesh, mesh => {
             let mesh = mesh.clone();
             bridge::blocking(py, None, move |_| gmsh::write(&path, overwrite, &mesh, format))?
         });
@@ -95,32 +94,32 @@ impl MeshData {
 
     /// What was reported when it was read.
     fn import_warnings(&self) -> Vec<String> {
-        each!(&self.mesh, mesh => mesh.import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
+        each_dimension!(&self.mesh, mesh => mesh.import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
     }
 
     #[getter]
     fn dimension(&self) -> usize {
         match self.mesh {
-            Any::Bar(_) => 1,
-            Any::Plane(_) => 2,
+            ByDimension::Bar(_) => 1,
+            ByDimension::Plane(_) => 2,
         }
     }
 
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.mesh, mesh => view::view(py, mesh, |m| m.points().as_flattened(), &[mesh.node_count(), self.dimension()]))
+        each_dimension!(&self.mesh, mesh => view::view(py, mesh, |m| m.points().as_flattened(), &[mesh.node_count(), self.dimension()]))
     }
 
     #[getter]
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
-        let shape = [each!(&self.mesh, mesh => mesh.element_count()), self.dimension() + 1];
-        each!(&self.mesh, mesh => view::view(py, mesh, |m| view::numbers(m.cells().as_flattened()), &shape))
+        let shape = [each_dimension!(&self.mesh, mesh => mesh.element_count()), self.dimension() + 1];
+        each_dimension!(&self.mesh, mesh => view::view(py, mesh, |m| view::numbers(m.cells().as_flattened()), &shape))
     }
 
     /// Name of each group of facets, with the nodes of each of its facets.
     #[getter]
     fn edge_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each!(&self.mesh, mesh => {
+        each_dimension!(&self.mesh, mesh => {
             let groups = PyDict::new(py);
             for (name, facets) in mesh.facet_groups() {
                 let nodes = facets.iter().flat_map(|f| mesh.facets()[f.index()].nodes).map(|n| n.index() as i64);
@@ -133,7 +132,7 @@ impl MeshData {
     /// Name of each group of elements, with their numbers.
     #[getter]
     fn element_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each!(&self.mesh, mesh => {
+        each_dimension!(&self.mesh, mesh => {
             let groups = PyDict::new(py);
             for (name, elements) in mesh.element_groups() {
                 groups.set_item(name, view::column(py, elements, |e| e.index() as i64))?;
@@ -144,12 +143,12 @@ impl MeshData {
 
     #[getter]
     fn size(&self) -> f64 {
-        each!(&self.mesh, mesh => mesh.size())
+        each_dimension!(&self.mesh, mesh => mesh.size())
     }
 
     #[getter]
     fn reoriented_elements(&self) -> usize {
-        each!(&self.mesh, mesh => mesh.reoriented_elements())
+        each_dimension!(&self.mesh, mesh => mesh.reoriented_elements())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Problems.
 
-use crate::any::{Any, AnyProblem, each};
+use crate::any::AnyProblem;
 use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
@@ -10,6 +10,8 @@ use percute_core::material::{Elastic, Hypothesis};
 use percute_core::mesh::Mesh;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, InputError, Problem};
+use percute_core::simplex::ByDimension;
+use percute_core::{each_dimension, map_dimension};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
@@ -49,7 +51,7 @@ impl ProblemData {
             return Ok(step);
         }
         let problem = self.problem.clone();
-        let step = bridge::blocking(py, None, move |_| each!(&problem, p => critical_time_step(p)))?;
+        let step = bridge::blocking(py, None, move |_| each_dimension!(&problem, p => critical_time_step(p)))?;
         Ok(*self.critical_step.get_or_init(|| step))
     }
 }
@@ -73,15 +75,15 @@ impl ProblemData {
         let lists = [&obstacles, &supports, &tractions, &body_forces];
         let fields = [&velocity, &displacement];
         let problem = match &mesh.mesh {
-            Any::Bar(mesh) => Any::Bar(build(py, mesh, &materials, lists, fields)?),
-            Any::Plane(mesh) => Any::Plane(build(py, mesh, &materials, lists, fields)?),
+            ByDimension::Bar(mesh) => ByDimension::Bar(build(py, mesh, &materials, lists, fields)?),
+            ByDimension::Plane(mesh) => ByDimension::Plane(build(py, mesh, &materials, lists, fields)?),
         };
         Ok(Self::new(problem))
     }
 
     /// A copy of the mesh.
     fn mesh(&self) -> MeshData {
-        MeshData { mesh: crate::any::map!(&self.problem, p => Arc::new(p.mesh().clone())) }
+        MeshData { mesh: map_dimension!(&self.problem, p => Arc::new(p.mesh().clone())) }
     }
 
     #[getter]
@@ -91,32 +93,32 @@ impl ProblemData {
 
     #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.problem, p => view::view(py, p, |p| p.mass(), &[p.mass().len()]))
+        each_dimension!(&self.problem, p => view::view(py, p, |p| p.mass(), &[p.mass().len()]))
     }
 
     #[getter]
     fn initial_displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.problem, p => view::field(py, p, |p| p.initial_displacement(), &[p.mesh().node_count()]))
+        each_dimension!(&self.problem, p => view::field(py, p, |p| p.initial_displacement(), &[p.mesh().node_count()]))
     }
 
     #[getter]
     fn initial_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each!(&self.problem, p => view::field(py, p, |p| p.initial_velocity(), &[p.mesh().node_count()]))
+        each_dimension!(&self.problem, p => view::field(py, p, |p| p.initial_velocity(), &[p.mesh().node_count()]))
     }
 
     #[getter]
     fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        each!(&self.problem, p => view::column(py, p.surface().nodes(), |c| c.node.index() as i64))
+        each_dimension!(&self.problem, p => view::column(py, p.surface().nodes(), |c| c.node.index() as i64))
     }
 
     #[getter]
     fn wave_speed(&self) -> f64 {
-        each!(&self.problem, p => p.materials().iter().map(Elastic::wave_speed).fold(0.0, f64::max))
+        each_dimension!(&self.problem, p => p.materials().iter().map(Elastic::wave_speed).fold(0.0, f64::max))
     }
 
     /// σ_xx, σ_yy and σ_xy of a unit strain ε_xx, ε_xx and 2ε_xy, and σ_zz of a unit tr ε, for each element (Pa).
     fn stiffness<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 4] {
-        each!(&self.problem, p => {
+        each_dimension!(&self.problem, p => {
             let of = |number: fn(&Elastic) -> f64| {
                 let materials: Vec<f64> = p.materials().iter().map(number).collect();
                 let numbers = p.element_material().iter().map(|m| materials[usize::from(*m)]);
@@ -128,28 +130,28 @@ impl ProblemData {
 
     /// Groups and arguments of the materials.
     fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<(Option<String>, Bound<'py, PyDict>)>> {
-        let materials = each!(&self.problem, p => &p.statement().materials);
+        let materials = each_dimension!(&self.problem, p => &p.statement().materials);
         materials.iter().map(|(group, law)| Ok((group.clone(), statement::material_arguments(py, law)?))).collect()
     }
 
     /// Arguments of the planes.
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.problem, p => p.obstacles().iter().map(|plane| statement::plane_arguments(py, plane)).collect())
+        each_dimension!(&self.problem, p => p.obstacles().iter().map(|plane| statement::plane_arguments(py, plane)).collect())
     }
 
     /// Arguments of the supports.
     fn supports<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.problem, p => p.statement().supports.iter().map(|s| statement::support_arguments(py, s)).collect())
+        each_dimension!(&self.problem, p => p.statement().supports.iter().map(|s| statement::support_arguments(py, s)).collect())
     }
 
     /// Arguments of the tractions.
     fn tractions<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.problem, p => p.statement().tractions.iter().map(|t| statement::traction_arguments(py, t)).collect())
+        each_dimension!(&self.problem, p => p.statement().tractions.iter().map(|t| statement::traction_arguments(py, t)).collect())
     }
 
     /// Arguments of the body forces.
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each!(&self.problem, p => p.statement().body_forces.iter().map(|f| statement::body_force_arguments(py, f)).collect())
+        each_dimension!(&self.problem, p => p.statement().body_forces.iter().map(|f| statement::body_force_arguments(py, f)).collect())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The true error of histories, against finer simulations.
 
-use crate::any::{Any, AnyProblem};
+use crate::any::AnyProblem;
 use crate::bridge::Watch;
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
@@ -10,6 +10,7 @@ use crate::{bridge, errors, time, view};
 use percute_core::dynamics::simulate;
 use percute_core::history::StepSource;
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Recorder, TrueError, TrueErrorSample};
 use pyo3::prelude::*;
@@ -34,8 +35,8 @@ pub(crate) fn errors_against_history<'py>(
     reference: &HistoryData,
 ) -> PyResult<Vec<Told<'py>>> {
     match &reference.run {
-        Any::Bar(run) => compared(py, bars(py, &histories)?, Source::Kept(run.clone()), None),
-        Any::Plane(run) => compared(py, planes(py, &histories)?, Source::Kept(run.clone()), None),
+        ByDimension::Bar(run) => compared(py, bars(py, &histories)?, Source::Kept(run.clone()), None),
+        ByDimension::Plane(run) => compared(py, planes(py, &histories)?, Source::Kept(run.clone()), None),
     }
 }
 

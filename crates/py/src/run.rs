@@ -1,11 +1,11 @@
 //! A history with its problem, in memory or in a file.
 
-use crate::any::Any;
 use crate::bridge::Watch;
 use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Kinematics};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::FileError;
@@ -33,7 +33,7 @@ pub(crate) enum Steps<const D: usize, const N: usize> {
 }
 
 /// A run of either dimension, shared.
-pub(crate) type AnyRun = Any<Arc<Run<1, 2>>, Arc<Run<2, 3>>>;
+pub(crate) type AnyRun = ByDimension<Arc<Run<1, 2>>, Arc<Run<2, 3>>>;
 
 /// Velocities and accelerations at all instants, node by node and step after step.
 pub(crate) struct Motion<const D: usize> {

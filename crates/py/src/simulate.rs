@@ -1,6 +1,5 @@
 //! Simulations, into memory or into a file.
 
-use crate::any::{Any, each};
 use crate::bridge::Watch;
 use crate::case::CaseData;
 use crate::history::HistoryData;
@@ -10,12 +9,14 @@ use crate::{bridge, errors, time};
 use percute_core::dynamics::SimulationError;
 use percute_core::history::Discard;
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
+use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::{FileError, Overwrite};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseError, NotRepresentable, Source};
-use percute_workflow::history::{AnyStored, plan};
+use percute_workflow::history::plan;
 use percute_workflow::info::memory;
 use percute_workflow::run::simulate_into;
 use pyo3::prelude::*;
@@ -44,8 +45,12 @@ pub(crate) fn simulate(
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
     match &problem.problem {
-        Any::Bar(problem) => one(py, problem, &times, Options::default(), store, progress, (&|_| None, Any::Bar)),
-        Any::Plane(problem) => one(py, problem, &times, Options::default(), store, progress, (&|_| None, Any::Plane)),
+        ByDimension::Bar(problem) => {
+            one(py, problem, &times, Options::default(), store, progress, (&|_| None, ByDimension::Bar))
+        }
+        ByDimension::Plane(problem) => {
+            one(py, problem, &times, Options::default(), store, progress, (&|_| None, ByDimension::Plane))
+        }
     }
 }
 
@@ -58,15 +63,15 @@ pub(crate) fn simulate_case(
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<HistoryData> {
-    let (source, options) = each!(&case.case, case => (case.source.clone(), case.options));
+    let (source, options) = each_dimension!(&case.case, case => (case.source.clone(), case.options));
     let store = store.map(|path| Store::new(path, overwrite, options, Some(source)));
     match &case.case {
-        Any::Bar(case) => {
-            let kind: Kind<'_, 1, 2> = (&|error| case.refused_start(error), Any::Bar);
+        ByDimension::Bar(case) => {
+            let kind: Kind<'_, 1, 2> = (&|error| case.refused_start(error), ByDimension::Bar);
             one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
         }
-        Any::Plane(case) => {
-            let kind: Kind<'_, 2, 3> = (&|error| case.refused_start(error), Any::Plane);
+        ByDimension::Plane(case) => {
+            let kind: Kind<'_, 2, 3> = (&|error| case.refused_start(error), ByDimension::Plane);
             one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
         }
     }
@@ -82,7 +87,7 @@ pub(crate) fn plausibility_warnings(
 ) -> PyResult<Vec<String>> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let (plausibility_warnings, needed, groups) = each!(&problem.problem, problem => {
+    let (plausibility_warnings, needed, groups) = each_dimension!(&problem.problem, problem => {
         let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
         let groups: Vec<_> = problem.statement().materials.iter().map(|(group, _)| group.clone()).collect();
         (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups)
@@ -102,10 +107,8 @@ pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryDat
 }
 
 fn opened(path: &Path) -> Result<AnyRun, Failure> {
-    Ok(match percute_workflow::history::open(path)? {
-        AnyStored::Bar(stored) => Any::Bar(Arc::new(Run::stored(*stored)?)),
-        AnyStored::Plane(stored) => Any::Plane(Arc::new(Run::stored(*stored)?)),
-    })
+    let stored = percute_workflow::history::open(path)?;
+    Ok(map_dimension!(stored, stored => Arc::new(Run::stored(*stored)?)))
 }
 
 /// A file to simulate into.

@@ -5,12 +5,14 @@ use crate::failure::Failure;
 use crate::report::Subject;
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::history::StepSink;
+use percute_core::map_dimension;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Request, RunError};
 use percute_io::Case;
-use percute_io::history::{AnyHistoryFile, HistoryFile, Plan};
+use percute_io::history::{HistoryFile, Plan};
 use std::path::Path;
 
 /// The file that will hold the history of a problem, with the options that its estimate takes unless
@@ -48,23 +50,14 @@ pub struct Stored<const D: usize, const N: usize> {
 }
 
 /// A history of either dimension.
-#[derive(Clone, Debug)]
-pub enum AnyStored {
-    /// Of a bar.
-    Bar(Box<Stored<1, 2>>),
-    /// Of a plane body.
-    Plane(Box<Stored<2, 3>>),
-}
+pub type AnyStored = ByDimension<Box<Stored<1, 2>>, Box<Stored<2, 3>>>;
 
 /// Opens a history and reads the statement of its problem. Its steps stay in the file.
 ///
 /// # Errors
 /// A file that is no history or is damaged; a statement with a mistake, with its line.
 pub fn open(path: &Path) -> Result<AnyStored, Failure> {
-    match percute_io::history::open(path)? {
-        AnyHistoryFile::Bar(file) => Ok(AnyStored::Bar(Box::new(Stored::new(file, path)?))),
-        AnyHistoryFile::Plane(file) => Ok(AnyStored::Plane(Box::new(Stored::new(file, path)?))),
-    }
+    Ok(map_dimension!(percute_io::history::open(path)?, file => Box::new(Stored::new(file, path)?)))
 }
 
 impl<const D: usize, const N: usize> Stored<D, N> {

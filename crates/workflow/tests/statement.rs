@@ -3,6 +3,7 @@
 // A test that cannot go on fails.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use percute_core::each_dimension;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
@@ -13,7 +14,7 @@ use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 use percute_testkit::{Random, strategy::rectangle};
-use percute_workflow::case::{Case, NotRepresentable, Source, problem_from, statement};
+use percute_workflow::case::{Case, NotRepresentable, Source, parse, problem_from, statement};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -187,7 +188,7 @@ proptest! {
 }
 
 fn read(text: &str) -> Case {
-    Case::parse(Source::new("case.toml", text)).unwrap()
+    parse(Source::new("case.toml", text)).unwrap()
 }
 
 /// Problem, options and the estimate of a few steps.
@@ -207,10 +208,7 @@ fn examples_come_back_with_their_estimates() {
         include_str!("../../../examples/bar.toml"),
         include_str!("../../../examples/stack.toml"),
     ] {
-        match read(text) {
-            Case::Bar(case) => as_good_as_the_case(&case.problem, &case.times, case.options),
-            Case::Plane(case) => as_good_as_the_case(&case.problem, &case.times, case.options),
-        }
+        each_dimension!(read(text), case => as_good_as_the_case(&case.problem, &case.times, case.options));
     }
 }
 

@@ -7,10 +7,11 @@ use super::run::{request, within};
 use crate::args::EstimateArguments;
 use crate::picture::Drawn;
 use crate::progress::Watch;
+use percute_core::each_dimension;
 use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
-use percute_workflow::history::{AnyStored, Stored, open};
+use percute_workflow::history::{Stored, open};
 use percute_workflow::outputs::Output;
 use percute_workflow::report::Report;
 use std::time::Instant;
@@ -19,10 +20,7 @@ pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) 
     let output = arguments.output.as_deref().map(|file| Output { what: "--output", file });
     let picture = arguments.print.picture.as_deref();
     check(&[("history", &arguments.history)], &[output], picture, arguments.work.force)?;
-    match open(&arguments.history)? {
-        AnyStored::Bar(stored) => estimate(&stored, output, arguments, console),
-        AnyStored::Plane(stored) => estimate(&stored, output, arguments, console),
-    }
+    each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, arguments, console))
 }
 
 fn estimate<const D: usize, const N: usize>(

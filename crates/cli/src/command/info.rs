@@ -3,10 +3,11 @@
 use super::{Console, case};
 use crate::args::InfoArguments;
 use crate::exit::DONE;
+use percute_core::each_dimension;
 use percute_io::{Kind, estimate_file, gmsh, kind};
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf};
-use percute_workflow::history::{AnyStored, open};
+use percute_workflow::case::CaseOf;
+use percute_workflow::history::open;
 use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
 use percute_workflow::report::reported;
 use std::path::Path;
@@ -28,10 +29,7 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         // The reader of histories says what a stranger holds instead.
         Kind::History | Kind::OtherHdf5 => {}
     }
-    Ok(match open(file)? {
-        AnyStored::Bar(stored) => of_history(&stored),
-        AnyStored::Plane(stored) => of_history(&stored),
-    })
+    Ok(each_dimension!(open(file)?, stored => of_history(&stored)))
 }
 
 /// A mesh as it is, in the unit of the file.
@@ -49,10 +47,7 @@ fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         let file = file.display();
         return Err(Failure::Argument(format!("{file}: this is neither a case file nor a history or estimate file")));
     }
-    Ok(match case(file)? {
-        Case::Bar(case) => with_warnings(&case, console)?,
-        Case::Plane(case) => with_warnings(&case, console)?,
-    })
+    Ok(each_dimension!(case(file)?, case => with_warnings(&case, console)?))
 }
 
 /// A case, with its warnings on standard error.

@@ -15,7 +15,7 @@ use crate::exit::{BAD_INPUT, DONE, FAILED, code};
 use clap::Parser;
 use percute_io::is_hdf5;
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf, Source};
+use percute_workflow::case::{Case, CaseOf, Source, parse};
 use percute_workflow::message::hint;
 use percute_workflow::report::Warning;
 use std::ffi::OsString;
@@ -98,7 +98,7 @@ impl Console<'_> {
 
 /// Reads and checks a case file.
 fn case(file: &Path) -> Result<Case, Failure> {
-    Ok(Case::parse(read(file)?)?)
+    Ok(parse(read(file)?)?)
 }
 
 /// The file in the same folder that was likely meant.

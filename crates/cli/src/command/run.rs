@@ -7,10 +7,11 @@ use crate::args::{MapArguments, RunArguments};
 use crate::exit::INTERRUPTED;
 use crate::picture::Drawn;
 use crate::progress::Watch;
+use percute_core::each_dimension;
 use percute_core::problem::Problem;
 use percute_estimator::{EstimateError, Request, RunError};
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf, Instants};
+use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::history::stored_case;
 use percute_workflow::outputs::{Output, chosen};
 use percute_workflow::report::Report;
@@ -18,10 +19,7 @@ use percute_workflow::run::run;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    match case(&arguments.case)? {
-        Case::Bar(case) => run_case(&case, arguments, console),
-        Case::Plane(case) => run_case(&case, arguments, console),
-    }
+    each_dimension!(case(&arguments.case)?, case => run_case(&case, arguments, console))
 }
 
 fn run_case<const D: usize, const N: usize>(

@@ -5,8 +5,9 @@ use super::{Console, case};
 use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
+use percute_core::each_dimension;
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf};
+use percute_workflow::case::CaseOf;
 use percute_workflow::outputs::{Output, chosen};
 use percute_workflow::report::{reported, simulated};
 use percute_workflow::run::simulate_only;
@@ -14,10 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) fn command(arguments: &SimulateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    match case(&arguments.case)? {
-        Case::Bar(case) => simulate(&case, arguments, console),
-        Case::Plane(case) => simulate(&case, arguments, console),
-    }
+    each_dimension!(case(&arguments.case)?, case => simulate(&case, arguments, console))
 }
 
 fn simulate<const D: usize, const N: usize>(

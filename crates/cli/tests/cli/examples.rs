@@ -9,7 +9,7 @@ use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion, Recorder, bar_impact_error};
 use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::BarImpact;
-use percute_workflow::case::{Case, CaseOf, Source, problem_from, statement};
+use percute_workflow::case::{Case, CaseOf, Source, parse, problem_from, statement};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -114,7 +114,7 @@ fn as_far_from_the_truth_as_measured() {
     for Example(name, _, effectivity) in EXAMPLES {
         let file = folder().join(format!("{name}.toml"));
         let text = std::fs::read_to_string(&file).unwrap();
-        let ratio = match Case::parse(Source::new(file.to_str().unwrap(), text).in_folder(folder())).unwrap() {
+        let ratio = match parse(Source::new(file.to_str().unwrap(), text).in_folder(folder())).unwrap() {
             Case::Plane(case) => {
                 let (motion, estimated) = run(&case);
                 estimated / true_error(&case, &motion)

@@ -1,7 +1,7 @@
 //! Every mistake of `tests/mistakes.toml` that the command can be given is named, and nothing is made.
 
 use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr};
-use percute_workflow::case::{Case, Source};
+use percute_workflow::case::{Source, parse};
 use serde::Deserialize;
 use std::process::Output;
 
@@ -296,7 +296,7 @@ fn whatever_is_written_there_is_no_panic() {
         for (at, line) in lines.iter().enumerate() {
             for new in spoilt(line).into_iter().chain([String::new()]) {
                 let text = [&lines[..at], &[new.as_str()], &lines[at + 1..]].concat().join("\n");
-                match Case::parse(Source::new("case.toml", text.clone())) {
+                match parse(Source::new("case.toml", text.clone())) {
                     Ok(_) => read += 1,
                     Err(error) => {
                         refused += 1;

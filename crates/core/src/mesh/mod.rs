@@ -18,13 +18,15 @@ pub use star::{Star, Stars};
 pub use topology::Facet;
 
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::simplex::{CellGeometry, Element, Simplex};
+use crate::simplex::{ByDimension, CellGeometry, Element, Simplex};
 use std::collections::BTreeMap;
 
 /// A mesh of 2-node bars.
 pub type BarMesh = Mesh<1, 2>;
 /// A mesh of 3-node triangles.
 pub type TriangleMesh = Mesh<2, 3>;
+/// A mesh of either dimension.
+pub type AnyMesh = ByDimension<BarMesh, TriangleMesh>;
 
 /// Named groups of facets, each facet given by its nodes in any order.
 pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;

@@ -7,5 +7,5 @@ mod write;
 
 pub use contact::{AnyContact, contact};
 pub use maps::{Field, Maps, maps};
-pub use open::{AnyMesh, EstimateFile, open};
+pub use open::{EstimateFile, open};
 pub use write::{EstimateContents, write};

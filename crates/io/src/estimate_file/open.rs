@@ -7,18 +7,10 @@ use crate::kind::Kind;
 use crate::mesh;
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::each_dimension;
+use percute_core::mesh::AnyMesh;
 use percute_estimator::{Parts, Sample};
 use std::path::Path;
-
-/// A mesh of either dimension.
-#[derive(Clone, Debug)]
-pub enum AnyMesh {
-    /// Of a bar.
-    Bar(BarMesh),
-    /// Of a plane body.
-    Plane(TriangleMesh),
-}
 
 /// What an estimate file holds.
 #[derive(Clone, Debug)]
@@ -71,10 +63,7 @@ fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
         1 => AnyMesh::Bar(mesh::read(opened)?),
         _ => AnyMesh::Plane(mesh::read(opened)?),
     };
-    let count = match &mesh {
-        AnyMesh::Bar(mesh) => mesh.element_count(),
-        AnyMesh::Plane(mesh) => mesh.element_count(),
-    };
+    let count = each_dimension!(&mesh, mesh => mesh.element_count());
     let by_element = vtk.group("CellData")?.data("by_element")?;
     by_element.expect(&[count], "one for each element")?;
     let instants = instants(&vtk)?;

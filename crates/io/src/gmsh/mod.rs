@@ -27,6 +27,7 @@ pub use write::{Format, write};
 use crate::error::FileCause;
 use cursor::{Cursor, Form};
 use percute_core::mesh::Mesh;
+use percute_core::simplex::ByDimension;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -45,14 +46,8 @@ pub struct MeshOf<const D: usize, const N: usize> {
     pub element_tags: Vec<u64>,
 }
 
-/// A mesh of either dimension.
-#[derive(Clone, Debug)]
-pub enum MeshFile {
-    /// Lines along x.
-    Bar(MeshOf<1, 2>),
-    /// Triangles in a plane z = const.
-    Plane(MeshOf<2, 3>),
-}
+/// A mesh of lines along x, or of triangles in a plane z = const.
+pub type MeshFile = ByDimension<MeshOf<1, 2>, MeshOf<2, 3>>;
 
 /// Reads a mesh. `scale` is metres per unit of length in the file, from 1e-12 to 1e12: 1e-3 for millimetres.
 ///

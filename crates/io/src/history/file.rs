@@ -7,6 +7,7 @@ use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use std::fs::File;
 use std::io;
@@ -16,33 +17,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A history file of either dimension.
-#[derive(Clone, Debug)]
-pub enum AnyHistoryFile {
-    /// On a mesh of bars.
-    Bar(HistoryFile<1, 2>),
-    /// On a mesh of triangles.
-    Plane(HistoryFile<2, 3>),
-}
-
-impl AnyHistoryFile {
-    /// Number of whole instants in the file.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        match self {
-            Self::Bar(file) => file.count(),
-            Self::Plane(file) => file.count(),
-        }
-    }
-
-    /// Whether no more steps were to come.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        match self {
-            Self::Bar(file) => file.is_complete(),
-            Self::Plane(file) => file.is_complete(),
-        }
-    }
-}
+pub type AnyHistoryFile = ByDimension<HistoryFile<1, 2>, HistoryFile<2, 3>>;
 
 /// Tells whether another file has come under the same name. Held open, so that its number is not given anew.
 #[derive(Debug)]

@@ -5,6 +5,7 @@ use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::steps::{give_steps, note_steps};
+use percute_core::each_dimension;
 use std::fs::File;
 use std::path::Path;
 
@@ -24,7 +25,8 @@ pub struct Recovered {
 pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     let path = path.as_ref();
     let found = open(path)?;
-    let recovered = Recovered { count: found.count(), was_complete: found.is_complete() };
+    let (count, was_complete) = each_dimension!(&found, file => (file.count(), file.is_complete()));
+    let recovered = Recovered { count, was_complete };
     if recovered.was_complete {
         return Ok(recovered);
     }

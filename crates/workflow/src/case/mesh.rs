@@ -4,10 +4,11 @@ use super::material::NOT_FOR_BARS;
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::map_dimension;
+use percute_core::mesh::{AnyMesh, BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{Element, Simplex};
 use percute_io::FileCause;
-use percute_io::gmsh::{self, GmshCause, MeshFile};
+use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
 
 const KEYS: [&str; 9] =
@@ -17,12 +18,6 @@ const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
 const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
 const ELEMENTS: &str = "{ core = [0, 1, 2] }";
-
-/// A mesh of either dimension.
-pub(super) enum AnyMesh {
-    Bar(BarMesh),
-    Plane(TriangleMesh),
-}
 
 /// Reads the mesh from the table and the value of the key that says how it is given.
 type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<AnyMesh, CaseError>;
@@ -78,8 +73,7 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError>
         .get("scale")
         .map_or(Ok(1.0), |scale| scale.number("metres per unit of length in the file: 1e-3 for millimetres"))?;
     match gmsh::read(&file, scale) {
-        Ok(MeshFile::Bar(read)) => Ok(AnyMesh::Bar(read.mesh)),
-        Ok(MeshFile::Plane(read)) => Ok(AnyMesh::Plane(read.mesh)),
+        Ok(read) => Ok(map_dimension!(read, read => read.mesh)),
         Err(error) => match (&error.cause, table.get("scale")) {
             (GmshCause::Scale { .. }, Some(scale)) => Err(scale.error(error.cause.to_string())),
             (GmshCause::File(FileCause::Missing), _) => {

@@ -50,6 +50,7 @@ pub use statement::{NotRepresentable, problem_from, statement};
 use crate::report::Subject;
 use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;
+use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use std::path::{Path, PathBuf};
@@ -86,32 +87,24 @@ pub struct CaseOf<const D: usize, const N: usize> {
 }
 
 /// A case ready to run.
-#[derive(Clone, Debug)]
-pub enum Case {
-    /// A bar.
-    Bar(Box<CaseOf<1, 2>>),
-    /// A plane body of triangles.
-    Plane(Box<CaseOf<2, 3>>),
-}
+pub type Case = ByDimension<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>;
 
-impl Case {
-    /// Reads and checks a case file.
-    ///
-    /// # Errors
-    /// The first thing that is wrong with it.
-    pub fn parse(source: Source) -> Result<Self, CaseError> {
-        let document = parsed(&source)?;
-        let root = Table::root(&source, document.get_ref());
-        root.only(&TABLES)?;
-        let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
-        let file = mesh::file(&mesh);
-        match mesh::read(&mesh)? {
-            mesh::AnyMesh::Bar(bar) => {
-                let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
-                Ok(Self::Bar(Box::new(case)))
-            }
-            mesh::AnyMesh::Plane(triangles) => Ok(Self::Plane(Box::new(read(&source, &root, triangles, file)?))),
+/// Reads and checks a case file.
+///
+/// # Errors
+/// The first thing that is wrong with it.
+pub fn parse(source: Source) -> Result<Case, CaseError> {
+    let document = parsed(&source)?;
+    let root = Table::root(&source, document.get_ref());
+    root.only(&TABLES)?;
+    let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
+    let file = mesh::file(&mesh);
+    match mesh::read(&mesh)? {
+        ByDimension::Bar(bar) => {
+            let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
+            Ok(ByDimension::Bar(Box::new(case)))
         }
+        ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(read(&source, &root, triangles, file)?))),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::message::short;
 use crate::report::{FORMAT, Versions, Warning, reported};
+use percute_core::each_dimension;
 use percute_core::mesh::Mesh;
 use percute_io::gmsh::MeshFile;
 use serde::Serialize;
@@ -36,10 +37,7 @@ pub struct GroupInfo {
 /// What a mesh file holds.
 #[must_use]
 pub fn of_mesh(path: &Path, file: &MeshFile) -> MeshInfo {
-    match file {
-        MeshFile::Bar(read) => told(path, &read.mesh),
-        MeshFile::Plane(read) => told(path, &read.mesh),
-    }
+    each_dimension!(file, read => told(path, &read.mesh))
 }
 
 fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshInfo {

@@ -3,8 +3,7 @@
 use percute_estimator::Reconstruction;
 
 /// Nature of the error, for all reconstructions.
-const MEASURE: &str =
-    "An estimate, not a strict bound: it contains the errors of space, time, mass and contact.";
+const MEASURE: &str = "An estimate, not a strict bound: it contains the errors of space, time, mass and contact.";
 
 /// Source of the evidence.
 const EVIDENCE: &str = "(`percute reproduce`, docs/verification.md)";

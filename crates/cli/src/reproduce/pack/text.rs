@@ -1,7 +1,7 @@
 //! The case files of the pack, with other meshes and starts.
 
 use super::super::ReproduceError;
-use percute_workflow::case::{Case, CaseOf, Source};
+use percute_workflow::case::{Case, CaseOf, Source, parse};
 
 /// A case file that the program carries with it, and its settings.
 #[derive(Clone, Debug)]
@@ -59,23 +59,17 @@ impl CaseText {
 
     /// The case, read and checked.
     fn read(&self) -> Result<Case, ReproduceError> {
-        Ok(Case::parse(Source::new(format!("{}.toml", self.name), &*self.text))?)
+        Ok(parse(Source::new(format!("{}.toml", self.name), &*self.text))?)
     }
 
     /// The same of a bar.
     pub(super) fn read_bar(&self) -> Result<CaseOf<1, 2>, ReproduceError> {
-        match self.read()? {
-            Case::Bar(case) => Ok(*case),
-            Case::Plane(_) => Err(self.unexpected("this is no bar")),
-        }
+        self.read()?.bar().map(|case| *case).ok_or_else(|| self.unexpected("this is no bar"))
     }
 
     /// The same of a plane body.
     pub(super) fn read_plane(&self) -> Result<CaseOf<2, 3>, ReproduceError> {
-        match self.read()? {
-            Case::Plane(case) => Ok(*case),
-            Case::Bar(_) => Err(self.unexpected("this is a bar")),
-        }
+        self.read()?.plane().map(|case| *case).ok_or_else(|| self.unexpected("this is a bar"))
     }
 
     /// What this case is not.

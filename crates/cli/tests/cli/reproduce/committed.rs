@@ -107,10 +107,7 @@ fn every_estimate_says_what_the_page_has() {
         up(most),
         up(corner)
     );
-    assert!(
-        slow > up(corner) && said.contains("far more if a corner or a curve touches slower than c/100"),
-        "{slow}"
-    );
+    assert!(slow > up(corner) && said.contains("far more if a corner or a curve touches slower than c/100"), "{slow}");
     assert!(said.contains(&told), "the page has {least} to {most}, {corner} at corners; said is: {said}");
     for reading in [percute_estimator::Reconstruction::Consistent, percute_estimator::Reconstruction::Published] {
         let said = percute_workflow::report::meaning(Some(reading));

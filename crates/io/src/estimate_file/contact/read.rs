@@ -6,19 +6,14 @@ use crate::kind::Kind;
 use crate::read::{Part, reading};
 use percute_core::contact_results::{ContactResults, ContactSteps, NodeSummary, Place, Resultant, Status};
 use percute_core::ids::NodeId;
+use percute_core::simplex::ByDimension;
 use std::path::Path;
 
 /// Arrays in which NaN stands for none.
 const MAY_BE_NONE: [&str; 3] = ["first_touch", "time_of_peak", "centre"];
 
 /// Contact results of either dimension.
-#[derive(Clone, Debug)]
-pub enum AnyContact {
-    /// Of a bar.
-    Bar(ContactResults<1>),
-    /// Of a plane body.
-    Plane(ContactResults<2>),
-}
+pub type AnyContact = ByDimension<ContactResults<1>, ContactResults<2>>;
 
 /// Reads the contact results; none if the file holds none.
 ///
