@@ -385,7 +385,7 @@ def estimate(
     work = pace(threads, window)
     wanted = _wanted(instants, history)
     if flag("fields", fields) and wanted is None:
-        raise InputError("`fields` needs `instants`: say at how many instants, or near which (s), they are kept")
+        raise InputError("`fields` needs `instants`: give the number of instants, or their times (s)")
     with shown(progress) as tell:
         data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), tell)
     return Estimate._of(data, history, history._name)

@@ -131,9 +131,9 @@ def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     except UnicodeDecodeError:
         if path.read_bytes()[:4] == b"\x89HDF":
             raise InputError(
-                f"`case`: {os.fspath(path)!r} is an HDF5 file and no case; a history is for percute.open and percute.estimate"
+                f"`case`: {os.fspath(path)!r} is an HDF5 file, not a case; use percute.open and percute.estimate for a history"
             ) from None
-        raise InputError(f"`case`: {os.fspath(path)!r} is no UTF-8 text") from None
+        raise InputError(f"`case`: {os.fspath(path)!r} is not UTF-8 text") from None
     except OSError as error:
         raise StorageError(f"`case`: cannot read {os.fspath(path)!r}: {error.strerror}") from error
 

@@ -45,9 +45,9 @@ SURE = ".msh, .vtu, .inp or .med"
 """Endings of formats to choose where another one fails."""
 
 NO_MESH = {
-    ".geo": "is a script of Gmsh and has no mesh yet: `gmsh -2 block.geo -o block.msh` makes one",
-    ".toml": "is a case and no mesh; percute.run runs it",
-    ".vtkhdf": "is a history or an estimate and no mesh; percute.open opens it, and `mesh` is its mesh",
+    ".geo": "is a Gmsh script without a mesh: `gmsh -2 block.geo -o block.msh` makes one",
+    ".toml": "is a case, not a mesh; use percute.run",
+    ".vtkhdf": "is a history or an estimate, not a mesh; use the `mesh` of percute.open",
 }
 """What files with these endings are, for which nobody shall install anything."""
 
@@ -68,7 +68,7 @@ def _meshlane(file: str) -> Any:
         import meshlane
     except ImportError as error:
         raise InputError(
-            f"`path`: {encodable(file)!r} is no .msh file; other formats need meshlane: pip install 'percute[mesh]' ({error})"
+            f"`path`: {encodable(file)!r} is not a .msh file; other formats need meshlane: pip install 'percute[mesh]' ({error})"
         ) from None
     return meshlane
 
@@ -109,7 +109,7 @@ def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft
         told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
         told = told.replace(f"{os.path.basename(draft)}{os.sep}", "") if draft else told
         told = (told or type(error).__name__).rstrip(".")
-        known = "the ending of the name tells the format: " if "deduce file format" in told else ""
+        known = "the ending of the name selects the format: " if "deduce file format" in told else ""
         raise kind(f"meshlane {what}: {told}; {known}choose {SURE}") from error
 
 
@@ -182,7 +182,7 @@ class _Reader:
         for name, chosen in members.items():
             if np.any(of[chosen] == 0):
                 first = facets[chosen][of[chosen] == 0][0].tolist()
-                raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is no edge of an element")
+                raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is not an edge of an element")
             inner = int(np.count_nonzero(of[chosen] > 1))
             if inner:
                 edges = "1 edge lies" if inner == 1 else f"{inner} edges lie"

@@ -159,7 +159,7 @@ CASE = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text() + "\n[o
         ('estimate = "case.toml"', None, pc.InputError, "[output] estimate case.toml is the case file itself"),
         ("", "case.toml", pc.InputError, "`store` case.toml is the case file itself"),
         ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.StorageError, "[output] estimate: cannot write none/one.vtkhdf"),
-        ('estimate = "folder"', "two.vtkhdf", pc.StorageError, "it is no regular file"),
+        ('estimate = "folder"', "two.vtkhdf", pc.StorageError, "it is not a regular file"),
     ],
 )
 def test_outputs_of_a_case_that_cannot_be(

@@ -199,7 +199,7 @@ def test_what_meshlane_cannot_read_is_an_exception(tmp_path: Path, capfd: pytest
             pc.Mesh.read(tmp_path / name)
         assert "\n" not in str(caught.value)
         assert str(caught.value).endswith("choose .msh, .vtu, .inp or .med")
-        assert ("the ending of the name tells the format" in str(caught.value)) == (name == "a.foo")
+        assert ("the ending of the name selects the format" in str(caught.value)) == (name == "a.foo")
     with pytest.raises(pc.InputError, match=r"meshlane cannot write .*b\.foo: Could not deduce file format from path '[^.]*/b\.foo'"):
         meshes()[0].write(tmp_path / "b.foo")
     assert capfd.readouterr() == ("", "")

@@ -8,7 +8,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the steps done is still printed).";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the completed steps is still printed).";
 
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]
@@ -30,25 +30,25 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate the error of a stored history
     Estimate(EstimateArguments),
-    /// Tell what a case, a mesh (.msh), a history or an estimate file holds
+    /// Describe a case, a mesh (.msh), a history or an estimate file
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
-    /// Compute the evidence again: the paper's tables and figures, exact solutions, how good the estimate is
+    /// Compute the evidence again: the paper's tables and figures, exact solutions, effectivity indices
     Reproduce(ReproduceArguments),
 }
 
 /// Arguments of `percute new`.
 #[derive(Clone, Debug, Args)]
 pub struct NewArguments {
-    /// Which case
+    /// Name of the case
     pub case: Template,
 }
 
 /// Cases to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Template {
-    /// A bar flies against a wall
+    /// A bar strikes a wall
     Bar,
     /// A block strikes a plane at an angle, with friction
     Block,
@@ -61,10 +61,10 @@ pub enum Template {
 pub struct RunArguments {
     /// The case file (TOML)
     pub case: PathBuf,
-    /// Store the history, all steps, in this file (.vtkhdf) [default: as in the case, or nowhere]
+    /// Store the history, all steps, in this file (.vtkhdf) [default: the file in the case, if any]
     #[arg(long, value_name = "FILE")]
     pub history: Option<PathBuf>,
-    /// Store the estimate, element by element, in this file (.vtkhdf) [default: as in the case, or nowhere]
+    /// Store the estimate, element by element, in this file (.vtkhdf) [default: the file in the case, if any]
     #[arg(long, value_name = "FILE")]
     pub estimate: Option<PathBuf>,
     #[command(flatten)]
@@ -86,7 +86,7 @@ pub struct SimulateArguments {
     /// The file of the history (.vtkhdf) [default: as in the case, or named after it in the working directory]
     #[arg(long, value_name = "FILE")]
     pub history: Option<PathBuf>,
-    /// Replace a history that is there
+    /// Replace an existing history
     #[arg(long)]
     pub force: bool,
     /// No progress and no warnings on standard error
@@ -102,8 +102,8 @@ pub struct EstimateArguments {
     /// Store the estimate, element by element, in this file (.vtkhdf)
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// How contact reactions are read [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>, help = named("How contact reactions are read", Reconstruction::ALL))]
+    /// Reconstruction of the admissible contact force [default: as stored in the history]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>, help = named("Reconstruction of the admissible contact force", Reconstruction::ALL))]
     pub reconstruction: Option<Reconstruction>,
     /// Choice of the admissible acceleration [default: as stored in the history]
     #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>, help = named("Choice of the admissible acceleration", Acceleration::ALL))]
@@ -142,7 +142,7 @@ pub struct RecoverArguments {
 /// Arguments of `percute reproduce`.
 #[derive(Clone, Debug, Args)]
 pub struct ReproduceArguments {
-    /// Which parts, by the names that --list prints [default: all]
+    /// Names of the parts, as printed by --list [default: all]
     pub parts: Vec<String>,
     /// The folder for page, figures and numbers
     #[arg(long, value_name = "FOLDER", default_value = "percute-evidence")]
@@ -150,10 +150,10 @@ pub struct ReproduceArguments {
     /// Print the names of the parts and end
     #[arg(long)]
     pub list: bool,
-    /// Compute a small part of each only, in seconds; the numbers are the same
+    /// Compute a few rows of each part only, in seconds; the numbers are the same
     #[arg(long)]
     pub small: bool,
-    /// Replace files that are there
+    /// Replace existing files
     #[arg(long, visible_alias = "overwrite")]
     pub force: bool,
     /// Number of threads [default: one for each core]; the result does not depend on it
@@ -189,13 +189,13 @@ pub struct PrintArguments {
 /// How the work is done; nothing of it changes the result.
 #[derive(Clone, Debug, Default, Args)]
 pub struct WorkArguments {
-    /// Replace files that are there
+    /// Replace existing files
     #[arg(long)]
     pub force: bool,
     /// Number of threads [default: one for each core]; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// How many steps are estimated at once [default: as many as fit into a modest memory]; the
+    /// Number of steps that are estimated at once [default: as many as fit into a modest memory]; the
     /// result does not depend on it
     #[arg(long, value_name = "N", value_parser = steps)]
     pub window: Option<usize>,

@@ -24,7 +24,7 @@ pub enum PlaneError {
         friction: f64,
     },
     /// Friction in 1D.
-    #[error("`friction` is {friction}; a bar has no tangent to rub along, leave it out or give 0")]
+    #[error("`friction` is {friction}; a bar has no tangential direction; leave it out or give 0")]
     FrictionInOneDimension {
         /// The coefficient given.
         friction: f64,

@@ -65,7 +65,7 @@ pub enum EstimateError {
     },
     /// Numbers too large to be squared and summed.
     #[error(
-        "the error measure is not finite: some value of the problem (friction, load, stiffness) is out of all proportion"
+        "the error measure is not finite: some value of the problem (friction, load, stiffness) is far out of range"
     )]
     Overflow,
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
@@ -81,11 +81,10 @@ pub enum EstimateError {
         /// The smallest gap that will do (m).
         smallest_gap: f64,
     },
-    /// The auxiliary solution of the reading `corrected` moves ever faster than the simulation.
+    /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
-        "the auxiliary solution of the reading `corrected` became unstable at step {step}, t = {time:.6e} s: it takes the history's steps \
-         by central differences, and they are too long for that (the longest is {longest_step:.4e} s); \
-         estimate this history with reconstruction = \"consistent\", or store shorter steps"
+        "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the history are too long \
+         for its central differences (the longest is {longest_step:.4e} s); estimate this history with reconstruction = \"consistent\", or store shorter steps"
     )]
     AuxiliarySolution {
         /// The step.

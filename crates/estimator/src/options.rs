@@ -11,7 +11,7 @@ pub const MOST_THREADS: usize = 1024;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reconstruction {
     /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
-    /// normal contact law measured where they act off contact; the balance of a auxiliary solution with less
+    /// normal contact law measured where they act off contact; the balance of an auxiliary solution with less
     /// dispersion; tractions of least energy.
     #[default]
     Corrected,

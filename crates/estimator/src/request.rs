@@ -45,7 +45,7 @@ pub enum RequestError {
         every: usize,
     },
     /// More than memory can hold.
-    #[error("{bytes} bytes for maps at {steps} steps cannot be had in memory; request fewer steps, or no fields")]
+    #[error("{bytes} bytes for maps at {steps} steps cannot be allocated in memory; request fewer steps, or no fields")]
     Memory {
         /// Bytes wanted.
         bytes: usize,

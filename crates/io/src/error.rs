@@ -56,7 +56,7 @@ pub enum FileCause {
         source: io::Error,
     },
     /// The end of the run could not be noted.
-    #[error("the file could not be finished: {detail}; its {steps} steps are in it, and `percute recover` finishes it")]
+    #[error("the file could not be completed: {detail}; it has its {steps} steps, and `percute recover` completes it")]
     Finish {
         /// Why.
         detail: String,
@@ -64,7 +64,7 @@ pub enum FileCause {
         steps: usize,
     },
     /// The file of a run went away while it was written.
-    #[error("the file was moved, removed or replaced while the run went on")]
+    #[error("the file was moved, removed or replaced during the run")]
     Lost,
     /// The system does not let it be read.
     #[error("the file cannot be read: {source}")]
@@ -76,19 +76,19 @@ pub enum FileCause {
     #[error("the file was replaced since it was opened; open it again")]
     Replaced,
     /// No bytes at all.
-    #[error("the file is empty, neither a history nor an estimate; make it anew")]
+    #[error("the file is empty, neither a history nor an estimate; create it again")]
     Empty,
     /// No HDF5 file.
-    #[error("this is no HDF5 file, and so neither a history nor an estimate; a case is to be run first")]
+    #[error("this is not an HDF5 file, so neither a history nor an estimate; run a case first")]
     NotHdf5,
     /// HDF5 cannot make sense of it.
-    #[error("the file is truncated or damaged: {detail}; copy it again, or make it anew")]
+    #[error("the file is truncated or damaged: {detail}; copy or create it again")]
     Damaged {
         /// What the library says.
         detail: String,
     },
     /// HDF5, but not ours.
-    #[error("this HDF5 file is not one of percute's: {holds}; docs/history.md tells how to write one")]
+    #[error("this HDF5 file is not one of percute's: {holds}; docs/history.md describes the layout")]
     Foreign {
         /// What it holds instead.
         holds: String,
@@ -102,7 +102,7 @@ pub enum FileCause {
         wanted: Kind,
     },
     /// Written by a later percute.
-    #[error("the file has layout {found}, but this percute knows {known} only; use a newer percute")]
+    #[error("the file has layout {found}, but this version of percute reads {known} only; use a newer percute")]
     NewerLayout {
         /// Layout of the file.
         found: i64,
@@ -110,7 +110,7 @@ pub enum FileCause {
         known: i64,
     },
     /// A part that must be there.
-    #[error("`{name}` is missing; the layout of the file needs it")]
+    #[error("`{name}` is missing; the layout of the file requires it")]
     MissingPart {
         /// Path inside the file.
         name: String,
@@ -154,7 +154,7 @@ pub enum FileCause {
         stored: u64,
     },
     /// More than memory can hold.
-    #[error("`{name}` needs {bytes} bytes, which cannot be had in memory")]
+    #[error("`{name}` needs {bytes} bytes, which cannot be allocated in memory")]
     TooLarge {
         /// Path inside the file.
         name: String,

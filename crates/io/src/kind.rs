@@ -24,7 +24,7 @@ impl fmt::Display for Kind {
             Self::History => "a history",
             Self::Estimate => "an estimate",
             Self::OtherHdf5 => "an HDF5 file of another program",
-            Self::Other => "no HDF5 file",
+            Self::Other => "not an HDF5 file",
         })
     }
 }

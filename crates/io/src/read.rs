@@ -59,7 +59,7 @@ impl Opened {
             "history" => Ok(Kind::History),
             "estimate" => Ok(Kind::Estimate),
             other => {
-                let detail = format!("\"{other}\" is no kind of file known here");
+                let detail = format!("\"{other}\" is not a known kind of file");
                 Err(FileCause::Value { name: "percute.kind".to_string(), detail })
             }
         }

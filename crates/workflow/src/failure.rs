@@ -136,6 +136,6 @@ mod tests {
         let failure = Failure::from(SimulationError::Sink { step: 4, cause: full.at("a.vtkhdf".as_ref()).into() });
         assert!(!failure.is_bad_input());
         let said = failure.to_string();
-        assert!(said.starts_with("a.vtkhdf: step 4 could not be written") && !said.contains("handed on"), "{said}");
+        assert!(said.starts_with("a.vtkhdf: step 4 could not be written") && !said.contains("passed on"), "{said}");
     }
 }

@@ -12,14 +12,14 @@ pub fn check(file: &Path) -> Result<()> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.exists() {
         return Err(Error::other(format!(
-            "there is no folder {}; make it first, or give another name",
+            "there is no folder {}; create it first, or give another name",
             folder.display()
         )));
     }
     // Not the target of a link: a link to nothing must not be taken for a new file and removed.
     let new = match std::fs::symlink_metadata(file) {
         Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
-        Ok(_) => return Err(Error::other("it is no regular file")),
+        Ok(_) => return Err(Error::other("it is not a regular file")),
         Err(_) => true,
     };
     // Appending nothing changes nothing.

@@ -245,10 +245,10 @@ fn a_law_of_another_dimension_is_refused() {
 fn what_is_beside_a_statement_is_refused_with_its_line() {
     let material = "[material]\nyoung = 1.0\ndensity = 1.0\nsection = 1.0\n";
     for (more, line, phrase) in [
-        ("[mesh]\nbar = { length = 1.0, elements = 2 }\n", 5, "mesh: is no part of a statement"),
-        ("[time]\nend = 1.0\n", 5, "time: is no part"),
-        ("[initial]\nvelocity = 1.0\n", 5, "initial: is no part"),
-        ("[output]\nhistory = \"a\"\n", 5, "output: is no part"),
+        ("[mesh]\nbar = { length = 1.0, elements = 2 }\n", 5, "mesh: is not part of a statement"),
+        ("[time]\nend = 1.0\n", 5, "time: is not part"),
+        ("[initial]\nvelocity = 1.0\n", 5, "initial: is not part"),
+        ("[output]\nhistory = \"a\"\n", 5, "output: is not part"),
         ("[obstacles]\n", 5, "did you mean `obstacle`?"),
         ("[[support]]\ngroup = \"nowhere\"\ncomponents = [\"x\"]\n", 6, "there is no group of ends \"nowhere\""),
     ] {

@@ -66,7 +66,7 @@ def prepare(folder: Path, overwrite: bool) -> None:
         if place.exists() and not place.is_dir():
             raise StorageError(f"cannot write {place}: it is not a folder")
     if not folder.parent.is_dir():
-        raise StorageError(f"cannot write {folder}: there is no folder {folder.parent}; make it first, or give another name")
+        raise StorageError(f"cannot write {folder}: there is no folder {folder.parent}; create it first, or give another name")
     try:
         folder.mkdir(exist_ok=True)
         if any(folder.iterdir()) and not overwrite:

@@ -122,13 +122,13 @@ fn read(file: &Path) -> Result<Source, Failure> {
     }
     // Asked first: a history may be larger than memory.
     if is_hdf5(file).map_err(unreadable)? {
-        let message = "this is an HDF5 file and no case; a history is for `percute estimate`, any for `percute info`";
+        let message = "this is an HDF5 file, not a case; use `percute estimate` for a history, `percute info` for any";
         return Err(Failure::Argument(format!("{name}: {message}")));
     }
     let bytes = std::fs::read(file).map_err(unreadable)?;
     let folder = file.parent().unwrap_or(file);
     String::from_utf8(bytes).map(|text| Source::new(&name, text).in_folder(folder)).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-        Failure::Argument(format!("{name}:{line}: this is no UTF-8 text"))
+        Failure::Argument(format!("{name}:{line}: this is not UTF-8 text"))
     })
 }

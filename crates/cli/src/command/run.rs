@@ -95,7 +95,7 @@ pub(super) fn request(
     wanted: impl FnOnce() -> Request,
 ) -> Result<Request, Failure> {
     if file.is_none() && (given.instants.is_some() || given.fields) {
-        let message = "--instants and --fields say what an estimate file holds; name one with";
+        let message = "--instants and --fields apply to an estimate file; name one with";
         return Err(Failure::Argument(format!("{message} {flag} FILE, or leave them out")));
     }
     Ok(file.map_or_else(Request::default, |_| wanted()))

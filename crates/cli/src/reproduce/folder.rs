@@ -28,7 +28,7 @@ pub fn prepare(folder: &Path, overwrite: bool) -> Result<(), ReproduceError> {
     }
     let parent = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !parent.is_dir() {
-        let cause = format!("there is no folder {}; make it first, or give another name", parent.display());
+        let cause = format!("there is no folder {}; create it first, or give another name", parent.display());
         return Err(unwritable(folder, cause));
     }
     let used = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());

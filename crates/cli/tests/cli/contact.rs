@@ -114,5 +114,5 @@ fn info_tells_the_memory() {
     let info = json(&bench, &["info", "case.toml", "--json"]);
     let instants = info["time"]["steps_planned"].as_u64().unwrap() + 1;
     assert_eq!(info["contact_memory"].as_u64(), Some(6 * instants * 49));
-    assert!(stdout(&bench.percute(&["info", "case.toml"])).contains("for what contact does"));
+    assert!(stdout(&bench.percute(&["info", "case.toml"])).contains("for the contact results"));
 }

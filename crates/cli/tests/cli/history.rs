@@ -274,7 +274,7 @@ fn what_is_no_history_is_refused() {
         }
     }
     let output = bench.percute(&["run", "case.vtkhdf"]);
-    assert_eq!(output.status.code(), Some(2), "a history is no case: {}", stderr(&output));
+    assert_eq!(output.status.code(), Some(2), "a history is not a case: {}", stderr(&output));
 }
 
 #[test]

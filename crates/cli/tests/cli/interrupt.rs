@@ -148,7 +148,7 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     assert_eq!(before.status.code(), Some(0), "{}", stderr(&before));
     let recovered = bench.percute(&["recover", "case.vtkhdf"]);
     assert_eq!(recovered.status.code(), Some(0), "{}", stderr(&recovered));
-    assert!(stdout(&recovered).contains("is finished now and holds "), "{}", stdout(&recovered));
+    assert!(stdout(&recovered).contains("is now complete and has "), "{}", stdout(&recovered));
     assert!(stdout(&bench.percute(&["info", "case.vtkhdf"])).contains("; complete"));
     assert!(result(&stdout(&before)) == result(&stdout(&bench.percute(&estimate))));
 }

@@ -110,7 +110,7 @@ fn mistakes_around_a_file_are_named() {
         ("scale = 1e-3", "cells = []", &["case.toml:3", "goes with `points`"]),
         ("file = \"meshes/block.msh\"", "bar = { length = 1.0, elements = 3 }", &["scale", "goes with `file`"]),
         ("file = \"meshes/block.msh\"", "file = 3", &["case.toml:2", "the name of a Gmsh file"]),
-        ("file = \"meshes/block.msh\"", "file = \"case.toml\"", &["no Gmsh mesh", "save as .msh"]),
+        ("file = \"meshes/block.msh\"", "file = \"case.toml\"", &["not a Gmsh mesh", "save as .msh"]),
         ("\"bottom\"", "\"Bottom\"", &["did you mean `bottom`?"]),
         ("\"bottom\"", "\"left\"", &["no group of edges \"left\"", "Physical Curve(\"left\")"]),
         ("\"steel\"", "\"stone\"", &["no group of elements \"stone\"", "Physical Surface(\"stone\")"]),
@@ -163,7 +163,7 @@ fn no_output_takes_the_place_of_the_mesh() {
 #[test]
 fn a_mesh_is_no_case() {
     let said = stderr(&bench(CASE, "4.1").percute(&["run", "meshes/block.msh"]));
-    assert!(said.contains("this is a mesh of Gmsh and no case"), "{said}");
+    assert!(said.contains("this is a Gmsh mesh, not a case"), "{said}");
 }
 
 /// What Gmsh called by which name, in the unit of the file.

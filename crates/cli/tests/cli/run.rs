@@ -138,7 +138,7 @@ fn warnings_go_to_standard_error_and_stay_in_the_summary() {
     assert!(stderr(&loud).contains("warning: 1 elements were given clockwise"), "{}", stderr(&loud));
     let quiet = bench.percute(&["run", "case.toml", "--quiet"]);
     assert_eq!(stderr(&quiet), "");
-    assert!(stdout(&quiet).contains("WARNING   1 elements turned round"), "{}", stdout(&quiet));
+    assert!(stdout(&quiet).contains("WARNING   1 elements reoriented"), "{}", stdout(&quiet));
 }
 
 #[test]

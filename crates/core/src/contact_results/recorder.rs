@@ -11,7 +11,7 @@ use thiserror::Error;
 
 /// No room for all nodes at all instants.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{bytes} bytes for the contact results of {nodes} nodes at {instants} instants cannot be had in memory")]
+#[error("{bytes} bytes for the contact results of {nodes} nodes at {instants} instants cannot be allocated in memory")]
 pub struct ContactMemoryError {
     /// Bytes wanted.
     pub bytes: usize,

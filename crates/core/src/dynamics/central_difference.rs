@@ -55,7 +55,7 @@ pub enum SimulationError {
         largest_step: f64,
     },
     /// Whoever takes the steps failed.
-    #[error("step {step} could not be handed on: {cause}")]
+    #[error("step {step} could not be passed on: {cause}")]
     Sink {
         /// The step.
         step: usize,

@@ -22,7 +22,9 @@ pub struct History<const D: usize> {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum MemoryError {
     /// No room for all steps.
-    #[error("{bytes} bytes for {steps} steps of {nodes} nodes cannot be had in memory; store the history in a file")]
+    #[error(
+        "{bytes} bytes for {steps} steps of {nodes} nodes cannot be allocated in memory; store the history in a file"
+    )]
     Full {
         /// Bytes wanted.
         bytes: usize,

@@ -122,7 +122,7 @@ pub enum MeshError {
     },
     /// A node at which parts of the body touch by a point only.
     #[error(
-        "at node {node} the body hangs together by a point only ({reached} of its {elements} elements are joined by edges); \
+        "at node {node} the body is connected by a point only ({reached} of its {elements} elements are joined by edges); \
          split the node or fill the gap"
     )]
     NonManifoldNode {

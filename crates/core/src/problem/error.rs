@@ -77,7 +77,7 @@ pub enum Cause {
         known: Vec<String>,
     },
     /// A group without members.
-    #[error("group \"{name}\" is empty; give it {of}, or leave out what names it")]
+    #[error("group \"{name}\" is empty; give it {of}, or remove the reference to it")]
     EmptyGroup {
         /// The name.
         name: String,
@@ -98,7 +98,7 @@ pub enum Cause {
         speed: f64,
     },
     /// More materials or body forces than can be told apart.
-    #[error("there are {count} of them; at most {most} can be told apart")]
+    #[error("there are {count} of them; at most {most} are possible")]
     TooMany {
         /// How many were given.
         count: usize,
@@ -118,7 +118,7 @@ pub enum Cause {
     /// Two materials on one element.
     #[error(
         "element {element} already has material {first}{}",
-        if *.everywhere { ", which has no group and so takes all elements: give it a group too" }
+        if *.everywhere { ", which has no group and applies to all elements: give it a group too" }
         else { "; groups of materials must not overlap: take it out of one of them" }
     )]
     TwoMaterials {
@@ -152,11 +152,11 @@ pub enum Cause {
         value: f64,
     },
     /// A support of nothing.
-    #[error("no component is named; give at least one, as in components = [\"x\"]")]
+    #[error("no component is given; give at least one, as in components = [\"x\"]")]
     NoComponent,
     /// Nothing is left to move.
     #[error(
-        "the supports prescribe every component of every node; nothing is left to simulate: take a support away, name fewer of \
+        "the supports prescribe every component of every node; nothing is left to simulate: remove a support, name fewer of \
          its components, or refine the mesh"
     )]
     NoFreedom,
@@ -209,8 +209,8 @@ pub enum Cause {
     },
     /// The facets that face a plane are all supported or loaded.
     #[error(
-        "nothing can touch the plane: of what faces it the {} is {by}, and no other part of the boundary is free to touch; \
-         leave free what shall touch", facet(.nodes)
+        "nothing can touch the plane: the {} faces it but is {by}, and no other part of the boundary is free; \
+         leave the edges free that are to touch the plane", facet(.nodes)
     )]
     AllHeld {
         /// Nodes of the first facet.
@@ -221,7 +221,7 @@ pub enum Cause {
     /// The nodes that face a plane cannot move towards it.
     #[error(
         "nothing can touch the plane: supports prescribe the motion towards it of all nodes that face it, as of node {node}; \
-         leave that component free, or take the plane away"
+         leave that component free, or remove the plane"
     )]
     HeldNodes {
         /// The first of them.
@@ -229,8 +229,8 @@ pub enum Cause {
     },
     /// A plane that nothing can touch.
     #[error(
-        "nothing in group \"{group}\" faces the plane: the group looks along {}, and the plane's normal, from the plane to the body, \
-         is {}; towards the plane look {}", vector(.outward), vector(.normal), named(.facing)
+        "nothing in group \"{group}\" faces the plane: the outward normal of the group is {}, and the normal of the plane, from the plane to the body, \
+         is {}; groups that face the plane: {}", vector(.outward), vector(.normal), named(.facing)
     )]
     NothingFaces {
         /// The group that the plane names.
@@ -378,5 +378,5 @@ fn list(of: GroupOf, names: &[String]) -> String {
 }
 
 fn named(names: &[String]) -> String {
-    if names.is_empty() { "none of the mesh's groups".to_string() } else { quoted(names) }
+    if names.is_empty() { "none".to_string() } else { quoted(names) }
 }

@@ -195,7 +195,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
     }
 
-    /// Refuses to go on with a auxiliary solution that has become unstable, as it does where a history of another scheme takes
+    /// Refuses to go on with an auxiliary solution that has become unstable, as it does where a history of another scheme takes
     /// steps above the critical one: a stable one has about the energy of the simulation, an unstable one soon any.
     fn check_auxiliary(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
         let Some(auxiliary) = &self.auxiliary else { return Ok(()) };

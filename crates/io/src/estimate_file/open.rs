@@ -105,7 +105,7 @@ fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
 pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
     let dimension = ours.integer_attribute("dimension")?;
     if !(1..=2).contains(&dimension) {
-        let detail = format!("{dimension} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
+        let detail = format!("{dimension} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
         return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
     }
     let points = vtk.data("Points")?;

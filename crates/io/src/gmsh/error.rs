@@ -57,7 +57,7 @@ pub enum GmshCause {
         value: f64,
     },
     /// Something else.
-    #[error("this is no Gmsh mesh: it begins with {found}; {advice}")]
+    #[error("this is not a Gmsh mesh: it begins with {found}; {advice}")]
     NotMsh {
         /// How it begins.
         found: String,
@@ -74,7 +74,7 @@ pub enum GmshCause {
         found: String,
     },
     /// Not what must come here.
-    #[error("{found} stands where {what} should be; {advice}")]
+    #[error("found {found} instead of {what}; {advice}")]
     Unexpected {
         /// What is there.
         found: String,
@@ -119,12 +119,12 @@ pub enum GmshCause {
     /// Neither triangles nor lines.
     #[error(
         "the file has neither triangles nor lines; in Gmsh, mesh the surfaces (2D) before saving. If there are physical \
-         groups, only what belongs to one is saved: name the body by `Physical Surface(\"body\") = {{…}};`"
+         groups, Gmsh saves their members only: name the body by `Physical Surface(\"body\") = {{…}};`"
     )]
     NoElements,
     /// A plane body was meant, but none of it was saved.
     #[error(
-        "the file has surfaces but no triangles: once there are physical groups, Gmsh saves only what belongs to one. Name \
+        "the file has surfaces but no triangles: with physical groups, Gmsh saves their members only. Name \
          the body by `Physical Surface(\"body\") = {{…}};` (and mesh in 2D), or save all with `Mesh.SaveAll = 1`"
     )]
     NoTriangles,
@@ -167,8 +167,8 @@ pub enum GmshCause {
     },
     /// Lines that are no bar along x.
     #[error(
-        "the file has lines but no triangles, and the lines are no bar along x: node {} has {axis} = {} m and node {} has \
-         {axis} = {} m. If a plane body was meant: once there are physical groups, Gmsh saves only what belongs to one; name \
+        "the file has lines but no triangles, and the lines are not a bar along x: node {} has {axis} = {} m and node {} has \
+         {axis} = {} m. For a plane body: with physical groups, Gmsh saves their members only; name \
          the body by `Physical Surface(\"body\") = {{…}};` and mesh in 2D",
         .nodes[0], .values[0], .nodes[1], .values[1]
     )]
@@ -211,7 +211,7 @@ pub enum GmshCause {
 fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {
     let groups = if groups.is_empty() { String::new() } else { format!(", in {},", super::groups::quoted(groups)) };
     let [what, part, of] = if dimension == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
-    format!("the {what} {element} of nodes {nodes:?}{groups} is no {part} of any {of}")
+    format!("the {what} {element} of nodes {nodes:?}{groups} is not a {part} of any {of}")
 }
 
 fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {

@@ -35,11 +35,11 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Version, Fault> {
         0 => {}
         1 => {
             let start = cursor.at();
-            let big = match cursor.take(4, "the number 1 that tells the order of bytes")? {
+            let big = match cursor.take(4, "the number 1 for the byte order")? {
                 [1, 0, 0, 0] => false,
                 [0, 0, 0, 1] => true,
                 _ => {
-                    let (found, what) = ("something else".to_string(), "the number 1 that tells the order of bytes");
+                    let (found, what) = ("something else".to_string(), "the number 1 for the byte order");
                     let advice = "the file is damaged, or was sent as a text";
                     return Err(GmshCause::Unexpected { found, what, advice }.at(start));
                 }

@@ -91,7 +91,7 @@ impl Kept {
         if let Some(node) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
             let value = self.points[node].into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
             let error = Box::new(MeshError::NotFinite { node: self.tags[node] as usize, value });
-            return Err(GmshCause::Mesh { error, advice: "; is the scale as meant?" }.anywhere());
+            return Err(GmshCause::Mesh { error, advice: "; is the scale correct?" }.anywhere());
         }
         let extents: Vec<_> = (0..3).map(|axis| self.extent(axis)).collect();
         let size = extents.iter().map(|e| (e.1[1] - e.1[0]).powi(2)).sum::<f64>().sqrt();

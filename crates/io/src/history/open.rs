@@ -25,7 +25,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
             1 => contents(path, identity, opened).map(AnyHistoryFile::Bar),
             2 => contents(path, identity, opened).map(AnyHistoryFile::Plane),
             other => {
-                let detail = format!("{other} is no dimension known here; it must be 1 (bars) or 2 (triangles)");
+                let detail = format!("{other} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
                 Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
             }
         }

@@ -16,8 +16,8 @@ fn said(text: &str) -> (String, Option<Place>) {
 fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
     let mistakes: &[(&str, &str, &[&str], &str)] = &[
         ("4.1 0 8", "4 0 8", &["version 4 of the MSH format", "-format msh41"], "4 0"),
-        ("4.1 0 8", "4.1 0 7", &["`7` stands where the size of numbers"], "4.1 0 7"),
-        ("4.1 0 8", "4.1 2 8", &["`2` stands where 0 for a text"], "4.1 2 8"),
+        ("4.1 0 8", "4.1 0 7", &["found `7` instead of the size of numbers"], "4.1 0 7"),
+        ("4.1 0 8", "4.1 2 8", &["found `2` instead of 0 for a text"], "4.1 2 8"),
         ("1 1 \"foot\"", "1 1 foot", &["a dimension, a tag and a name in quotes"], "1 1 foot"),
         ("90 2 30 4\n2 2 2 1", "90 2 30 4\n2 2 3 1", &["element 50 is a quadrangle", "Mesh.RecombineAll = 0"], "50"),
         ("2 2 2 1", "2 2 9 1", &["element 50 is a triangle of higher order", "Mesh.ElementOrder = 1"], "50"),
@@ -31,17 +31,17 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("50 2 9 4", "50 2 4 4", &["element 50 is degenerate: its nodes [2, 4, 4]", "tags in Gmsh"], "50"),
         ("50 2 9 4", "50 2 30 9", &["elements 50 and 90 lie on the same side", "BooleanFragments"], "90 2"),
         ("0 1 0\n7 7 7", "0 1 0.5\n7 7 7", &["not in a plane z = const", "node 9 has z = 0.5 m"], ""),
-        ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["`inf` stands where a coordinate of a node"], "0 1 inf"),
-        ("0 1 0\n7 7 7", "0 1 0,5\n7 7 7", &["`0,5` stands where a coordinate of a node"], "0 1 0,5"),
+        ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["found `inf` instead of a coordinate of a node"], "0 1 inf"),
+        ("0 1 0\n7 7 7", "0 1 0,5\n7 7 7", &["found `0,5` instead of a coordinate of a node"], "0 1 0,5"),
         ("10 30 2", "10 30 9", &["the line 10 of nodes [30, 9]", "\"foot\"", "Coherence"], "10 30"),
         ("10 30 2", "10 30 6", &["the line 10 of nodes [30, 6]", "no edge of any triangle"], "10 30"),
         ("1 1 1 1\n10 30 2", "1 9 1 1\n10 30 9", &["the line 10", "delete the curve", "Mesh.SaveAll = 0"], "10 30"),
         ("$Entities", "$PartitionedEntities", &["the mesh is partitioned", "Mesh > Unpartition"], "0 1 2 0"),
-        ("1 5 2 30", "1 6 2 30", &["`6` stands where the number of nodes", "another number"], "7 7 7"),
+        ("1 5 2 30", "1 6 2 30", &["found `6` instead of the number of nodes", "another number"], "7 7 7"),
         ("2 1 0 5\n", "2 1 0 5000000000\n", &["the number of nodes of a block is 5000000000"], "2 1 0 5000000000"),
         ("3 3 10 90", "3 18446744073709551615 10 90", &["the number of elements is 18446744073709551615"], "3 1844"),
         ("$EndNodes", "8 8 8\n$EndNodes", &["the end of the section", "longer than its counts say"], "8 8 8"),
-        ("7 7 7\n", "", &["`$EndNodes` stands where a coordinate", "shorter than its counts say"], "$EndNodes"),
+        ("7 7 7\n", "", &["found `$EndNodes` instead of a coordinate", "shorter than its counts say"], "$EndNodes"),
         ("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n", "", &["no section $MeshFormat"], "0 1 2 0"),
     ];
     for (from, to, phrases, line) in mistakes {
@@ -146,7 +146,7 @@ fn a_scale_must_be_positive_and_of_a_sane_size() {
     }
     let far = SQUARE.replace("1 1 0\n0 1 0", "1e300 1 0\n0 1 0");
     let error = parse("a.msh".as_ref(), far.as_bytes(), 1e12).unwrap_err().to_string();
-    assert!(error.contains("must be finite") && error.contains("is the scale as meant?"), "{error}");
+    assert!(error.contains("must be finite") && error.contains("is the scale correct?"), "{error}");
 }
 
 #[test]

@@ -74,12 +74,12 @@ fn other_kinds_and_layouts() {
         ours.attr("kind").unwrap().write_scalar(&value.parse::<hdf5::types::FixedUnicode<64>>().unwrap()).unwrap();
     };
     assert_says(&spoilt(|f| kind(f, "estimate")), &["this is an estimate, but a history is needed here"]);
-    assert_says(&spoilt(|f| kind(f, "song")), &["`percute.kind`", "\"song\" is no kind"]);
+    assert_says(&spoilt(|f| kind(f, "song")), &["`percute.kind`", "\"song\" is not a known kind"]);
     assert_says(&spoilt(|f| attribute(f, "layout", 2)), &["layout 2", "knows 1 only", "newer percute"]);
     assert_says(&spoilt(|f| attribute(f, "layout", -3)), &["`percute.layout`", "there is no layout -3"]);
     assert_says(
         &spoilt(|f| attribute(f, "dimension", 3)),
-        &["`percute.dimension`", "3 is no dimension", "1 (bars) or 2"],
+        &["`percute.dimension`", "3 is not a known dimension", "1 (bars) or 2"],
     );
     assert_says(
         &spoilt(|f| f.group("percute").unwrap().delete_attr("layout").unwrap()),

@@ -54,8 +54,8 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
 /// An error of a case whose mesh was read as a bar: perhaps a plane body was meant, and its triangles were not saved.
 pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseError {
     if table.get("file").is_some() && error.message.contains(NOT_FOR_BARS) {
-        error.message += "; the mesh file has lines only: if a plane body was meant, name it in Gmsh by \
-                          `Physical Surface(\"body\") = {…};`, for once there are physical groups, only what belongs to one is saved";
+        error.message += "; the mesh file has lines only: for a plane body, name it in Gmsh by \
+                          `Physical Surface(\"body\") = {…};`, because with physical groups Gmsh saves their members only";
     }
     error
 }

@@ -61,7 +61,7 @@ use toml::de::DeTable;
 const TABLES: [&str; 10] =
     ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
 
-const NO_MESH: &str = "the table [mesh] is missing: say what is simulated, as in rectangle = { width = 0.05, height = 0.04, nx = 20, \
+const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectangle = { width = 0.05, height = 0.04, nx = 20, \
                        ny = 16 }; `percute new block` prints a whole case to start from";
 
 /// Names of the components.
@@ -130,14 +130,14 @@ fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     DeTable::parse(source.text()).map_err(|error| {
         let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
         if source.text().starts_with("$MeshFormat") {
-            let message = "this is a mesh of Gmsh and no case; a case names it: [mesh], and `file = \"block.msh\"` in the next line";
+            let message = "this is a Gmsh mesh, not a case; name it in a case: [mesh], and `file = \"block.msh\"` on the next line";
             return source.error(&at, message);
         }
         let mut wrong = source.error(&at, "");
         let told = error.message().trim().replace('\n', ", ");
         wrong.message = match syntax::advice(&wrong.excerpt, &told) {
-            Some(advice) => format!("this is no valid TOML: {advice} ({told})"),
-            None => format!("this is no valid TOML: {told}"),
+            Some(advice) => format!("this is not valid TOML: {advice} ({told})"),
+            None => format!("this is not valid TOML: {told}"),
         };
         wrong
     })

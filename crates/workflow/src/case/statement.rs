@@ -87,7 +87,7 @@ pub fn problem_from<const D: usize, const N: usize>(
     let document = parsed(source)?;
     let root = Table::root(source, document.get_ref());
     for name in BESIDE {
-        root.refuse(name, "is no part of a statement: mesh, initial fields, instants and files are given beside it")?;
+        root.refuse(name, "is not part of a statement: mesh, initial fields, instants and files are given separately")?;
     }
     root.only(&TABLES)?;
     let options = estimate::read(&root)?;

@@ -74,7 +74,8 @@ impl<'a> Table<'a> {
         }
         let wrong = || {
             let at = At { path: name.to_string(), span: key.span() };
-            self.source.error(&at, format!("is no table; write [{name}] on a line of its own, or several [[{name}]]"))
+            self.source
+                .error(&at, format!("is not a table; write [{name}] on a line of its own, or several [[{name}]]"))
         };
         let entries = value.get_ref().as_array().ok_or_else(wrong)?;
         let numbered = entries.iter().enumerate();

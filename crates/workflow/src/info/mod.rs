@@ -197,10 +197,8 @@ impl CaseInfo {
         let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));
         lines.push(("memory", format!("about {run} for the run, and {estimate} for the estimate")));
         if self.output_estimate.is_some() {
-            lines.push((
-                "",
-                format!("and {} for what contact does, as there is an estimate file", bytes(self.contact_memory)),
-            ));
+            lines
+                .push(("", format!("and {} for the contact results of the estimate file", bytes(self.contact_memory))));
         }
         for (name, file) in [("history", &self.output_history), ("estimate", &self.output_estimate)] {
             lines.extend(file.as_ref().map(|file| ("output", format!("{name} to {file}"))));
@@ -218,7 +216,7 @@ impl HistoryInfo {
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| format!("{steps} steps"));
         let ended =
-            if self.complete { "complete" } else { "NOT FINISHED: its run goes on or was killed (percute recover)" };
+            if self.complete { "complete" } else { "INCOMPLETE: its run continues or was killed (percute recover)" };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));

@@ -57,7 +57,7 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
         (
             "options",
             format!(
-                "{} forces, {} acceleration, every {}",
+                "reconstruction {}, acceleration {}, every {}",
                 options.reconstruction, options.acceleration, options.every
             ),
         ),
@@ -105,7 +105,7 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
 fn result(report: &Report) -> String {
     let e = &report.error;
     if !report.problem.obstacles.is_empty() && report.kept_impulse.is_none() && e.sup == 0.0 {
-        return "no contact, and nothing that could be wrong: see the warnings".to_string();
+        return "no contact and no error: see the warnings".to_string();
     }
     let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
     let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);

@@ -73,7 +73,7 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let message = format!(
-        "the residual `{name}` is {value:.2e}: above {:.0e} a field is not admissible and the error measure is not one",
+        "the residual `{name}` is {value:.2e}: above {:.0e} a field is not admissible, and the error measure is not valid",
         super::ADMISSIBLE
     );
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
@@ -86,7 +86,7 @@ fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
     }
     let drift = percent(facts.drift);
     let message =
-        format!("the energy balance is off by {drift} of the largest energy; take a smaller time step or a finer mesh");
+        format!("the energy balance is off by {drift} of the largest energy; reduce the time step or refine the mesh");
     warning("energy_drift", format!("energy balance off by {drift}"), message)
 }
 
@@ -96,9 +96,9 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
     let shown = percent(kept);
     let advice = match facts.reconstruction {
         // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
-        Reconstruction::Corrected if kept < 1.0 => "the run ends while contact begins: let it last longer",
+        Reconstruction::Corrected if kept < 1.0 => "the run ends during the onset of contact: use a later end",
         Reconstruction::Corrected => {
-            "reactions of the history pull, or are outside Coulomb's cone: is `friction` what it was made with?"
+            "reactions of the history are tensile or outside Coulomb's cone: is `friction` that of the simulation?"
         }
         Reconstruction::Consistent | Reconstruction::Published => {
             "refine the mesh or the steps where contact begins, or take `reconstruction = \"corrected\"`"
@@ -124,7 +124,7 @@ fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
-    let message = format!("no contact force acted {when}: is the gap, the velocity or `[time] end` as meant?");
+    let message = format!("no contact force acted {when}: check the gap, the velocity and `[time] end`");
     warning("no_contact", format!("no contact {when}"), message)
 }
 
@@ -135,15 +135,15 @@ fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     }
     let error = percent(error);
     let message = format!(
-        "tables in time are joined by straight lines between the steps: they differ from what was given by up to {error}"
+        "tables in time are interpolated linearly between the steps: they differ from the given tables by up to {error}"
     );
     warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
 }
 
 fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
     let count = facts.problem.reoriented_elements;
-    let message = format!("{count} elements were given clockwise (a bar: backwards) and turned round");
-    if count == 0 { None } else { warning("reoriented_elements", format!("{count} elements turned round"), message) }
+    let message = format!("{count} elements were given clockwise (a bar: backwards) and reoriented");
+    if count == 0 { None } else { warning("reoriented_elements", format!("{count} elements reoriented"), message) }
 }
 
 /// An error that is sampled at the start and at the end only; told before the run, too.

@@ -31,7 +31,7 @@ fn too_fast(speed: f64, waves: f64) -> Option<(String, String)> {
     let (shown, waves) = (speed > waves).then(|| (short(speed), short(waves)))?;
     let millimetres = short(1e-3 * speed);
     let message = format!(
-        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), where small strains end; speeds are in m/s: if it \
+        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), beyond small strains; speeds are in m/s: if it \
          is in mm/s, write {millimetres}"
     );
     Some((format!("a speed of {shown} m/s, above that of waves"), message))
@@ -60,8 +60,8 @@ fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Pl
     if problem.is_loaded() || moving || !still(problem.initial_velocity()) || !still(problem.initial_displacement()) {
         return None;
     }
-    let message = "nothing moves: there is no initial velocity, no load and no support that moves; give the body a velocity \
-                   (m/s), or say what drives it";
+    let message = "nothing moves: there is no initial velocity, no load and no moving support; give the body a velocity \
+                   (m/s), a load or a moving support";
     Some(plausibility_warning(at("initial", None, "velocity"), "at_rest", "nothing moves", message))
 }
 
@@ -155,18 +155,18 @@ fn never(first: &Approach, end: f64) -> Option<PlausibilityWarning> {
     if time.is_finite() {
         let when = short(time);
         let message = format!(
-            "the gap of {gap} m is closed after {when} s only (the body starts at {towards} m/s towards the plane), but the run \
-             ends at {end} s: run to a later `end`, start nearer, or check the units of gap and velocity"
+            "the gap of {gap} m closes after {when} s (the body starts at {towards} m/s towards the plane), but the run \
+             ends at {end} s: use a later `end`, start nearer, or check the units of gap and velocity"
         );
         let brief = format!("no contact before {when} s");
         return Some(plausibility_warning(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
     }
     let away = short(-speed);
     let message = if speed < 0.0 {
-        format!("moves the body away from the plane at {away} m/s, so that it never touches: is its sign as meant?")
+        format!("moves the body away from the plane at {away} m/s, so the body never touches: is the sign correct?")
     } else {
         format!(
-            "moves the body no nearer to the plane, which is {gap} m away: it never touches; give it a velocity towards it"
+            "does not move the body towards the plane, {gap} m away: it never touches; give it a velocity towards the plane"
         )
     };
     Some(plausibility_warning(

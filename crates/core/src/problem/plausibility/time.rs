@@ -43,14 +43,14 @@ fn steps(count: usize, end: f64) -> Option<PlausibilityWarning> {
     let shown = short(end);
     if count == 1 {
         let message = format!(
-            "is {shown} s, no more than one time step: nothing can happen in it; is it in seconds, and are lengths in metres?"
+            "is {shown} s, at most one time step, too short for an impact: is it in seconds, and are lengths in metres?"
         );
         return Some(plausibility_warning(place, "single_step", "a run of one step", message));
     }
     if count <= MANY_STEPS {
         return None;
     }
-    let message = format!("is {shown} s, which takes {count} steps: is it as meant, and in seconds?");
+    let message = format!("is {shown} s, which takes {count} steps: is it correct, and in seconds?");
     Some(plausibility_warning(place, "many_steps", format!("{count} steps"), message))
 }
 
@@ -66,7 +66,7 @@ fn unused<const C: usize>(table: &Table<C>, end: f64) -> Option<String> {
         return None;
     }
     Some(format!(
-        "its `time` runs to {} s, the run to {} s only, before which the table hardly changes: is `time` in seconds?",
+        "its `time` runs to {} s, but the run to {} s only, and the table hardly changes by then: is `time` in seconds?",
         short(last),
         short(end)
     ))

@@ -76,7 +76,9 @@ fn density(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
     let looks = |(unit, factor): &(&str, f64)| {
         let meant = factor * density;
         let likely = (SOLIDS[0]..=SOLIDS[1]).contains(&meant);
-        likely.then(|| format!("is {shown} kg/m³, no density of a solid; if it is in {unit}, write {}", short(meant)))
+        likely.then(|| {
+            format!("is {shown} kg/m³, not the density of a solid; if it is in {unit}, write {}", short(meant))
+        })
     };
     let others = [("g/cm³", 1e3), ("kg/mm³", 1e9), ("t/mm³", 1e12)];
     let message = others.iter().find_map(looks).unwrap_or_else(|| {
@@ -152,8 +154,8 @@ fn locking(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
         return None;
     }
     let message = format!(
-        "is {poisson}: linear triangles in plane strain lock when the material hardly changes its volume; up to \
-         {INCOMPRESSIBLE} results can be trusted"
+        "is {poisson}: linear triangles in plane strain lock for a nearly incompressible material; \
+         results are reliable up to {INCOMPRESSIBLE}"
     );
     Some(plausibility_warning(
         at("material", Some(index), "poisson"),
@@ -184,7 +186,7 @@ fn friction(friction: f64, index: usize) -> Option<PlausibilityWarning> {
         return None;
     }
     let message = format!(
-        "is {}, far above that of any materials; it is a coefficient: if it is in percent, write {}",
+        "is {}, far above that of any materials; the coefficient has no unit: if it is in percent, write {}",
         short(friction),
         short(0.01 * friction)
     );

@@ -116,7 +116,7 @@ impl<const D: usize> AuxiliarySolution<D> {
 /// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from 0.97 of
 /// the critical step on. With it, p is at most ⅓, and x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: stable wherever the simulation
 /// is. In 1D it would be so without: but there the simulation takes the critical step exactly, its shortest wave grows with
-/// time once it is excited, and a auxiliary solution that does the same does not see it. 1/36 keeps it from that, at the
+/// time once it is excited, and an auxiliary solution that does the same does not see it. 1/36 keeps it from that, at the
 /// price of a larger estimate at that step. It changes errors of the order that is left anyway.
 fn damping<const D: usize>() -> f64 {
     if D == 1 {

@@ -134,7 +134,7 @@ fn ranges(grid: &Grid) -> String {
         "The paper finds effectivities from {} to {} and does not say of which measure. Over all runs and with Γ_DA `{}` they are: {}. {} The highest \
          means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step of the impact. \
          The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind the front: a measure \
-         whose balance is that of the simulation's own displacements does not see what has accumulated. `corrected` balances a auxiliary solution \
+         whose balance is that of the simulation's own displacements does not see what has accumulated. `corrected` balances an auxiliary solution \
          with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c in the runs that go \
          on beyond the contact: there the simulation is at its limit of stability, and its shortest wave, once the release has \
          excited it, grows with time. The auxiliary's does not grow, but the release excites it as well, and about half of that is not seen. \

@@ -40,7 +40,7 @@ const ATTEMPTS: [Attempt; 9] = [
     ),
     of_whole(
         "auxiliary solution as dispersive",
-        "a auxiliary without its two corrections: nothing drifts, but waves of the simulation and of the balance are late \
+        "an auxiliary without its two corrections: nothing drifts, but waves of the simulation and of the balance are late \
          together, and the estimate loses them on fine meshes with small steps",
         Ablation::Correction,
     ),

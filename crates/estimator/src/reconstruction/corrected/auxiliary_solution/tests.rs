@@ -7,7 +7,7 @@ use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_testkit::{Random, random_rectangle};
 use std::f64::consts::PI;
 
-/// All displacements of a auxiliary solution under no contact.
+/// All displacements of an auxiliary solution under no contact.
 fn motion<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
