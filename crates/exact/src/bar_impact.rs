@@ -1,7 +1,7 @@
 //! The impact of a uniform bar on a rigid plane.
 
-/// A uniform bar, undeformed on [0, L], that flies in −x at `speed` towards a rigid plane at
-/// x = −`gap`, which it leaves at the same speed after 2L/c.
+/// A uniform bar, undeformed on [0, L], that moves in −x at `speed` towards a rigid plane at
+/// x = −`gap`. It leaves the plane at the same speed after 2L/c.
 ///
 /// Source: Louf, Gallimard and Pelle, §7.1.1 (after Gibert, *Vibrations des structures*, 1988).
 /// Its three phases are one formula: with the impact at t_c and c = √(E/ρ), the point x stops when
@@ -45,7 +45,7 @@ impl BarImpact {
         self.impact_time() + 2.0 * self.length / self.wave_speed()
     }
 
-    /// When the compression wave reaches x, and when the reflected one does (s).
+    /// Arrival times of the compression wave and of the reflected wave at x (s).
     fn arrivals(&self, x: f64) -> (f64, f64) {
         let c = self.wave_speed();
         (self.impact_time() + x / c, self.impact_time() + (2.0 * self.length - x) / c)
@@ -84,8 +84,8 @@ impl BarImpact {
         -self.normal_force(0.0, t)
     }
 
-    /// Where the front is in the undeformed bar (m): it runs to the free end and back while the
-    /// bar touches; at other times nothing is discontinuous.
+    /// Position of the front in the undeformed bar (m). During contact it runs to the free end and
+    /// back; at other times all fields are continuous.
     #[must_use]
     pub fn front(&self, t: f64) -> Option<f64> {
         let run = self.wave_speed() * (t - self.impact_time());
@@ -119,8 +119,8 @@ mod tests {
         assert_eq!(BAR.front(4.6), None);
     }
 
-    /// Differences of u in time and space are v and N/(ES): u is piecewise linear, so that only
-    /// rounding of the difference is left, 1e-16·u/step.
+    /// Differences of u in time and space are v and N/(ES): u is piecewise linear, so only rounding
+    /// of the difference remains, 1e-16·u/step.
     #[test]
     fn velocity_and_force_are_the_slopes_of_the_displacement() {
         let step = 1e-4;
@@ -151,7 +151,7 @@ mod tests {
         }
     }
 
-    /// The energy is that of the flight at all times, and the momentum grows by the impulse of the
+    /// The energy is constant, and the momentum grows by the impulse of the
     /// contact force. Midpoint sums are exact because the front lies between two cells.
     #[test]
     fn energy_and_momentum_balance() {
@@ -171,8 +171,8 @@ mod tests {
         }
     }
 
-    /// The end that touches stays on the plane, the free end is free, and the bar leaves rigidly at
-    /// the speed it came with.
+    /// The end in contact stays on the plane, the other end is free, and the bar leaves rigidly at
+    /// its initial speed.
     #[test]
     fn ends_and_rebound() {
         for t in [0.5, 1.0, 2.5, 4.0, 4.5] {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// What holds the ends of a bar.
+/// Supports of the ends of a bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BarEnds {
     /// x = 0 fixed, x = L free: φ = sin((n − ½)πx/L), n ≥ 1.
@@ -19,7 +19,7 @@ pub enum BarEnds {
 /// bars; φ'' = −k²φ and ü = c²u'' with c = √(E/ρ).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarMode {
-    /// What holds the ends.
+    /// Supports of the ends.
     pub ends: BarEnds,
     /// n.
     pub number: u32,
@@ -127,7 +127,7 @@ mod tests {
         }
     }
 
-    /// Fixed ends do not move, free ends bear no force; sin(nπ) is 0 to n·1e-16, times ES A k.
+    /// Fixed ends do not move, free ends have no force; sin(nπ) is 0 to n·1e-16, times ES A k.
     #[test]
     fn ends() {
         for mode in modes() {

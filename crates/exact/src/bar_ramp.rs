@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// A uniform bar on [0, L], clamped at x = 0, undeformed and at rest, whose end is pulled from t = 0 on by a traction rt (Pa).
+/// A uniform bar on [0, L], clamped at x = 0, undeformed and at rest, with a traction rt (Pa) on its end from t = 0 on.
 ///
 /// Sources: the modal series is that of Timoshenko, *Vibration Problems in Engineering*, longitudinal vibrations under a force at the end:
 /// with k_n = (n − ½)π/L and ω_n = k_n c,
@@ -33,7 +33,7 @@ impl BarRamp {
         (self.young / self.density).sqrt()
     }
 
-    /// The waves that have come to x by t: sign, direction (1 from the end, −1 from the clamp) and time since.
+    /// The waves that have passed x before t: sign, direction (1 from the end, −1 from the clamp) and time since then.
     fn waves(&self, x: f64, t: f64) -> impl Iterator<Item = (f64, f64, f64)> {
         let (length, c) = (self.length, self.wave_speed());
         let count = (0.5 * (c * t / length + 1.0)).max(0.0).ceil() as u32;
@@ -64,7 +64,7 @@ impl BarRamp {
         self.section * self.rate * self.waves(x, t).map(|(sign, way, since)| sign * way * since).sum::<f64>()
     }
 
-    /// The modal series up to a number of modes (m). What is left out is below r L²/(3 E c n²) for n modes.
+    /// The modal series up to a number of modes (m). The remainder is below r L²/(3 E c n²) for n modes.
     #[must_use]
     pub fn modal_displacement(&self, x: f64, t: f64, modes: u32) -> f64 {
         let c = self.wave_speed();
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// The clamp holds, the end has the traction, and at t = 0 nothing has happened.
+    /// The clamp does not move, the end has the traction, and at t = 0 the bar is undeformed and at rest.
     #[test]
     fn start_and_ends() {
         for i in 0..50 {

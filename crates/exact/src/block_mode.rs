@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-/// Which way the points move.
+/// Direction of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wave {
     /// Along k: ω² = |k|²(λ + 2G)/ρ.
     Pressure,
-    /// Across k: ω² = |k|² G/ρ; both numbers must be at least 1, or nothing moves.
+    /// Across k: ω² = |k|² G/ρ; both numbers must be at least 1, otherwise the field is zero.
     Shear,
 }
 
@@ -19,7 +19,7 @@ pub enum Wave {
 /// with k = (mπ/a, nπ/b) and c = k/|k| (pressure) or (k_y, −k_x)/|k| (shear).
 ///
 /// Source: Helmholtz's decomposition (Graff, *Wave Motion in Elastic Solids*, §5.1); the first
-/// field is a gradient, the second without divergence, so that Navier's equation
+/// field is a gradient, the second is divergence-free, and Navier's equation
 /// ρü = (λ + G)∇(∇·u) + GΔu becomes a wave equation for each.
 ///
 /// λ and G are those of the two-dimensional law: plane strain λ = Eν/((1+ν)(1−2ν)), plane stress

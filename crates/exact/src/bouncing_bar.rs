@@ -1,22 +1,22 @@
-//! A bar that falls on a rigid plane under gravity, and bounces for ever.
+//! A bar that bounces periodically on a rigid plane under gravity.
 
 /// A uniform bar, undeformed on [0, L] at t = 0 and at rest, that falls under gravity g in −x onto a rigid plane at
-/// x = −h, and comes back to where it was, again and again.
+/// x = −h, and returns to its initial state periodically.
 ///
 /// Source: the second benchmark of Doyen, Ern and Piperno (2011), *Time-integration schemes for the finite element dynamic
 /// Signorini problem*, SIAM J. Sci. Comput. 33(1), 223–249. The closed form is d'Alembert's, derived here.
 ///
 /// With the instant of impact as τ = 0, w the displacement from there, v₀ = √(2gh), c = √(E/ρ) and D = 2L/c:
 ///
-/// - it touches for D. The plane sends a wave of F(τ) = v₀τ₊ + ½gτ₊² into the bar, which the free end sends back:
+/// - contact lasts D. The wave F(τ) = v₀τ₊ + ½gτ₊² runs from the plane into the bar and is reflected at the free end:
 ///   w = −v₀τ − ½gτ² + F(τ − x/c) + F(τ − (2L − x)/c). The contact force is ρSc(v₀ + gτ), and at D the bar leaves with
 ///   the uniform velocity v₀ and twice the deformation s of a bar that stands under its weight, s = −(g/c²)(Lx − x²/2);
-/// - it flies for 2v₀/g while it swings about the undeformed state, whose period is D too:
+/// - the flight lasts 2v₀/g, with a vibration of period D about the undeformed state:
 ///   w = v₀θ − ½gθ² + ŝ(x + cθ) + ŝ(x − cθ), θ = τ − D and ŝ the 2L-periodic even continuation of s. If 2v₀/g is a
-///   whole number of periods D it lands as it left, with all velocities reversed;
-/// - so the next contact is the first one backwards in time, after which it rises undeformed to where it came from.
+///   whole number of periods D, the bar lands in the state of its release, with all velocities reversed;
+/// - so the next contact is the time reverse of the first one, and the bar then rises undeformed to its initial height.
 ///
-/// The whole is even about the middle of the flight and has the period 2D + 4v₀/g.
+/// The solution is even about the middle of the flight and has the period 2D + 4v₀/g.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BouncingBar {
     length: f64,
@@ -33,7 +33,7 @@ type State = (f64, f64, f64);
 impl BouncingBar {
     /// A bar of length L (m), Young's modulus E (Pa), density ρ (kg/m³), section S (m²) under gravity g (m/s²), dropped from
     /// the height h (m). `None` unless the flight 2v₀/g is a whole number k of periods 2L/c, to a relative 1e-9, and k > 2:
-    /// with k = 2 or less the bar cannot leave after 2L/c, since its end would spring back into the plane.
+    /// with k = 2 or less the bar cannot leave after 2L/c, because its end would move back into the plane.
     #[must_use]
     pub fn new(length: f64, young: f64, density: f64, section: f64, gravity: f64, height: f64) -> Option<Self> {
         let bar = Self { length, young, density, section, gravity, height };
@@ -54,19 +54,19 @@ impl BouncingBar {
         (2.0 * self.gravity * self.height).sqrt()
     }
 
-    /// When it touches first (s): v₀/g.
+    /// Time of the first touch (s): v₀/g.
     #[must_use]
     pub fn impact_time(&self) -> f64 {
         self.impact_speed() / self.gravity
     }
 
-    /// How long each contact lasts (s): D = 2L/c.
+    /// Duration of each contact (s): D = 2L/c.
     #[must_use]
     pub fn contact_duration(&self) -> f64 {
         2.0 * self.length / self.wave_speed()
     }
 
-    /// After how long all repeats (s), two bounces: 2D + 4v₀/g.
+    /// Period of the motion (s), two bounces: 2D + 4v₀/g.
     #[must_use]
     pub fn period(&self) -> f64 {
         2.0 * self.contact_duration() + 4.0 * self.impact_time()
@@ -96,7 +96,7 @@ impl BouncingBar {
         self.young * self.section * self.state(x, t).2
     }
 
-    /// Force of the plane on the bar (N): in the first contact ρSc(v₀ + gτ), in the second that backwards.
+    /// Force of the plane on the bar (N): in the first contact ρSc(v₀ + gτ), in the second the time reverse.
     #[must_use]
     pub fn contact_force(&self, t: f64) -> f64 {
         let (tau, _) = self.folded(t);
@@ -146,7 +146,7 @@ impl BouncingBar {
 mod tests {
     use super::*;
 
-    /// That of Doyen, Ern and Piperno, with a section that shows where it goes.
+    /// The bar of Doyen, Ern and Piperno, with a section other than 1.
     fn bar() -> BouncingBar {
         BouncingBar::new(10.0, 900.0, 1.0, 0.5, 10.0, 5.0).unwrap()
     }
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(bar.energy(), 250.0);
     }
 
-    /// A flight that is no whole number of periods, or only two of them.
+    /// A flight that is not a whole number of periods, or only two of them.
     #[test]
     fn bars_that_do_not_bounce_for_ever_are_refused() {
         assert_eq!(BouncingBar::new(10.0, 900.0, 1.0, 0.5, 10.0, 5.1), None);
@@ -195,7 +195,7 @@ mod tests {
         }
     }
 
-    /// Signorini's conditions at x = 0 over two periods; the other end is free. Displacements are of order 5.
+    /// The Signorini conditions at x = 0 over two periods; the other end is free. Displacements are of order 5.
     #[test]
     fn contact_law() {
         let bar = bar();

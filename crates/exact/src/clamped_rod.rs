@@ -1,18 +1,18 @@
 //! A clamped rod that springs back against an obstacle.
 
-/// A uniform rod on [0, L], clamped at x = L, with an obstacle at the undeformed place of its end x = 0. It is pushed away
-/// from the obstacle, u₀ = (1 − x/L) d with d > 0, and released at rest.
+/// A uniform rod on [0, L], clamped at x = L, with an obstacle at the undeformed position of its end x = 0. It is
+/// displaced from the obstacle, u₀ = (1 − x/L) d with d > 0, and released at rest.
 ///
 /// Source: a benchmark of Dabaghi, Petrov, Pousin and Renard, *A robust finite element redistribution approach for
 /// elastodynamic contact problems*, Appl. Numer. Math. 103 (2016), with L = E = ρ = 1 and d = ½. The closed form by d'Alembert:
 /// with c = √(E/ρ), a = L/c and a wave of velocity w = dc/L,
 ///
-/// - release, 0 … a: the relief runs from x = 0 to the clamp, behind it the rod is unstrained with the velocity −w;
+/// - release, 0 … a: the unloading wave runs from x = 0 to the clamp; behind it the rod is unstrained with the velocity −w;
 /// - contact, a … 2a: all of the rod arrives unstrained at −w; waves run in from both ends, stop it, compress it at the obstacle and
 ///   stretch it at the clamp, and meet; behind the second ones it is unstrained with velocity w. The contact force is ESd/L;
 /// - return, 2a … 3a: the wave from the clamp stops it, compressed as at the start.
 ///
-/// The period is 3a; the second half of it is the first one backwards in time.
+/// The period is 3a; its second half is the time reverse of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClampedRod {
     /// L (m).
@@ -23,7 +23,7 @@ pub struct ClampedRod {
     pub density: f64,
     /// Section S (m²).
     pub section: f64,
-    /// d, how far its end is from the obstacle at t = 0 (m).
+    /// d, the distance of its end from the obstacle at t = 0 (m).
     pub distance: f64,
 }
 
@@ -34,7 +34,7 @@ impl ClampedRod {
         (self.young / self.density).sqrt()
     }
 
-    /// a = L/c (s), after which it touches, and for which it does.
+    /// a = L/c (s), the time of the first touch and the duration of contact.
     #[must_use]
     pub fn passage(&self) -> f64 {
         self.length / self.wave_speed()
@@ -104,7 +104,7 @@ impl ClampedRod {
         if phase <= 0.5 * self.period() { (phase, 1.0) } else { (self.period() - phase, -1.0) }
     }
 
-    /// How long a wave takes to x from the start, and from the clamp (s).
+    /// Travel time of a wave to x from the start, and from the clamp (s).
     fn arrivals(&self, x: f64) -> (f64, f64) {
         let c = self.wave_speed();
         (x / c, (self.length - x) / c)
@@ -141,8 +141,8 @@ mod tests {
         assert_eq!([0.9, 2.1].map(|t| rod.contact_force(t)), [0.0, 0.0]);
     }
 
-    /// Slopes of u are v and N/(ES) in all phases of two periods: u is piecewise linear, so that only rounding of the difference
-    /// is left, 1e-16·u/step; points and instants are away from fronts.
+    /// Slopes of u are v and N/(ES) in all phases of two periods: u is piecewise linear, so only rounding of the difference
+    /// remains, 1e-16·u/step; points and instants are away from fronts.
     #[test]
     fn velocity_and_force_are_the_slopes_of_the_displacement() {
         let h = 1e-4;
@@ -157,7 +157,7 @@ mod tests {
         }
     }
 
-    /// The clamp holds, and the end meets the obstacle by Signorini's conditions.
+    /// The clamp does not move, and the end satisfies the Signorini conditions.
     #[test]
     fn ends() {
         for i in 0..600 {
@@ -182,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Momentum: contact and clamp give the impulse, the clamp's force is N(L).
+    /// Momentum: the impulse is that of contact and clamp, with the force N(L) of the clamp.
     #[test]
     fn momentum() {
         let (steps, cells) = (12_000, 240);

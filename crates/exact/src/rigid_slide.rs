@@ -1,10 +1,10 @@
-//! A rigid block with Coulomb friction under a push.
+//! A rigid block with Coulomb friction under a driving force.
 
-/// Between two changes, all is a polynomial of the time since `start`.
+/// Between two changes, the motion is a polynomial of the time since `start`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Piece {
     start: f64,
-    /// −1, 1: which way it slides; 0: it sticks.
+    /// −1, 1: direction of sliding; 0: it sticks.
     way: f64,
     position: f64,
     velocity: f64,
@@ -65,7 +65,7 @@ impl RigidSlide {
         Some(slide)
     }
 
-    /// Which way it slides at the start of a piece.
+    /// Direction of sliding at the start of a piece.
     fn way(&self, piece: &Piece) -> f64 {
         let grows = piece.push.abs() == self.limit && piece.push * piece.slope > 0.0;
         if piece.velocity != 0.0 {
@@ -77,13 +77,13 @@ impl RigidSlide {
         }
     }
 
-    /// When it starts to slide, or stops (s).
+    /// Time at which it starts to slide, or stops (s).
     fn change(&self, piece: &Piece) -> Option<f64> {
         if piece.way == 0.0 {
             let bound = self.limit * piece.slope.signum();
             return (piece.slope != 0.0).then(|| piece.start + (bound - piece.push) / piece.slope);
         }
-        // Along its way: w + a τ + b τ² = 0 for the first τ > 0.
+        // In the direction of sliding: w + a τ + b τ² = 0 for the first τ > 0.
         let w = self.mass * piece.velocity * piece.way;
         let a = piece.push * piece.way - self.limit;
         let b = 0.5 * piece.slope * piece.way;
@@ -98,7 +98,7 @@ impl RigidSlide {
         (root > 0.0 && root.is_finite()).then_some(piece.start + root)
     }
 
-    /// What a piece comes to at `time`; `changes` if it then starts or stops.
+    /// State of a piece at `time`; `changes` if it then starts or stops.
     fn at_end(&self, piece: &Piece, time: f64, changes: bool) -> Piece {
         let (position, velocity) = self.motion(piece, time);
         let since = time - piece.start;
@@ -132,7 +132,7 @@ impl RigidSlide {
         &self.pieces[after.saturating_sub(1)]
     }
 
-    /// How far it has come (m).
+    /// Displacement (m).
     #[must_use]
     pub fn position(&self, time: f64) -> f64 {
         self.motion(self.piece(time), time).0
@@ -199,7 +199,7 @@ mod tests {
         assert_eq!((slide.velocity(3.0), slide.velocity(4.0)), (-0.5, -2.5));
     }
 
-    /// mẍ = P + friction by differences, Coulomb's law, and the work of P is kinetic energy plus what is dissipated.
+    /// mẍ = P + friction by differences, Coulomb's law, and the work of P is kinetic energy plus dissipated energy.
     #[test]
     fn equation_of_motion_law_and_energy() {
         for amplitude in [2.5, 3.0, 4.0, 9.0] {

@@ -1,4 +1,4 @@
-//! New files: made whole under another name, with their room reserved, and only then put in place.
+//! New files: written completely under another name, with reserved space, and then renamed.
 
 use crate::error::FileCause;
 use crate::held::Held;
@@ -13,36 +13,36 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// What to do with a file that is there already.
+/// The treatment of an existing file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overwrite {
-    /// Nothing is lost: an error.
+    /// An existing file is an error.
     #[default]
     Refuse,
-    /// The new file takes its place, once it can hold all that will come. Whoever reads the old one
-    /// keeps it; one that is being written is not replaced.
+    /// The new file replaces the old one once its space is reserved. Readers of the old file
+    /// keep it. A file that is being written is not replaced.
     Replace,
 }
 
 impl Overwrite {
-    /// Replaces if that is allowed.
+    /// Replaces the file if this is allowed.
     #[must_use]
     pub fn allowed(replace: bool) -> Self {
         if replace { Self::Replace } else { Self::Refuse }
     }
 }
 
-/// A file that has no name yet.
+/// A file without its final name.
 pub(crate) struct Unnamed {
     temporary: NamedTempFile,
     path: PathBuf,
-    /// Keeps the file that is to be replaced.
+    /// Lock on the file to be replaced.
     old: Option<Held>,
     overwrite: Overwrite,
 }
 
 impl Unnamed {
-    /// Makes a file with HDF5; `fill` makes what it holds, and `bytes` is how large it will be.
+    /// Creates an HDF5 file; `fill` creates its contents, and `bytes` is its size.
     pub(crate) fn new<T>(
         path: &Path,
         overwrite: Overwrite,
@@ -52,7 +52,7 @@ impl Unnamed {
         let (path, old) = destination(path, overwrite)?;
         let folder = folder_of(&path);
         let temporary = temporary(folder, bytes)?;
-        // A full disk shows here in most cases, before anything is written.
+        // A full disk is detected here in most cases, before the first write.
         if let Some(free) = free(folder).filter(|free| *free < bytes) {
             return Err(FileCause::NoSpace { needed: bytes, free });
         }
@@ -63,7 +63,7 @@ impl Unnamed {
         })?;
         let length = temporary.as_file().metadata().map_err(|source| FileCause::Create { source })?.len();
         match fallocate(temporary.as_file(), FallocateFlags::empty(), 0, length.max(1)) {
-            // Not all file systems can reserve; on those a full disk shows when it is full.
+            // Not all file systems can reserve space. On those a full disk is detected when it is full.
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => {}
             Err(error) => return Err(no_room(error.into(), folder, bytes.max(length))),
         }
@@ -71,12 +71,12 @@ impl Unnamed {
         Ok((Self { temporary, path, old, overwrite }, made))
     }
 
-    /// The file, to be filled further.
+    /// The file, for further writes.
     pub(crate) fn file(&self) -> &File {
         self.temporary.as_file()
     }
 
-    /// Where it will be.
+    /// Its final path.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -98,7 +98,7 @@ impl Unnamed {
     }
 }
 
-/// Makes a file of these bytes, whole or not at all.
+/// Creates a file of these bytes, completely or not at all.
 pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileCause> {
     let (path, old) = destination(path, overwrite)?;
     let (folder, length) = (folder_of(&path), bytes.len() as u64);
@@ -111,19 +111,19 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
 }
 
-/// A file under another name, which goes unless it is put in place.
+/// A file under a temporary name, which is removed unless it is renamed.
 fn temporary(folder: &Path, bytes: u64) -> Result<NamedTempFile, FileCause> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".percute-").permissions(Permissions::from_mode(0o666));
     builder.tempfile_in(folder).map_err(|error| no_room(error, folder, bytes))
 }
 
-/// Makes an HDF5 file and closes it.
+/// Creates an HDF5 file and closes it.
 fn make<T>(path: &Path, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) -> Result<T, FileCause> {
     let _alone = alone();
     let file = hdf5::File::with_options()
-        // VTK loses arrays of later formats; who maps arrays into memory wants them aligned. Nobody else
-        // knows the file.
+        // VTK loses arrays of later formats. Arrays are aligned so that they can be mapped into memory. The file
+        // has no other users yet.
         .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).file_locking(false))
         .create(path)
         .map_err(|error| refused(&error))?;
@@ -132,13 +132,13 @@ fn make<T>(path: &Path, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) 
     Ok(made)
 }
 
-/// Where the file goes, and the lock of the one that it replaces.
+/// The path of the file, and the lock on the file to be replaced.
 fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Held>), FileCause> {
     let Ok(found) = path.symlink_metadata() else { return Ok((path.to_path_buf(), None)) };
     if overwrite == Overwrite::Refuse {
         return Err(FileCause::Exists);
     }
-    // Through a link, its target is what is replaced.
+    // A link keeps its place; its target is replaced.
     let path = if found.is_symlink() { path.canonicalize() } else { Ok(path.to_path_buf()) };
     let path = path.map_err(|source| FileCause::Create { source })?;
     if !path.is_file() {
@@ -148,7 +148,7 @@ fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Hel
     Ok((path, Some(Held::alone(old)?)))
 }
 
-/// Bytes free for us in a folder.
+/// Bytes available in a folder.
 fn free(folder: &Path) -> Option<u64> {
     let status = fstatvfs(File::open(folder).ok()?).ok()?;
     status.f_bavail.checked_mul(status.f_frsize)
@@ -161,7 +161,7 @@ fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {
     FileCause::Create { source }
 }
 
-/// A library error while making the file.
+/// A library error during the creation of the file.
 pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
     FileCause::Create { source: io::Error::other(detail(error)) }
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with a file, and the way out.
+//! Errors about files, with their remedies.
 
 use crate::kind::Kind;
 use percute_core::history::StepError;
@@ -21,25 +21,25 @@ pub struct FileError {
 /// What is wrong.
 #[derive(Debug, Error)]
 pub enum FileCause {
-    /// Nothing of that name.
+    /// No such file.
     #[error("there is no such file")]
     Missing,
-    /// A file that is not to be lost.
+    /// An existing file.
     #[error("the file exists already; give another name, or ask for it to be replaced")]
     Exists,
-    /// Something else than a file.
+    /// Not a regular file.
     #[error("it is not a regular file; give another name")]
     NotAFile,
     /// Locked.
     #[error("another program is using the file (it is locked); wait until it is done, or give another name")]
     InUse,
-    /// No file can be made there.
+    /// The file cannot be created.
     #[error("the file cannot be created: {source}; is the folder there, and may it be written to?")]
     Create {
         /// Why.
         source: io::Error,
     },
-    /// Not enough room.
+    /// Not enough space.
     #[error("the file needs {needed} bytes, but only {free} are free there; make room, or store it elsewhere")]
     NoSpace {
         /// Bytes needed.
@@ -47,7 +47,7 @@ pub enum FileCause {
         /// Bytes free.
         free: u64,
     },
-    /// Writing failed while the run went on.
+    /// Writing failed during the run.
     #[error("step {step} could not be written: {source}; all steps before it are in the file")]
     Write {
         /// The step.
@@ -55,7 +55,7 @@ pub enum FileCause {
         /// Why.
         source: io::Error,
     },
-    /// The end of the run could not be noted.
+    /// The file could not be completed.
     #[error("the file could not be completed: {detail}; it has its {steps} steps, and `percute recover` completes it")]
     Finish {
         /// Why.
@@ -63,40 +63,40 @@ pub enum FileCause {
         /// Instants written.
         steps: usize,
     },
-    /// The file of a run went away while it was written.
+    /// The file of a run disappeared during the run.
     #[error("the file was moved, removed or replaced during the run")]
     Lost,
-    /// The system does not let it be read.
+    /// The file cannot be read.
     #[error("the file cannot be read: {source}")]
     Read {
         /// Why.
         source: io::Error,
     },
-    /// Another file has taken its place.
+    /// The file was replaced by another one.
     #[error("the file was replaced since it was opened; open it again")]
     Replaced,
-    /// No bytes at all.
+    /// An empty file.
     #[error("the file is empty, neither a history nor an estimate; create it again")]
     Empty,
-    /// No HDF5 file.
+    /// Not an HDF5 file.
     #[error("this is not an HDF5 file, so neither a history nor an estimate; run a case first")]
     NotHdf5,
-    /// HDF5 cannot make sense of it.
+    /// HDF5 cannot read the file.
     #[error("the file is truncated or damaged: {detail}; copy or create it again")]
     Damaged {
-        /// What the library says.
+        /// The message of the library.
         detail: String,
     },
-    /// HDF5, but not ours.
+    /// An HDF5 file of another program.
     #[error("this HDF5 file is not one of percute's: {holds}; docs/history.md describes the layout")]
     Foreign {
-        /// What it holds instead.
+        /// Its contents.
         holds: String,
     },
     /// A file of percute, of another kind.
     #[error("this is {found}, but {wanted} is needed here")]
     WrongKind {
-        /// What it is.
+        /// Its kind.
         found: Kind,
         /// What it should be.
         wanted: Kind,
@@ -109,7 +109,7 @@ pub enum FileCause {
         /// The latest one known.
         known: i64,
     },
-    /// A part that must be there.
+    /// A missing part.
     #[error("`{name}` is missing; the layout of the file requires it")]
     MissingPart {
         /// Path inside the file.
@@ -184,7 +184,7 @@ pub enum FileCause {
         /// Node of the mesh.
         node: usize,
     },
-    /// Instants that are no time grid.
+    /// Invalid instants.
     #[error("`{name}`: {cause}")]
     Times {
         /// The data set.
@@ -192,7 +192,7 @@ pub enum FileCause {
         /// What is wrong.
         cause: TimeError,
     },
-    /// A mesh that cannot be used.
+    /// An invalid mesh.
     #[error("the mesh: {0}")]
     Mesh(#[from] MeshError),
     /// A step that does not fit the file.
@@ -211,7 +211,7 @@ pub enum FileCause {
 }
 
 impl FileCause {
-    /// Whether the system does not let it happen: no fault of what was given.
+    /// Whether the cause is the system, not the input.
     #[must_use]
     pub fn is_of_the_system(&self) -> bool {
         matches!(
@@ -228,7 +228,7 @@ impl FileCause {
         )
     }
 
-    /// Joins the cause to its file.
+    /// Adds the file to the cause.
     #[must_use]
     pub fn at(self, path: &Path) -> FileError {
         FileError { path: path.to_path_buf(), cause: self }

@@ -1,18 +1,18 @@
-//! What kind of file a path names.
+//! The kind of a file.
 
 use crate::error::{FileCause, FileError};
 use crate::read::Opened;
 use std::fmt;
 use std::path::Path;
 
-/// What a file holds.
+/// The kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A history.
     History,
     /// An estimate.
     Estimate,
-    /// HDF5 that is not percute's.
+    /// HDF5 of another program.
     OtherHdf5,
     /// Not HDF5 at all.
     Other,
@@ -29,10 +29,10 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Tells what a file holds, by its first bytes and its attribute `kind`.
+/// Determines the kind of a file by its first bytes and its attribute `kind`.
 ///
 /// # Errors
-/// A file that is missing, cannot be read, is locked, or damaged beyond that.
+/// A file that is missing, locked, damaged or cannot be read.
 pub fn kind(path: impl AsRef<Path>) -> Result<Kind, FileError> {
     let path = path.as_ref();
     let found = Opened::new(path).and_then(|opened| opened.kind());

@@ -1,8 +1,8 @@
-//! Files: meshes of Gmsh, and histories and estimates in temporal VTKHDF, which ParaView opens as it is and h5py reads and
-//! writes. The layouts are described in `docs/history.md` and `docs/estimate.md`.
+//! Files: meshes of Gmsh, and histories and estimates in temporal VTKHDF for ParaView and h5py. `docs/history.md` and
+//! `docs/estimate.md` describe the layouts.
 //!
 //! A history file holds the mesh, the steps, and the statement of the problem as text in the language of
-//! the case files; this crate stores that text and gives it back, but does not read it.
+//! the case files. This crate stores and returns that text, but does not parse it.
 
 mod create;
 mod error;

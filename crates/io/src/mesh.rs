@@ -1,4 +1,4 @@
-//! The mesh in a file: an unstructured grid as VTKHDF has it, and groups of our own.
+//! The mesh in a file: an unstructured grid of VTKHDF, and groups of percute.
 
 use crate::error::FileCause;
 use crate::names::{decoded, encoded};
@@ -14,7 +14,7 @@ pub(crate) const fn vtk_type(dimension: usize) -> u8 {
     if dimension == 1 { 3 } else { 5 }
 }
 
-/// Nodal vectors with three components each, as ParaView wants them.
+/// Nodal vectors with three components each, for ParaView.
 pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
     let mut flat = vec![0.0; 3 * values.len()];
     for (to, from) in flat.chunks_exact_mut(3).zip(values) {
@@ -23,7 +23,7 @@ pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
     flat
 }
 
-/// Makes the group `VTKHDF` with the grid. Its `Steps` are for who knows the instants.
+/// Creates the group `VTKHDF` with the grid, without its `Steps`.
 pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Mesh<D, N>) -> Result<Group, FileCause> {
     let vtk = group(file, "VTKHDF")?;
     let version = vtk.new_attr::<i64>().shape(2).create("Version").and_then(|a| a.write_raw(&[2_i64, 2]));
@@ -43,7 +43,7 @@ pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Me
     Ok(vtk)
 }
 
-/// Makes the groups of facets and elements in the group `percute`.
+/// Creates the groups of facets and elements in the group `percute`.
 pub(crate) fn write_groups<const D: usize, const N: usize>(ours: &Group, mesh: &Mesh<D, N>) -> Result<(), FileCause> {
     let facets = group(ours, "facet_groups")?;
     for (name, members) in mesh.facet_groups() {
@@ -129,7 +129,7 @@ fn cells<const N: usize>(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Resu
     Ok(connectivity.indices(nodes, "nodes")?.as_chunks::<N>().0.to_vec())
 }
 
-/// Vectors of `D` components from the three that are stored: those beyond must be zero.
+/// Vectors of `D` components from the three stored ones; the others must be zero.
 pub(crate) fn vectors<const D: usize>(data: &Data<'_>, values: Vec<f64>) -> Result<Vec<[f64; D]>, FileCause> {
     data.expect(&[data.shape[0], 3], "three components")?;
     let (stored, _) = values.as_chunks::<3>();

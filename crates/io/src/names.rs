@@ -10,8 +10,8 @@ pub(crate) fn encoded(name: &str) -> String {
     }
 }
 
-/// The group of a link name. What is no code of [`encoded`] stands for itself: other programs do not
-/// encode.
+/// The group of a link name. Other codes than those of [`encoded`] stand for themselves, because other
+/// programs do not encode.
 pub(crate) fn decoded(link: &str) -> String {
     if link == "%" {
         return String::new();

@@ -1,4 +1,4 @@
-//! Reading with HDF5: every size is checked against what is stored before memory is taken for it.
+//! Reading with HDF5: every size is checked against the stored bytes before memory is allocated.
 
 mod data;
 
@@ -23,12 +23,12 @@ const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// The latest layout of histories and estimates known here.
 pub(crate) const LAYOUT: i64 = 1;
 
-/// A file open for reading. The library is ours as long as it lives.
+/// A file open for reading, with exclusive use of the library.
 pub(crate) struct Opened {
     file: hdf5::File,
     bytes: u64,
     _held: Held,
-    /// Dropped last: the file is closed by then.
+    /// Dropped last, after the file is closed.
     _alone: MutexGuard<'static, ()>,
 }
 
@@ -49,7 +49,7 @@ impl Opened {
         Part { group: (*self.file).clone(), name: String::new(), file_bytes: self.bytes, file: &self.file }
     }
 
-    /// History or estimate; whatever is neither is an error that says what is there.
+    /// History or estimate; any other file is an error with its contents.
     pub(crate) fn kind(&self) -> Result<Kind, FileCause> {
         let root = self.root();
         let Some(ours) = root.optional_group("percute")? else {
@@ -65,7 +65,7 @@ impl Opened {
         }
     }
 
-    /// Refuses what is of another kind or of a later layout.
+    /// Refuses another kind or a later layout.
     pub(crate) fn expect(&self, wanted: Kind) -> Result<(), FileCause> {
         let found = self.kind()?;
         if found != wanted {
@@ -83,8 +83,7 @@ impl Opened {
     }
 }
 
-/// Looks at a file without HDF5, whose words for what goes wrong here are poor. Returns it locked, and its
-/// size.
+/// Checks a file without HDF5, whose messages here are poor. Returns the locked file and its size.
 fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     let refused = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => FileCause::Missing,
@@ -101,7 +100,7 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     if begins_as_hdf5(held.file()).map_err(refused)? { Ok((held, found.len())) } else { Err(FileCause::NotHdf5) }
 }
 
-/// Whether a file is HDF5, by its first bytes. What is no regular file is not read.
+/// Whether a file is HDF5, by its first bytes. Only regular files are read.
 ///
 /// # Errors
 /// A file that is missing or cannot be read.
@@ -109,7 +108,7 @@ pub fn is_hdf5(path: &Path) -> io::Result<bool> {
     if path.metadata()?.is_file() { begins_as_hdf5(&File::open(path)?) } else { Ok(false) }
 }
 
-/// A block of the user's own before the signature is possible, but nobody's histories have one.
+/// HDF5 allows a user block before the signature; histories have none.
 fn begins_as_hdf5(file: &File) -> io::Result<bool> {
     let mut first = [0; 8];
     match file.read_exact_at(&mut first, 0) {
@@ -159,17 +158,17 @@ impl<'f> Part<'f> {
         self.optional(name)?.ok_or_else(|| FileCause::MissingPart { name: self.path(name) })
     }
 
-    /// Names of what the group holds.
+    /// Names of the members of the group.
     pub(crate) fn names(&self) -> Result<Vec<String>, FileCause> {
         let names = self.group.member_names().map_err(damaged)?;
-        // The library takes names for UTF-8 without a look.
+        // The library assumes UTF-8 names without a check.
         if names.iter().any(|name| std::str::from_utf8(name.as_bytes()).is_err()) {
             return Err(FileCause::Damaged { detail: format!("`{}` holds a name that is not UTF-8", self.name) });
         }
         Ok(names)
     }
 
-    /// What is in a file that is not ours.
+    /// The contents of a file of another program.
     fn contents(&self) -> Result<String, FileCause> {
         let mut names = self.names()?;
         names.sort();
@@ -209,12 +208,12 @@ impl<'f> Part<'f> {
         text(&attribute, &kind, path)
     }
 
-    /// A text attribute, empty where there is none.
+    /// A text attribute, empty if missing.
     pub(crate) fn any_text_attribute(&self, name: &str) -> Result<String, FileCause> {
         if self.has_attribute(name) { self.text_attribute(name) } else { Ok(String::new()) }
     }
 
-    /// A text of fixed length, of which the bindings read none as long as it may be: straight from the file.
+    /// A text of fixed length, read directly from the file because the bindings limit the length.
     fn fixed(&self, data: &Data<'_>, length: usize) -> Result<String, FileCause> {
         let place = data.set.offset().filter(|place| place.saturating_add(length as u64) <= self.file_bytes);
         let Some(place) = place.filter(|_| data.set.layout() == Layout::Contiguous) else {
@@ -228,7 +227,7 @@ impl<'f> Part<'f> {
         utf8(bytes, data.name.clone())
     }
 
-    /// A text, if it is there.
+    /// A text, if present.
     pub(crate) fn optional_text(&self, name: &str) -> Result<Option<String>, FileCause> {
         let Some(data) = self.optional(name)? else { return Ok(None) };
         if data.shape.iter().product::<usize>() != 1 {
@@ -243,7 +242,7 @@ impl<'f> Part<'f> {
 
 /// A single text of either length.
 fn text(stored: &Container, kind: &TypeDescriptor, name: String) -> Result<String, FileCause> {
-    /// Longest text of fixed length that is taken: names, not documents.
+    /// Longest accepted text of fixed length: names, not documents.
     const MOST: usize = 256;
     type Ascii = hdf5::types::FixedAscii<MOST>;
     type Unicode = hdf5::types::FixedUnicode<MOST>;
@@ -266,7 +265,7 @@ fn one<T: H5Type>(stored: &Container) -> Result<T, FileCause> {
     values.pop().ok_or_else(|| FileCause::Damaged { detail: "an empty text".to_string() })
 }
 
-/// Runs what reads a file, and joins its errors to the path.
+/// Runs a read of a file, and adds the path to its errors.
 pub(crate) fn reading<T>(path: &Path, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
     Opened::new(path).and_then(|opened| read(&opened)).map_err(|cause| cause.at(path))
 }

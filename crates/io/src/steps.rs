@@ -1,4 +1,4 @@
-//! The instants, as VTKHDF has them: a static mesh under fields that change.
+//! The instants in VTKHDF: a static mesh with fields over time.
 
 use crate::create::refused;
 use crate::error::FileCause;
@@ -6,10 +6,10 @@ use crate::write::{attribute, group, numbers, unit};
 use hdf5::dataset::AllocTime;
 use hdf5::{Extent, Group};
 
-/// A name and how many rows of it an instant has; none for a field that does not change.
+/// A name and its number of rows for each instant; none for a constant field.
 type Field<'a> = (&'a str, usize);
 
-/// Makes `VTKHDF/Steps` for all these instants; VTK sees the first only until more are noted.
+/// Creates `VTKHDF/Steps` for all these instants; only the first is visible to VTK at first.
 pub(crate) fn write_steps(
     vtk: &Group,
     instants: &[f64],
@@ -19,7 +19,7 @@ pub(crate) fn write_steps(
     let steps = group(vtk, "Steps")?;
     let count = instants.len();
     attribute(&steps, "NSteps", 1_i64)?;
-    // In one chunk with room for all: what grows is the number of those that count.
+    // One chunk with space for all values; only their number grows.
     let values = steps.new_dataset::<f64>().shape(Extent::new(count, Some(count))).chunk([count]);
     let values = values.alloc_time(Some(AllocTime::Early)).create("Values").map_err(|error| refused(&error))?;
     values.resize([1]).and_then(|()| values.write_raw(&instants[..1])).map_err(|error| refused(&error))?;
@@ -42,15 +42,14 @@ pub(crate) fn write_steps(
     Ok(())
 }
 
-/// Gives VTK the instants that it may read; for how many it looks, [`note_steps`] says, to be called once these are in
-/// the file.
+/// Writes the instants for VTK; [`note_steps`] then sets their number.
 pub(crate) fn give_steps(vtk: &Group, instants: &[f64]) -> hdf5::Result<()> {
     let values = vtk.group("Steps")?.dataset("Values")?;
     values.resize([instants.len()])?;
     values.write_raw(instants)
 }
 
-/// Notes how many instants VTK may read. It wants just as many `Values`: with more, it writes beyond its memory.
+/// Sets the number of instants for VTK. `Values` must have the same length: with more, VTK writes beyond its memory.
 pub(crate) fn note_steps(vtk: &Group, count: usize) -> hdf5::Result<()> {
     vtk.group("Steps")?.attr("NSteps")?.write_scalar(&(count as i64))
 }

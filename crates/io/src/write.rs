@@ -1,4 +1,4 @@
-//! Parts of a new file: data sets in one piece, with their room taken at once, and attributes.
+//! Parts of a new file: contiguous data sets with reserved space, and attributes.
 
 use crate::create::refused;
 use crate::error::FileCause;
@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
-/// A case file as it was given: provenance only.
+/// A case file as given, for provenance only.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Case {
     /// Its name.
@@ -21,7 +21,7 @@ pub struct Case {
     pub text: String,
 }
 
-/// Who wrote a file, and on what; empty where the file does not say.
+/// Writer of a file, and its machine; empty if unknown.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
     /// Program and version.
@@ -50,7 +50,7 @@ pub(crate) fn group(parent: &Group, name: &str) -> Made<Group> {
     parent.create_group(name).map_err(|error| refused(&error))
 }
 
-/// Room for numbers that come later.
+/// Space for later numbers.
 pub(crate) fn room<T: H5Type>(parent: &Group, name: &str, shape: &[usize]) -> Made<Dataset> {
     let set = parent
         .new_dataset::<T>()
@@ -73,19 +73,19 @@ pub(crate) fn numbers<T: H5Type>(parent: &Group, name: &str, shape: &[usize], va
     Ok(set)
 }
 
-/// Texts of a new file and where they go. They have a fixed length: those of variable length lie in a heap
-/// without checksums, and one damaged byte there can keep the library busy for ever. The library's
-/// bindings write no texts of a length that is known late; they are put in place once it has closed the file.
+/// Texts of a new file with their places. They have a fixed length: texts of variable length lie in a heap
+/// without checksums, where one damaged byte can cause an endless loop in the library. The bindings cannot
+/// write texts whose length is known at run time only, so they are written after the file is closed.
 #[derive(Default)]
 pub(crate) struct Texts(Vec<(u64, String)>);
 
 impl Texts {
-    /// Makes room for a text.
+    /// Reserves space for a text.
     pub(crate) fn add(&mut self, parent: &Group, name: &str, value: &str) -> Made<Dataset> {
         if value.contains('\0') {
             return Err(FileCause::Value { name: name.to_string(), detail: "a text must not hold NUL".to_string() });
         }
-        // No text has no length.
+        // HDF5 has no texts of length 0.
         let value = if value.is_empty() { "\0" } else { value };
         let set = parent
             .new_dataset_builder()
@@ -105,13 +105,13 @@ impl Texts {
     }
 }
 
-/// Where a data set lies in the file.
+/// The place of a data set in the file.
 pub(crate) fn offset(set: &Dataset) -> Made<u64> {
     let missing = || FileCause::Create { source: io::Error::other("the HDF5 library took no room for a data set") };
     set.offset().ok_or_else(missing)
 }
 
-/// A short text attribute; of one that is too long, the end.
+/// A short text attribute; a long text is cut to its end.
 pub(crate) fn text_attribute(of: &Location, name: &str, value: &str) -> Made<()> {
     const MOST: usize = 64;
     let start = (value.len().saturating_sub(MOST)..=value.len()).find(|&at| value.is_char_boundary(at)).unwrap_or(0);
@@ -132,7 +132,7 @@ pub(crate) fn unit(set: &Dataset, unit: &str) -> Made<()> {
     text_attribute(set, "unit", unit)
 }
 
-/// The group of percute with what it says about the file as a whole.
+/// The group `percute` with its attributes.
 pub(crate) fn ours(file: &Group, kind: Kind, dimension: usize) -> Made<Group> {
     let ours = group(file, "percute")?;
     text_attribute(&ours, "kind", if kind == Kind::History { "history" } else { "estimate" })?;

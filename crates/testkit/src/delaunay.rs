@@ -5,19 +5,18 @@ use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
 
-/// Smallest angle that a mesh from here has (degrees).
+/// Smallest angle of a mesh from this module (degrees).
 const SMALLEST_ANGLE: f64 = 10.0;
 /// Seeds tried after the one that was given.
 const MOST_SEEDS: u64 = 20;
 
 /// A rectangle [0, width] × [0, height] (m) in unstructured triangles, about `n` along its width.
 ///
-/// Points stand at random near those of a grid, on the sides too; the corners are exact. Its
-/// sides are the groups `left`, `right`, `bottom`, `top`. No angle is below 10°: seeds after the
-/// given one are tried until that holds.
+/// Points lie at random near those of a grid, also on the sides; the corners are exact. The sides are the groups `left`,
+/// `right`, `bottom`, `top`. No angle is below 10°: seeds after the given one are tried until this holds.
 ///
 /// # Errors
-/// Sides that are not positive, no elements, or no seed that will do.
+/// Sides that are not positive, no elements, or no suitable seed.
 pub fn random_rectangle(width: f64, height: f64, n: usize, seed: u64) -> Result<TriangleMesh, TestkitError> {
     if !(width > 0.0 && height > 0.0 && n > 0) {
         return Err(TestkitError::Argument("width, height and n must be positive"));

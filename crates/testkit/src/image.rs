@@ -4,7 +4,7 @@ use crate::Random;
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{Element, Simplex};
 
-/// What [`Mesh::new`] takes.
+/// Arguments of [`Mesh::new`].
 struct Parts<const D: usize, const N: usize> {
     points: Vec<[f64; D]>,
     cells: Vec<[usize; N]>,
@@ -40,7 +40,7 @@ impl<const D: usize, const N: usize> Parts<D, N> {
 /// The mesh turned about the origin by `angle` (rad); numbers and groups are kept.
 ///
 /// # Errors
-/// None that the mesh did not have.
+/// None beyond those of the mesh.
 pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshError> {
     let (sin, cos) = angle.sin_cos();
     let mut parts = Parts::of(mesh);
@@ -51,7 +51,7 @@ pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshErro
 /// The mesh seen in a mirror, x → −x; numbers and groups are kept.
 ///
 /// # Errors
-/// None that the mesh did not have.
+/// None beyond those of the mesh.
 pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
     let mut parts = Parts::of(mesh);
     parts.points.iter_mut().for_each(|p| p[0] = -p[0]);
@@ -63,7 +63,7 @@ pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
 /// The mesh moved by `by` (m); numbers and groups are kept.
 ///
 /// # Errors
-/// None that the mesh did not have, unless `by` is not finite.
+/// None beyond those of the mesh, unless `by` is not finite.
 pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D]) -> Result<Mesh<D, N>, MeshError>
 where
     Element<D, N>: Simplex<D, N>,
@@ -73,7 +73,7 @@ where
     parts.mesh()
 }
 
-/// Which number each node and element has got.
+/// New numbers of nodes and elements.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Renumbering {
     /// New number of each node, by its old one.
@@ -101,7 +101,7 @@ fn permuted<T: Copy>(new: &[usize], values: &[T]) -> Vec<T> {
 /// elements as before. Each element also starts at another of its nodes.
 ///
 /// # Errors
-/// None that the mesh did not have.
+/// None beyond those of the mesh.
 pub fn renumbered<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     seed: u64,

@@ -1,7 +1,7 @@
-//! What the tests of several crates share: unstructured meshes, their images under motions and
+//! Shared by the tests of several crates: unstructured meshes, their images under motions and
 //! renumbering, and strategies that draw them.
 //!
-//! Structured meshes hide errors: all stars look alike, diagonals line up with waves and
+//! Structured meshes hide errors: all stars are alike, diagonals line up with waves and
 //! boundaries with axes. Everything here is the same on every run for the same arguments.
 
 mod delaunay;
@@ -17,7 +17,7 @@ pub use shape::smallest_angle;
 
 use percute_core::mesh::MeshError;
 
-/// Why no mesh could be made.
+/// The cause of a failure to create a mesh.
 #[derive(Debug)]
 pub enum TestkitError {
     /// An argument out of range.

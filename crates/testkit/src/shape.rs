@@ -1,4 +1,4 @@
-//! How good the triangles are.
+//! Quality of the triangles.
 
 use percute_core::ids::ElementId;
 use percute_core::mesh::TriangleMesh;

@@ -6,7 +6,7 @@ use crate::kind::Kind;
 use crate::read::{Data, Part, reading};
 use std::path::Path;
 
-/// What each element contributes at the instants, and the admissible fields if they are there.
+/// The contributions of the elements at the instants, and the admissible fields if present.
 #[derive(Clone, Debug)]
 pub struct Maps {
     /// The instants (s).
@@ -98,7 +98,7 @@ pub(super) fn has_admissible(vtk: &Part<'_>) -> Result<bool, FileCause> {
     if vtk.group("CellData")?.optional("admissible_stress")?.is_some() {
         return Ok(true);
     }
-    // Contact results are fields of nodes too, and not admissible ones.
+    // Contact results are nodal fields as well, but not admissible fields.
     let Some(points) = vtk.optional_group("PointData")? else { return Ok(false) };
     Ok(points.names()?.iter().any(|name| name.starts_with("admissible")))
 }
@@ -106,7 +106,7 @@ pub(super) fn has_admissible(vtk: &Part<'_>) -> Result<bool, FileCause> {
 fn found<'f>(part: &Part<'f>, name: &'static str, shape: [usize; 3]) -> Result<Stored<'f>, FileCause> {
     let [instants, rows, components] = shape;
     let data = part.data(name)?;
-    // As writers have it: a single component has no dimension of its own.
+    // A single component has no dimension of its own.
     if components == 1 {
         data.expect(&[instants * rows], "instants x elements")?;
     } else {

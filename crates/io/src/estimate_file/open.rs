@@ -1,4 +1,4 @@
-//! Reads back what an estimate file says, but for its maps; those are checked.
+//! Reads an estimate file except its maps, which are only checked.
 
 use super::maps::{Size, fields, has_admissible, instants};
 use crate::error::{FileCause, FileError};
@@ -12,16 +12,16 @@ use percute_core::mesh::AnyMesh;
 use percute_estimator::{Parts, Sample};
 use std::path::Path;
 
-/// What an estimate file holds.
+/// The contents of an estimate file.
 #[derive(Clone, Debug)]
 pub struct EstimateFile {
     /// Size of the file (bytes).
     pub bytes: u64,
-    /// Who wrote it.
+    /// Its writer.
     pub provenance: Provenance,
     /// The problem in the language of the case files.
     pub statement: String,
-    /// The case file as it was given.
+    /// The case file as given.
     pub case: Option<Case>,
     /// The document that `--json` printed.
     pub report: String,
@@ -46,8 +46,8 @@ pub struct EstimateFile {
 /// Opens an estimate file.
 ///
 /// # Errors
-/// As for a history: a file that is missing, locked, damaged, foreign, of another kind or a later layout; a
-/// part that is missing, or of a wrong type or shape.
+/// As for a history: a file that is missing, locked, damaged, of another program, another kind or a later
+/// layout; a part that is missing, or of a wrong type or shape.
 pub fn open(path: impl AsRef<Path>) -> Result<EstimateFile, FileError> {
     reading(path.as_ref(), |opened| {
         opened.expect(Kind::Estimate)?;
@@ -89,7 +89,7 @@ fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
     })
 }
 
-/// Numbers of the elements, none of which may be NaN or infinite.
+/// Numbers of the elements, all of them finite.
 fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
     let values = data.floats()?;
     match values.iter().position(|value| !value.is_finite()) {
@@ -101,7 +101,7 @@ fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
     }
 }
 
-/// How large all is.
+/// Dimension, and numbers of nodes and elements.
 pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
     let dimension = ours.integer_attribute("dimension")?;
     if !(1..=2).contains(&dimension) {
@@ -119,7 +119,7 @@ fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {
     let time = column(group, "time", None)?;
     let of = |name| column(group, name, Some(time.len()));
     let (kinetic, elastic, contact, reference) = (of("kinetic")?, of("elastic")?, of("contact")?, of("reference")?);
-    // The sum of the parts, which is made again.
+    // The sum of the parts is computed again.
     of("total")?;
     let sample = |k: usize| {
         let parts = Parts { kinetic: kinetic[k], elastic: elastic[k], contact: contact[k] };

@@ -1,4 +1,4 @@
-//! Writes an estimate, whole or not at all.
+//! Writes an estimate, completely or not at all.
 
 use super::contact;
 use crate::create::{Overwrite, Unnamed, refused};
@@ -14,18 +14,18 @@ use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
 use std::io;
 use std::path::Path;
 
-/// What the library needs beside the arrays and for each group of the mesh (bytes), with some to spare.
+/// Overhead of the library beside the arrays and for each group of the mesh (bytes), with a margin.
 const LIBRARY: u64 = 24_000;
 const PER_GROUP: u64 = 350;
 
-/// What an estimate file is to hold.
+/// The contents of a new estimate file.
 #[derive(Clone, Copy, Debug)]
 pub struct EstimateContents<'a, const D: usize, const N: usize> {
     /// The problem.
     pub problem: &'a Problem<D, N>,
     /// Its estimate.
     pub estimate: &'a Estimate<D>,
-    /// What contact did, with all nodes at all instants; without these it is left out.
+    /// Contact results with all nodes at all instants; left out without these.
     pub contact: Option<&'a ContactResults<D>>,
     /// The problem in the language of the case files.
     pub statement: &'a str,
@@ -57,7 +57,7 @@ pub fn write<const D: usize, const N: usize>(
 
 /// The numbers of one field in a map.
 type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
-/// Name, unit, numbers for each node or element, and how they are taken.
+/// Name, unit, numbers for each node or element, and their source.
 type Field<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
 
 impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
@@ -79,7 +79,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         !self.estimate.maps.is_empty() && self.estimate.maps.iter().all(|map| map.fields.is_some())
     }
 
-    /// Contact results, if there is any plane and if they are all there.
+    /// Contact results, if there are planes and all results are stored.
     fn contact(&self) -> Option<(&ContactResults<D>, &ContactSteps<D>)> {
         let results = self.contact.filter(|results| !results.obstacles.is_empty())?;
         Some((results, results.steps.as_ref()?))
@@ -120,7 +120,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         Ok(())
     }
 
-    /// Fields over the instants of the maps, and e_E, which does not change.
+    /// Fields over the instants of the maps, and e_E, which is constant.
     fn maps(&self, vtk: &Group) -> Result<(), FileCause> {
         let maps = &self.estimate.maps;
         let mesh = self.problem.mesh();

@@ -10,7 +10,7 @@ use percute_core::mesh::{Mesh, MeshError};
 use percute_core::simplex::{self, Simplex};
 use std::mem::take;
 
-/// Makes the mesh of a file: of triangles if there are any, else of bars.
+/// Builds the mesh of a file: triangles if there are any, otherwise bars.
 pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     let nodes = Nodes::new(take(&mut raw.nodes))?;
     let (points, lines, triangles) = (take(&mut raw.points), take(&mut raw.lines), take(&mut raw.triangles));
@@ -27,7 +27,7 @@ pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     assemble(&raw, &nodes, lines, points, None, scale).map(MeshFile::Bar)
 }
 
-/// Makes a mesh of `cells`, with groups of its boundary from `facets`; `points` have no part in it.
+/// Builds a mesh of `cells`, with boundary groups from `facets`; `points` are not part of it.
 fn assemble<const D: usize, const N: usize>(
     raw: &Raw,
     nodes: &Nodes,
@@ -60,7 +60,7 @@ where
     Ok(MeshOf { mesh, node_tags: kept.tags, element_tags })
 }
 
-/// What the mesh says, in the tags of the file, and at the element at fault.
+/// A mesh error in the tags of the file, with the place of the element.
 fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>]) -> Fault {
     let node = |number: usize| kept.tags.get(number).map_or(number, |&tag| tag as usize);
     let element = |number: usize| elements.get(number).map_or(number, |element| element.tag as usize);

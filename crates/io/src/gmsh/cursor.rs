@@ -1,13 +1,13 @@
-//! The bytes of a file, taken one number after the other: words of a text or fields of a binary file.
+//! The bytes of a file, read number by number: words of a text or fields of a binary file.
 
 use super::error::{Fault, GmshCause};
 
-/// How numbers are written.
+/// The representation of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
     /// As words.
     Text,
-    /// As they are in memory.
+    /// Binary, as in memory.
     Binary {
         /// Whether the first byte is the most significant one.
         big: bool,
@@ -16,7 +16,7 @@ pub(super) enum Form {
     },
 }
 
-/// A place in a file, moving on.
+/// A reading position in a file.
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -28,12 +28,12 @@ const SHORT: &str = "the section is shorter than its counts say: the file was cu
 
 impl<'a> Cursor<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        // Some editors put a mark of UTF-8 before everything.
+        // Some editors write a UTF-8 byte order mark at the start.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { bytes, at, form: Form::Text }
     }
 
-    /// The next byte to be taken.
+    /// The position of the next byte.
     pub(super) fn at(&self) -> usize {
         self.at
     }
@@ -42,7 +42,7 @@ impl<'a> Cursor<'a> {
         self.bytes.get(self.at..).unwrap_or_default()
     }
 
-    /// Takes so many bytes.
+    /// Reads a number of bytes.
     pub(super) fn take(&mut self, count: usize, what: &'static str) -> Result<&'a [u8], Fault> {
         let taken = self.rest().get(..count).ok_or_else(|| GmshCause::Cut { what }.at(self.at))?;
         self.at += count;
@@ -53,14 +53,14 @@ impl<'a> Cursor<'a> {
         self.at += self.rest().iter().take_while(|b| b.is_ascii_whitespace()).count();
     }
 
-    /// Goes to the next word of a text: there an error about it belongs.
+    /// Moves to the next word of a text, the place of an error about it.
     pub(super) fn skip_if_text(&mut self) {
         if self.form == Form::Text {
             self.skip_space();
         }
     }
 
-    /// Takes the rest of the line and its end.
+    /// Reads the rest of the line and its end.
     pub(super) fn line(&mut self) -> &'a [u8] {
         let rest = self.rest();
         let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
@@ -68,7 +68,7 @@ impl<'a> Cursor<'a> {
         rest[..length].trim_ascii()
     }
 
-    /// Takes the next word of a text.
+    /// Reads the next word of a text.
     pub(super) fn word(&mut self, what: &'static str) -> Result<&'a str, Fault> {
         self.skip_space();
         let rest = self.rest();
@@ -84,12 +84,12 @@ impl<'a> Cursor<'a> {
         Ok(word)
     }
 
-    /// The fault of something here that is not what it should be.
+    /// The error of an unexpected entry here.
     pub(super) fn unexpected(&self, found: &[u8], what: &'static str) -> Fault {
         Self::fault(found, what, self.at)
     }
 
-    /// The fault of something at a byte that is not what it should be.
+    /// The error of an unexpected entry at a byte.
     pub(super) fn fault(found: &[u8], what: &'static str, at: usize) -> Fault {
         let advice = if found.starts_with(b"$") { SHORT } else { DAMAGED };
         GmshCause::Unexpected { found: shown(found), what, advice }.at(at)
@@ -150,7 +150,7 @@ impl<'a> Cursor<'a> {
         Err(there.unexpected(number.to_string().as_bytes(), what))
     }
 
-    /// A number of entries that the rest of the file can hold, each of at least so many numbers.
+    /// A number of entries, each of at least some numbers, checked against the rest of the file.
     pub(super) fn entries(&self, count: u64, numbers: usize, what: &'static str) -> Result<usize, Fault> {
         // A number takes at least a digit and a space, or four bytes.
         let least = numbers * if self.form == Form::Text { 2 } else { 4 };
@@ -159,7 +159,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// The beginning of what is there, so that a person can read it.
+/// The beginning of the bytes, in readable form.
 pub(super) fn shown(found: &[u8]) -> String {
     let text: String = String::from_utf8_lossy(found).chars().take(30).collect();
     format!("`{}`", text.escape_debug())

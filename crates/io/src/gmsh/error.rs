@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh file, where it is, and what to do in Gmsh.
+//! Errors about mesh files, with their places and the remedies in Gmsh.
 
 use super::kind::ElementKind;
 use crate::error::FileCause;
@@ -13,7 +13,7 @@ use thiserror::Error;
 pub struct GmshError {
     /// The file.
     pub path: PathBuf,
-    /// Where in it, if there is one place.
+    /// Its place in the file, if there is one.
     pub place: Option<Place>,
     /// What is wrong.
     pub cause: GmshCause,
@@ -44,10 +44,10 @@ fn at(place: Option<Place>) -> String {
 /// What is wrong.
 #[derive(Debug, Error)]
 pub enum GmshCause {
-    /// The system does not let it be read or made.
+    /// The file cannot be read or created.
     #[error(transparent)]
     File(#[from] FileCause),
-    /// A factor that is none.
+    /// An invalid scale.
     #[error(
         "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, \
          1e-3 for millimetres"
@@ -56,10 +56,10 @@ pub enum GmshCause {
         /// The factor.
         value: f64,
     },
-    /// Something else.
+    /// Not a mesh file.
     #[error("this is not a Gmsh mesh: it begins with {found}; {advice}")]
     NotMsh {
-        /// How it begins.
+        /// Its first bytes.
         found: String,
         /// What to do.
         advice: &'static str,
@@ -73,20 +73,20 @@ pub enum GmshCause {
         /// The version.
         found: String,
     },
-    /// Not what must come here.
+    /// An unexpected entry.
     #[error("found {found} instead of {what}; {advice}")]
     Unexpected {
-        /// What is there.
+        /// The entry.
         found: String,
-        /// What should be.
+        /// The expected entry.
         what: &'static str,
-        /// What may have happened.
+        /// The probable cause.
         advice: &'static str,
     },
-    /// Nothing comes any more.
+    /// The end of the file.
     #[error("the file ends where {what} should be: it was cut off, or its writer has not finished")]
     Cut {
-        /// What should come.
+        /// The missing entry.
         what: &'static str,
     },
     /// A number of entries that the file cannot hold.
@@ -97,7 +97,7 @@ pub enum GmshCause {
         /// The number.
         count: u64,
     },
-    /// A section that must be there.
+    /// A missing section.
     #[error("there is no section ${section}; in Gmsh, mesh the surfaces (2D) before saving")]
     NoSection {
         /// Its name.
@@ -108,12 +108,12 @@ pub enum GmshCause {
         "the mesh is partitioned; in Gmsh, choose Mesh > Unpartition (in Python `gmsh.model.mesh.unpartition()`) and save again"
     )]
     Partitioned,
-    /// Elements that percute does not know.
+    /// Elements of an unsupported kind.
     #[error("element {element} is {kind}; percute takes 3-node triangles (a bar: 2-node lines): {}", kind.advice())]
     Kind {
         /// Tag of the element, or of the first of a block.
         element: u64,
-        /// What it is.
+        /// Its kind.
         kind: ElementKind,
     },
     /// Neither triangles nor lines.
@@ -122,7 +122,7 @@ pub enum GmshCause {
          groups, Gmsh saves their members only: name the body by `Physical Surface(\"body\") = {{…}};`"
     )]
     NoElements,
-    /// A plane body was meant, but none of it was saved.
+    /// Surfaces whose triangles were not saved.
     #[error(
         "the file has surfaces but no triangles: with physical groups, Gmsh saves their members only. Name \
          the body by `Physical Surface(\"body\") = {{…}};` (and mesh in 2D), or save all with `Mesh.SaveAll = 1`"
@@ -136,15 +136,15 @@ pub enum GmshCause {
         /// The tag.
         tag: u64,
     },
-    /// A tag that is no tag.
+    /// An invalid tag.
     #[error("the tag of {what} is {tag}; tags are whole numbers from 1")]
     Tag {
-        /// Whose tag it is.
+        /// Its owner.
         what: &'static str,
         /// The number.
         tag: i64,
     },
-    /// An element on a node that is not there.
+    /// An element on a missing node.
     #[error("element {element} names node {node}, which is not in $Nodes; in Gmsh, save the mesh again")]
     NoSuchNode {
         /// Tag of the element.
@@ -162,10 +162,10 @@ pub enum GmshCause {
         nodes: [u64; 2],
         /// Their z (m).
         values: [f64; 2],
-        /// How to turn it in Gmsh.
+        /// The rotation in Gmsh.
         advice: &'static str,
     },
-    /// Lines that are no bar along x.
+    /// Lines that are not a bar along x.
     #[error(
         "the file has lines but no triangles, and the lines are not a bar along x: node {} has {axis} = {} m and node {} has \
          {axis} = {} m. For a plane body: with physical groups, Gmsh saves their members only; name \
@@ -192,7 +192,7 @@ pub enum GmshCause {
         /// Names of its physical groups.
         groups: Vec<String>,
     },
-    /// A mesh that cannot be used, in the tags of the file.
+    /// An invalid mesh, in the tags of the file.
     #[error("{error} (numbers are the tags in Gmsh){advice}")]
     Mesh {
         /// What is wrong.
@@ -200,7 +200,7 @@ pub enum GmshCause {
         /// What to do in Gmsh, after a semicolon.
         advice: &'static str,
     },
-    /// A name that the format cannot hold.
+    /// A name that the format does not allow.
     #[error("the group {name:?} cannot be written: names in MSH files have no quotes and no line breaks")]
     Name {
         /// The name.
@@ -227,7 +227,7 @@ fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {
     }
 }
 
-/// A cause with the byte where it was met.
+/// A cause with the byte of its place.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub(super) at: Option<usize>,
@@ -235,19 +235,19 @@ pub(super) struct Fault {
 }
 
 impl GmshCause {
-    /// Met at this byte.
+    /// Places the cause at this byte.
     pub(super) fn at(self, byte: usize) -> Fault {
         Fault { at: Some(byte), cause: Box::new(self) }
     }
 
-    /// Not met at any one place.
+    /// A cause without a place.
     pub(super) fn anywhere(self) -> Fault {
         Fault { at: None, cause: Box::new(self) }
     }
 }
 
 impl Fault {
-    /// Joins the fault to its file, whose lines count if it is a text.
+    /// Adds the file to the error, with a line number for a text.
     pub(super) fn of(self, path: &Path, bytes: &[u8], text: bool) -> GmshError {
         let place = self.at.map(|byte| {
             let before = bytes.get(..byte).unwrap_or(bytes);

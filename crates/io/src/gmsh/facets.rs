@@ -6,7 +6,7 @@ use super::nodes::{Kept, Nodes};
 use super::raw::Raw;
 use std::collections::{BTreeMap, HashMap};
 
-/// The boundary as the file names it.
+/// The boundary groups of the file.
 pub(super) struct Boundary<const D: usize> {
     /// Facets of each group that lie on the boundary, by their nodes.
     pub(super) groups: BTreeMap<String, Vec<[usize; D]>>,
@@ -42,7 +42,7 @@ pub(super) fn boundary<const D: usize, const N: usize>(
     Ok(Boundary { groups, inner })
 }
 
-/// How many elements have a facet, for the facets of these nodes.
+/// Number of elements with each facet, for the facets of these nodes.
 fn owners<'a, const D: usize, const N: usize>(
     cells: &[[usize; N]],
     facets: impl Iterator<Item = &'a [usize; D]>,

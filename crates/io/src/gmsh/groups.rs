@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 /// Elements by increasing tags, each once.
 pub(super) struct Sorted<const N: usize> {
     pub(super) elements: Vec<Element<N>>,
-    /// Tags of those left out, since an element before has the same nodes; its groups are those of both.
+    /// Tags of omitted elements. An earlier element with the same nodes is in the groups of both.
     pub(super) doubled: Vec<u64>,
     /// Positions among them of the members of each physical group, by its tag.
     pub(super) members: BTreeMap<i64, Vec<usize>>,
@@ -58,7 +58,7 @@ impl Raw {
     }
 }
 
-/// Version 2.2 writes an element that is in several groups once for each, under different tags: they become one.
+/// Version 2.2 lists an element of several groups once for each group, under different tags. These are merged.
 fn merged<const N: usize>(elements: Vec<Element<N>>, members: &mut BTreeMap<i64, Vec<usize>>) -> Vec<Element<N>> {
     let mut groups = BTreeMap::<i64, BTreeSet<i64>>::new();
     elements.iter().for_each(|element| _ = groups.entry(element.entity).or_default().insert(element.group));
@@ -70,7 +70,7 @@ fn merged<const N: usize>(elements: Vec<Element<N>>, members: &mut BTreeMap<i64,
             let mut nodes = element.nodes;
             nodes.sort_unstable();
             let (first, of) = seen.entry((element.entity, nodes)).or_insert_with(|| (at, BTreeSet::new()));
-            // Twice in the same group is not how Gmsh writes groups: of that the user is told.
+            // Gmsh does not list an element twice in one group: this is reported.
             if of.insert(group) {
                 at = *first;
             }

@@ -8,7 +8,7 @@ use super::error::{Fault, GmshCause};
 pub enum Version {
     /// MSH 2.2: simple, and read by nearly everything.
     V22,
-    /// MSH 4.1: what Gmsh writes unless told otherwise.
+    /// MSH 4.1: the default of Gmsh.
     #[default]
     V41,
 }

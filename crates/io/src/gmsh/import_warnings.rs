@@ -1,4 +1,4 @@
-//! What the user should know about a file that could be read.
+//! Warnings about a file that could be read.
 
 use super::groups::{Sorted, quoted};
 use super::header::Version;
@@ -6,9 +6,9 @@ use super::raw::Raw;
 use percute_core::mesh::ImportWarning;
 use std::collections::BTreeMap;
 
-/// Tags that a message names.
+/// Largest number of tags in a message.
 const SHOWN: usize = 5;
-/// Larger bodies (m) hardly strike planes at speeds of interest; models in millimetres are mostly larger than this.
+/// Bodies above this size (m) are improbable in impacts; most models in millimetres exceed it.
 const LARGE: f64 = 10.0;
 
 /// Nodes that no element uses.
@@ -105,7 +105,7 @@ pub(super) fn empty<T, U>(
     import_warning("empty_groups", "groups without elements", message, groups)
 }
 
-/// A body so large that its unit of length is more likely the millimetre; no `scale` was given.
+/// A body of improbable size without a `scale`: its unit of length is probably the millimetre.
 pub(super) fn large(size: f64, scale: f64) -> Option<ImportWarning> {
     if scale != 1.0 || size <= LARGE {
         return None;

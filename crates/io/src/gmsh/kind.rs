@@ -7,7 +7,7 @@ pub(super) const POINT: i64 = 15;
 pub(super) const LINE: i64 = 1;
 pub(super) const TRIANGLE: i64 = 2;
 
-/// A kind of elements that percute does not compute with.
+/// An unsupported kind of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementKind(pub i64);
 
@@ -29,7 +29,7 @@ impl ElementKind {
         (1..=7).contains(&self.0)
     }
 
-    /// What to do about it in Gmsh.
+    /// The remedy in Gmsh.
     #[must_use]
     pub fn advice(self) -> &'static str {
         match self.shape() {

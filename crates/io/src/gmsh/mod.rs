@@ -1,7 +1,7 @@
 //! Meshes in files of [Gmsh](https://gmsh.info): MSH 4.1 and 2.2, as texts and binary.
 //!
-//! Nothing is assumed of the numbering of nodes and elements, nor of the order of sections; sections that percute has no
-//! use for are skipped. `docs/mesh.md` tells how physical groups become groups of the mesh, and what is refused.
+//! Nodes and elements may have any numbering, and sections any order. Other sections are skipped. `docs/mesh.md`
+//! describes the groups of the mesh and the refused files.
 
 mod assemble;
 mod cursor;
@@ -32,10 +32,10 @@ use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Metres per unit of length that a file may have: beyond any body, and far from where squares of lengths overflow.
+/// Range of metres per unit of length: wider than for any body, and far from overflow of squared lengths.
 const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 
-/// A mesh as it was read. What was left out is among its import warnings.
+/// A mesh from a file. Its import warnings list omitted parts.
 #[derive(Clone, Debug)]
 pub struct MeshOf<const D: usize, const N: usize> {
     /// The mesh: nodes and elements in the order of their tags in the file.
@@ -52,14 +52,14 @@ pub type MeshFile = ByDimension<MeshOf<1, 2>, MeshOf<2, 3>>;
 /// Reads a mesh. `scale` is metres per unit of length in the file, from 1e-12 to 1e12: 1e-3 for millimetres.
 ///
 /// # Errors
-/// A file that cannot be read or is no such mesh, with the line or byte and what to do in Gmsh.
+/// A file that cannot be read or is not such a mesh, with the line or byte and the remedy in Gmsh.
 pub fn read(path: &Path, scale: f64) -> Result<MeshFile, GmshError> {
     let whole = |cause: GmshCause| GmshError { path: path.to_path_buf(), place: None, cause };
     let bytes = bytes(path).map_err(|cause| whole(cause.into()))?;
     parse(path, &bytes, scale)
 }
 
-/// Reads a mesh from the bytes of a file; errors call it `path`.
+/// Reads a mesh from the bytes of a file, named `path` in errors.
 ///
 /// # Errors
 /// As for [`read`].

@@ -4,8 +4,8 @@ use super::error::{Fault, GmshCause};
 use super::raw::{Element, Node};
 use percute_core::mesh::MeshError;
 
-/// Nodes outside a plane or a line by more than this fraction of the body's size lie outside; less is rounding. It is
-/// the distance below which two nodes are one.
+/// Tolerance of a plane or line, as a fraction of the body size; smaller distances are rounding. It is also the distance
+/// below which two nodes coincide.
 const FLAT: f64 = 1e-10;
 
 /// Nodes by increasing tags.
@@ -32,7 +32,7 @@ impl Nodes {
         Ok(Self { sorted: nodes })
     }
 
-    /// Where a node is among those of the file.
+    /// The position of a node among those of the file.
     fn find(&self, tag: u64) -> Option<usize> {
         let first = self.sorted.first()?.tag;
         // Tags are without gaps in most files.
@@ -86,7 +86,7 @@ impl Kept {
         numbers.iter().all(|&n| n != usize::MAX).then_some(numbers)
     }
 
-    /// The points without the coordinates in which they do not differ: z in the plane, y and z on a line.
+    /// The points without their constant coordinates: z in the plane, y and z on a line.
     pub(super) fn flat<const D: usize>(&self) -> Result<Vec<[f64; D]>, Fault> {
         if let Some(node) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
             let value = self.points[node].into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
@@ -116,7 +116,7 @@ impl Kept {
         Ok(self.points.iter().map(|point| std::array::from_fn(|c| point[c])).collect())
     }
 
-    /// The tags of the nodes of least and largest coordinate, and these.
+    /// The smallest and largest coordinate, with the tags of their nodes.
     fn extent(&self, axis: usize) -> ([u64; 2], [f64; 2]) {
         let (mut ends, mut values) = ([0; 2], [self.points.first().map_or(0.0, |p| p[axis]); 2]);
         for (node, point) in self.points.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What the sections of a file say, before any sense is made of it.
+//! The raw contents of the sections of a file.
 
 use super::cursor::Cursor;
 use super::error::{Fault, GmshCause};
@@ -31,7 +31,7 @@ pub(super) struct Node {
 /// A dimension with a tag.
 pub(super) type Tagged = (i64, i64);
 
-/// Everything that was read.
+/// The contents of a file.
 #[derive(Debug, Default)]
 pub(super) struct Raw {
     pub(super) version: Version,
@@ -47,7 +47,7 @@ pub(super) struct Raw {
     pub(super) surfaces: bool,
 }
 
-/// What an element is and belongs to, before its nodes.
+/// Kind and groups of an element, which precede its nodes.
 #[derive(Clone, Copy)]
 pub(super) struct Head {
     pub(super) kind: i64,
@@ -58,7 +58,7 @@ pub(super) struct Head {
 }
 
 impl Raw {
-    /// Reads the nodes of an element by `node` and keeps it, if it is of a kind that percute knows.
+    /// Reads the nodes of an element by `node` and keeps it, if its kind is supported.
     pub(super) fn element(
         &mut self,
         cursor: &mut Cursor<'_>,

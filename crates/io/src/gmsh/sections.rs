@@ -1,4 +1,4 @@
-//! The sections of a file, in any order; those that percute has no use for are skipped.
+//! The sections of a file, in any order; unused sections are skipped.
 
 use super::cursor::{Cursor, Form, shown};
 use super::error::{Fault, GmshCause};
@@ -7,7 +7,7 @@ use super::raw::Raw;
 use super::{names, v2, v4};
 use std::path::Path;
 
-/// Sections of the format that a file may begin with.
+/// Possible first sections of a file.
 const FIRST: [&str; 13] = [
     "MeshFormat",
     "Comments",
@@ -24,7 +24,7 @@ const FIRST: [&str; 13] = [
     "ElementData",
 ];
 
-/// Reads all sections of the file at `path`, whose ending tells what it may be instead of a mesh.
+/// Reads all sections of the file at `path`, whose ending suggests another format in errors.
 pub(super) fn read(cursor: &mut Cursor<'_>, path: &Path) -> Result<Raw, Fault> {
     let (mut raw, mut version, mut seen) = (Raw::default(), None, [false; 2]);
     while let Some(name) = begin(cursor, path)? {
@@ -57,7 +57,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, path: &Path) -> Result<Raw, Fault> {
     }
 }
 
-/// Takes the line that begins a section and gives its name; `None` at the end of the file.
+/// Reads the first line of a section and returns its name; `None` at the end of the file.
 fn begin<'a>(cursor: &mut Cursor<'a>, path: &Path) -> Result<Option<&'a str>, Fault> {
     let first = cursor.at() <= 3;
     cursor.skip_space();
@@ -81,7 +81,7 @@ fn begin<'a>(cursor: &mut Cursor<'a>, path: &Path) -> Result<Option<&'a str>, Fa
     }
 }
 
-/// Where a text is first met.
+/// The first position of a text.
 fn find(bytes: &[u8], text: &str) -> Option<usize> {
     bytes.windows(text.len()).position(|window| window == text.as_bytes())
 }
@@ -98,7 +98,7 @@ fn no_mesh(rest: &[u8], path: &Path) -> GmshCause {
     GmshCause::NotMsh { found: if rest.is_empty() { "nothing, it is empty".to_string() } else { shown(rest) }, advice }
 }
 
-/// Skips all that a section holds.
+/// Skips the contents of a section.
 fn return_to_text(cursor: &mut Cursor<'_>, name: &str) -> Result<(), Fault> {
     let mark = format!("$End{name}");
     let found = find(cursor.rest(), &mark);
@@ -107,7 +107,7 @@ fn return_to_text(cursor: &mut Cursor<'_>, name: &str) -> Result<(), Fault> {
     cursor.take(length, what).map(|_| ())
 }
 
-/// Takes the line that ends a section.
+/// Reads the last line of a section.
 fn end(cursor: &mut Cursor<'_>, name: &str) -> Result<(), Fault> {
     cursor.skip_space();
     let (at, rest) = (cursor.at(), cursor.rest());

@@ -1,4 +1,4 @@
-//! Nodes and elements as version 2.2 writes them.
+//! Nodes and elements in version 2.2.
 
 use super::cursor::{Cursor, Form};
 use super::error::{Fault, GmshCause};
@@ -76,7 +76,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Fau
     Ok(())
 }
 
-/// What comes before the tags of an element; in a binary file its own tag does not.
+/// The entries before the tags of an element; in a binary file its own tag is not among them.
 struct Block {
     kind: i64,
     tags: i64,
@@ -98,7 +98,7 @@ fn element(cursor: &mut Cursor<'_>, raw: &mut Raw, block: Block) -> Result<(), F
     if partitions != 0 {
         return Err(GmshCause::Partitioned.at(at));
     }
-    // A negative group means that the element is turned round in it.
+    // A negative group means the reverse orientation of the element.
     let head = Head { kind, tag: tag_here, entity, group: group.saturating_abs(), at };
     raw.element(cursor, head, |cursor| tag(cursor, "a node of an element"))
 }

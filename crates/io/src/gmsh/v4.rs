@@ -25,14 +25,14 @@ pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Fau
     for (dimension, many) in (0..).zip(counts) {
         for _ in 0..many {
             let entity = cursor.int("the tag of a part of the geometry")?;
-            // Where it is, or the box around it.
+            // Its position or bounding box.
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 cursor.any_real("a corner of a part of the geometry")?;
             }
             let groups = count(cursor, "the number of physical groups", 1)?;
             let mut all = Vec::new();
             for _ in 0..groups {
-                // A negative group means that the part is turned round in it.
+                // A negative group means the reverse orientation of the part.
                 all.push(cursor.int("the tag of a physical group")?.saturating_abs());
             }
             raw.groups_of.insert((dimension, entity), all);
@@ -99,7 +99,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Fau
     agree(cursor, "the number of elements", total, done)
 }
 
-/// A count at the head of a section and what came.
+/// Compares the count at the head of a section with its entries.
 fn agree(cursor: &Cursor<'_>, what: &'static str, told: usize, found: usize) -> Result<(), Fault> {
     if told == found {
         return Ok(());

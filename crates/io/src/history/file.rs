@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// A history file of either dimension.
 pub type AnyHistoryFile = ByDimension<HistoryFile<1, 2>, HistoryFile<2, 3>>;
 
-/// Tells whether another file has come under the same name. Held open, so that its number is not given anew.
+/// Detects another file under the same name. The file stays open, so its number is not reused.
 #[derive(Debug)]
 pub(super) struct Identity(File);
 
@@ -38,7 +38,7 @@ impl Identity {
     }
 }
 
-/// What was read when the file was opened.
+/// The contents read on opening.
 #[derive(Debug)]
 pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) path: PathBuf,
@@ -57,13 +57,13 @@ pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) given: [bool; 2],
 }
 
-/// A history in a file. Steps are read when they are asked for; the file is open only meanwhile.
+/// A history in a file. Steps are read on demand, and the file is open only during reading.
 #[derive(Clone, Debug)]
 pub struct HistoryFile<const D: usize, const N: usize> {
     contents: Arc<Contents<D, N>>,
 }
 
-/// Where an array lies in the file, for who maps it into memory.
+/// The place of an array in the file, for mapping into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NativeArray {
     /// `displacement`, `velocity`, `acceleration`, `reaction` (64-bit floating point) or `touching` (bytes).
@@ -71,7 +71,7 @@ pub struct NativeArray {
     /// Its shape: (instants, nodes, 3) for nodal fields, (instants, contact nodes, dimension) for reactions,
     /// (instants, contact nodes) for touching.
     pub shape: Vec<usize>,
-    /// Byte offset of its first number; `None` if it is not there in one piece, in this machine's types.
+    /// Byte offset of its first number; `None` if the array is not contiguous or has other number types.
     pub offset: Option<u64>,
 }
 
@@ -104,13 +104,13 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         &self.contents.statement
     }
 
-    /// The case file as it was given.
+    /// The case file as given.
     #[must_use]
     pub fn case(&self) -> Option<&Case> {
         self.contents.case.as_ref()
     }
 
-    /// Who wrote it.
+    /// Its writer.
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.contents.provenance
@@ -128,7 +128,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         &self.contents.initial_velocity
     }
 
-    /// All instants that the run was to have (s).
+    /// All planned instants of the run (s).
     #[must_use]
     pub fn times(&self) -> &TimeGrid {
         &self.contents.times
@@ -140,7 +140,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         self.contents.count
     }
 
-    /// Whether no more steps were to come: the run has ended, or was stopped cleanly.
+    /// Whether the file is final: the run has ended, or was stopped cleanly.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.contents.complete
@@ -152,7 +152,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         &self.contents.contact_nodes
     }
 
-    /// Whether the file brings velocities and accelerations of its own.
+    /// Whether the file has its own velocities and accelerations.
     #[must_use]
     pub fn given(&self) -> [bool; 2] {
         self.contents.given
@@ -161,12 +161,12 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     /// u_n at the nodes (m), node by node and step after step.
     ///
     /// # Errors
-    /// Steps that are not in the file, or a file that cannot be read any more.
+    /// Steps outside the file, or a file that can no longer be read.
     pub fn displacement(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
         Ok(self.nodal("displacement", steps)?.unwrap_or_default())
     }
 
-    /// v_n at the nodes (m/s), if the file brings it.
+    /// v_n at the nodes (m/s), if the file has it.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
@@ -174,7 +174,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         self.nodal("velocity", steps)
     }
 
-    /// a_n at the nodes (m/s²), if the file brings it.
+    /// a_n at the nodes (m/s²), if the file has it.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
@@ -237,7 +237,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         })
     }
 
-    /// Opens the file again; another one in its place is an error.
+    /// Opens the file again; a replacement is an error.
     pub(super) fn again<T>(&self, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
         let path = self.path();
         reading(path, |opened| {
@@ -248,10 +248,10 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         })
     }
 
-    /// Where the arrays over time lie in the file.
+    /// Places of the arrays over time in the file.
     ///
     /// # Errors
-    /// A file that cannot be read any more.
+    /// A file that can no longer be read.
     pub fn arrays(&self) -> Result<Vec<NativeArray>, FileError> {
         let (instants, nodes) = (self.times().instants().len(), self.mesh().node_count());
         self.again(|opened| {

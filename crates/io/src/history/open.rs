@@ -14,8 +14,8 @@ use std::path::Path;
 /// Opens a history.
 ///
 /// # Errors
-/// A file that is missing, locked, damaged, foreign, of another kind or of a later layout; a part that is
-/// missing, or of a wrong type, shape or value.
+/// A file that is missing, locked, damaged, of another program, another kind or a later layout; a part that
+/// is missing, or of a wrong type, shape or value.
 pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     let path = path.as_ref();
     let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
@@ -89,7 +89,7 @@ fn fields<const D: usize>(
     Ok((initial, [velocity, acceleration]))
 }
 
-/// All instants: of a file that VTK may not read to its end yet, they are beside those that it sees.
+/// All instants. In an incomplete file they are stored beside those visible to VTK.
 fn times(vtk: &Part<'_>, ours: &Part<'_>) -> Result<TimeGrid, FileCause> {
     let seen = || vtk.group("Steps")?.data("Values");
     let values = ours.optional("times")?.map_or_else(seen, Ok)?;
@@ -97,10 +97,10 @@ fn times(vtk: &Part<'_>, ours: &Part<'_>) -> Result<TimeGrid, FileCause> {
     TimeGrid::from_instants(values.floats()?).map_err(|cause| FileCause::Times { name: values.name, cause })
 }
 
-/// Number of whole instants, and whether no more will come.
+/// Number of complete instants, and whether the file is final.
 fn written(vtk: &Part<'_>, ours: &Part<'_>, instants: usize) -> Result<(usize, bool), FileCause> {
     let Some(counter) = ours.optional("steps_written")? else {
-        // A file that was written as a whole.
+        // A file that was written in one piece.
         let steps = vtk.group("Steps")?;
         if steps.has_attribute("NSteps") {
             let told = steps.integer_attribute("NSteps")?;
@@ -135,7 +135,7 @@ fn single(data: &Data<'_>) -> Result<i64, FileCause> {
     }
 }
 
-/// A field over time, if it is there: its shape, its type and where VTK looks for its steps.
+/// A field over time, if present: its shape, its type and its step offsets for VTK.
 fn field<'f>(vtk: &Part<'f>, name: &str, instants: usize, nodes: usize) -> Result<Option<Data<'f>>, FileCause> {
     let Some(field) = vtk.group("PointData")?.optional(name)? else { return Ok(None) };
     let rows = instants.saturating_mul(nodes);
@@ -162,7 +162,7 @@ fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCau
     }
 }
 
-/// Nodes of the rows of the contact data; none where there are no such data.
+/// Nodes of the rows of the contact data, if any.
 fn contact_nodes(ours: &Part<'_>, instants: usize, nodes: usize, dimension: usize) -> Result<Vec<usize>, FileCause> {
     let Some(contact) = ours.optional_group("contact")? else { return Ok(Vec::new()) };
     let listed = contact.data("nodes")?;

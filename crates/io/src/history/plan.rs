@@ -1,4 +1,4 @@
-//! A history file before its run: how large it will be, and what it is made of.
+//! A history file before its run: its size and its parts.
 
 use super::rows::{Places, write_vectors};
 use super::writer::Writer;
@@ -13,11 +13,11 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::path::Path;
 
-/// What the library needs beside the arrays, and for each group of the mesh (bytes): measured, rounded up.
+/// Overhead of the library beside the arrays and for each group of the mesh (bytes): measured, rounded up.
 const LIBRARY: u64 = 16_100;
 const PER_GROUP: u64 = 350;
 
-/// A history file to come.
+/// A planned history file.
 #[derive(Clone, Debug)]
 pub struct Plan<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
@@ -29,19 +29,19 @@ pub struct Plan<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// A file for the history of a problem over these instants. `statement` is the problem in the
-    /// language of the case files, from which it can be built again; `case` the case file as given.
+    /// language of the case files; `case` is the case file as given.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
         Self { problem, times, statement: statement.to_string(), case: case.cloned(), given: [false; 2] }
     }
 
-    /// Whether the steps bring velocities and accelerations of their own.
+    /// Whether the steps have their own velocities and accelerations.
     #[must_use]
     pub fn with_given(self, velocity: bool, acceleration: bool) -> Self {
         Self { given: [velocity, acceleration], ..self }
     }
 
-    /// Size of the file (bytes), exact up to a few kB that the HDF5 library needs more or less.
+    /// Size of the file (bytes), exact up to a few kB of the HDF5 library.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let mesh = self.problem.mesh();
@@ -63,12 +63,11 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         self.times.step_count() + 1
     }
 
-    /// Makes the file, with room for all steps, and the thread that fills it. The initial displacement
-    /// is in it from the start.
+    /// Creates the file, with space for all steps and the initial displacement, and its writing thread.
     ///
     /// # Errors
-    /// A file that is there already (or, to be replaced, is in use), a folder that is missing or closed,
-    /// a disk without enough room. Nothing is left behind then.
+    /// An existing file (or one in use, if it is to be replaced), a folder that is missing or not writable,
+    /// a disk without enough space. No file is left then.
     pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
         let path = path.as_ref();
         self.make(path, overwrite).map_err(|cause| cause.at(path))
@@ -121,7 +120,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         })
     }
 
-    /// Contact data, if any node can touch; where their rows lie.
+    /// Contact data, if any node can touch, and the place of their rows.
     fn contact(&self, ours: &Group) -> Result<(u64, u64), FileCause> {
         let surface = self.problem.surface().nodes();
         if surface.is_empty() {

@@ -1,4 +1,4 @@
-//! Finishing the file of a run that was killed.
+//! Completes the file of a run that was killed.
 
 use super::open::open;
 use crate::error::{FileCause, FileError};
@@ -9,19 +9,19 @@ use percute_core::each_dimension;
 use std::fs::File;
 use std::path::Path;
 
-/// What was found in a file.
+/// The state of a file before recovery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recovered {
-    /// Whole instants in it.
+    /// Complete instants in it.
     pub count: usize,
-    /// Whether it was complete, so that nothing was to be done.
+    /// Whether it was already complete.
     pub was_complete: bool,
 }
 
-/// Finishes a history whose run was killed: VTK then sees all its whole steps, and it counts as complete.
+/// Completes a history whose run was killed: VTK then reads all its complete steps.
 ///
 /// # Errors
-/// A file that is no history, is still being written, or cannot be written to.
+/// A file that is not a history, is still being written, or cannot be written to.
 pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     let path = path.as_ref();
     let found = open(path)?;
@@ -33,7 +33,7 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     let finish = || {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
-        // Its writer, if it still lives, holds the file.
+        // A running writer holds a lock on the file.
         let held = Held::alone(file)?;
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
         set_steps(path, recovered.count).map_err(failed)?;
@@ -44,8 +44,8 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     Ok(recovered)
 }
 
-/// Lets VTK read so many instants: the first one at least, as it wants one. In two goes, so that a kill
-/// between them leaves it with the first.
+/// Makes a number of instants visible to VTK, which needs at least one. Two writes leave the first instant
+/// visible if the process is killed between them.
 pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
     change(path, |file| {
         let times = file.dataset("percute/times")?.read_raw::<f64>()?;
@@ -58,8 +58,8 @@ fn set_complete(path: &Path) -> Result<(), String> {
     change(path, |file| file.dataset("percute/complete")?.write_scalar(&1_u8))
 }
 
-/// Changes a file. It is opened without a lock: whoever reads it while its writer finishes it holds one, and only
-/// what VTK sees changes.
+/// Changes a file. It is opened without a lock, because a concurrent reader may hold one, and only the part
+/// visible to VTK changes.
 fn change(path: &Path, make: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> Result<(), String> {
     let _alone = alone();
     let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path);

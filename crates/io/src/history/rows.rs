@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
-/// Where the rows of step 0 lie in the file (bytes), and how many nodes they have.
+/// The place of the rows of step 0 in the file (bytes), and their number of nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places {
     pub(super) displacement: u64,
@@ -20,7 +20,7 @@ pub(super) struct Places {
     pub(super) contact_nodes: usize,
 }
 
-/// A step of its own, to be handed from thread to thread.
+/// A copy of a step, passed between threads.
 #[derive(Debug, Default)]
 pub(super) struct Row<const D: usize> {
     pub(super) index: usize,
@@ -32,7 +32,7 @@ pub(super) struct Row<const D: usize> {
 }
 
 impl<const D: usize> Row<D> {
-    /// Takes over a step; the room of the last one is used again.
+    /// Copies a step into the memory of the previous one.
     pub(super) fn take(&mut self, step: &Step<'_, D>) {
         self.index = step.index;
         let fields = [
@@ -49,7 +49,7 @@ impl<const D: usize> Row<D> {
         self.touching.extend(step.touching.iter().map(|&touches| u8::from(touches)));
     }
 
-    /// Writes the rows of the step, and only then that they are there.
+    /// Writes the rows of the step, and then their count.
     pub(super) fn write(&self, file: &File, places: &Places) -> io::Result<()> {
         let (n, nodes) = (self.index as u64, places.nodes as u64);
         let contact = places.contact_nodes as u64;
@@ -72,12 +72,12 @@ impl<const D: usize> Row<D> {
     }
 }
 
-/// Writes nodal vectors with the three components that ParaView wants.
+/// Writes nodal vectors with three components for ParaView.
 pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
     file.write_all_at(&bytes(&in_space(values)), place)
 }
 
-/// Numbers as they are in memory, which is how HDF5's native types store them.
+/// Numbers as in memory, the layout of HDF5's native types.
 fn bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }

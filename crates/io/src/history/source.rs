@@ -1,4 +1,4 @@
-//! Steps from a file, as the estimator takes them.
+//! Steps from a file, as a source for the estimator.
 
 use super::file::HistoryFile;
 use crate::error::{FileCause, FileError};
@@ -12,17 +12,17 @@ use std::ops::Range;
 /// Bytes of steps that are read at once: enough for the disk, little for memory.
 const BLOCK: usize = 1 << 23;
 
-/// Gives the steps of a history file back, with contact data on the nodes of the problem's surface.
+/// Reads the steps of a history file, with contact data on the contact surface of the problem.
 #[derive(Clone, Debug)]
 pub struct HistorySource<const D: usize, const N: usize> {
     file: HistoryFile<D, N>,
-    /// For each node of the surface its row in the file; what the file does not list never touches.
+    /// The row of each surface node in the file; a node that is not listed never touches.
     rows: Vec<Option<usize>>,
     /// Rows of nodes that cannot touch, with their nodes.
     strange: Vec<(usize, usize)>,
 }
 
-/// Some steps, one after the other.
+/// Some consecutive steps.
 struct Block<const D: usize> {
     displacement: Vec<[f64; D]>,
     reaction: Vec<[f64; D]>,
@@ -36,7 +36,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         for (row, &node) in file.contact_nodes().iter().enumerate() {
             row_of[node] = Some(row);
         }
-        // Taken out, so that what is left is on no obstacle's way.
+        // Rows of surface nodes are removed; the remaining nodes can touch no obstacle.
         let rows = problem.surface().nodes().iter().map(|c| row_of[c.node.index()].take()).collect();
         let strange = row_of.iter().enumerate().filter_map(|(node, row)| Some(((*row)?, node))).collect();
         Self { file, rows, strange }
@@ -111,7 +111,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         Ok((on_surface, places().map(|place| place.is_some_and(|p| touching[p])).collect()))
     }
 
-    /// Refuses NaN and infinity; `node` tells which node a row within a step is.
+    /// Refuses NaN and infinity; `node` gives the node of a row within a step.
     fn finite(
         &self,
         name: &str,

@@ -1,4 +1,4 @@
-//! Takes the steps of a run and writes them beside it.
+//! Writes the steps of a run during the run.
 
 use super::recover::set_steps;
 use super::rows::{Places, Row};
@@ -12,12 +12,11 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 
-/// Steps that may wait for the disk while the run goes on.
+/// Number of steps that may wait for the disk during the run.
 const WAITING: usize = 2;
 
-/// Writes steps into a history file, in a thread of its own. What was pushed is in the file even when the
-/// process is killed later; a file that was not finished holds all whole steps and is not marked
-/// complete.
+/// Writes steps into a history file in a separate thread. Written steps survive if the process is killed
+/// later. Such a file has all complete steps and is not marked complete.
 #[derive(Debug)]
 pub struct Writer<const D: usize> {
     path: PathBuf,
@@ -70,11 +69,11 @@ impl<const D: usize> Writer<D> {
         self.next
     }
 
-    /// Waits for the last step, notes for VTK how many there are, marks the file complete and waits for
-    /// the disk. A run that was stopped cleanly ends like this too.
+    /// Waits for the last step, writes the number of steps for VTK, marks the file complete and waits for
+    /// the disk. A run that was stopped cleanly ends in the same way.
     ///
     /// # Errors
-    /// A step that could not be written, or a file that is not there any more.
+    /// A step that could not be written, or a file that no longer exists.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.stop();
         let finished = match &self.failed {
@@ -97,7 +96,7 @@ impl<const D: usize> Writer<D> {
         self.held.file().sync_all().map_err(told)
     }
 
-    /// Lets the thread write what it has and ends it.
+    /// Completes the pending writes and ends the thread.
     fn stop(&mut self) {
         self.rows = None;
         let ended = self.thread.take().map(JoinHandle::join);
@@ -167,7 +166,7 @@ impl<const D: usize> Drop for Writer<D> {
     }
 }
 
-/// Writes rows as they come, until no more will come or one cannot be written.
+/// Writes rows in order, until the last one or a failure.
 fn write_all<const D: usize>(
     file: &File,
     places: &Places,
@@ -177,7 +176,7 @@ fn write_all<const D: usize>(
     for row in taken {
         let failure = |error: io::Error| Failure { step: row.index, kind: error.kind(), code: error.raw_os_error() };
         row.write(file, places).map_err(failure)?;
-        // Nobody takes it back once the run has ended.
+        // There is no receiver once the run has ended.
         let _ = back.send(row);
     }
     Ok(())

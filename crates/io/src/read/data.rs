@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Deflate makes at most 1032 bytes from one; other filters of HDF5 make less.
 const MOST_EXPANSION: u64 = 1032;
 
-/// A data set whose shape is known to be filled by what is stored.
+/// A data set whose stored bytes are known to fill its shape.
 pub(crate) struct Data<'f> {
     pub(super) set: Dataset,
     pub(crate) name: String,
@@ -36,7 +36,7 @@ impl<'f> Data<'f> {
             each.checked_mul(datatype.size() as u64)
         };
         let fits = |shape: &[usize]| size(shape).is_some_and(|bytes| bytes <= most);
-        // Not even the product of an empty shape may overflow: HDF5 multiplies too.
+        // The product of an empty shape must not overflow either, because HDF5 computes it.
         let sane = shape.iter().try_fold(1_usize, |n, &d| n.checked_mul(d.max(1))).is_some();
         if stored > file_bytes || !fits(&shape) || !sane || (!chunk.is_empty() && stored > 0 && !fits(&chunk)) {
             return Err(FileCause::Hollow { name, given: shape, stored: stored.min(file_bytes) });
@@ -70,7 +70,7 @@ impl<'f> Data<'f> {
         self.all()
     }
 
-    /// Whole rows, a row being what one number of the first dimension holds.
+    /// Complete rows: one row for each index of the first dimension.
     pub(crate) fn float_rows(&self, rows: Range<usize>) -> Result<Vec<f64>, FileCause> {
         self.check_floats()?;
         self.rows(rows)
@@ -101,10 +101,10 @@ impl<'f> Data<'f> {
         Ok(values.iter().filter_map(good).collect())
     }
 
-    /// Rows of 0 and 1, or of booleans as h5py has them.
+    /// Rows of 0 and 1, or of booleans of h5py.
     pub(crate) fn flag_rows(&self, rows: Range<usize>) -> Result<Vec<bool>, FileCause> {
         match self.kind {
-            // Never as `bool`: other bytes than 0 and 1 must not become one.
+            // Never as `bool`, because other bytes than 0 and 1 are invalid there.
             TypeDescriptor::Boolean | TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
                 let values: Vec<i64> = self.rows(rows)?;
                 if let Some(wrong) = values.iter().find(|v| !(0..=1).contains(*v)) {
@@ -132,14 +132,14 @@ impl<'f> Data<'f> {
         Ok(values.into_raw_vec_and_offset().0)
     }
 
-    /// Asks for the memory that the library is about to take, so that there not being as much is an error.
+    /// Reserves the memory of the library in advance, so that a lack of memory is an error.
     fn room<T>(&self, count: usize) -> Result<(), FileCause> {
         let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
         let large = |_| FileCause::TooLarge { name: self.name.clone(), bytes };
         Vec::<T>::new().try_reserve_exact(count).map_err(large)
     }
 
-    /// Offset in the file, if the data lie there in one piece as numbers of type `T`, as they are in memory.
+    /// Offset in the file, if the data are contiguous numbers of type `T` as in memory.
     pub(crate) fn native_offset<T: H5Type>(&self) -> Result<Option<u64>, FileCause> {
         let native = hdf5::Datatype::from_type::<T>().map_err(damaged)?;
         let same = self.set.dtype().map_err(damaged)? == native;

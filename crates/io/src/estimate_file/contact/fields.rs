@@ -9,7 +9,7 @@ use percute_core::contact_results::{ContactResults, ContactSteps};
 /// Contact status of a node that is not on the contact surface.
 const OFF: i8 = -1;
 
-/// Writes the fields on all nodes at some steps; gives the names. Off the contact surface all is 0, and the status −1.
+/// Writes the fields on all nodes at some steps; gives the names. Outside the contact surface all values are 0, and the status is −1.
 pub(in crate::estimate_file) fn write_fields<const D: usize>(
     data: &Group,
     (results, steps): (&ContactResults<D>, &ContactSteps<D>),
@@ -39,7 +39,7 @@ pub(in crate::estimate_file) fn write_fields<const D: usize>(
     Ok(names.chain(["contact_status"]).collect())
 }
 
-/// From rows of contact nodes to all nodes, at some steps.
+/// Rows of contact nodes, spread over all nodes, at some steps.
 struct Spread<'a, const D: usize> {
     results: &'a ContactResults<D>,
     nodes: usize,

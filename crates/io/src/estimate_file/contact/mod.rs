@@ -12,7 +12,7 @@ use crate::write::{group, numbers, unit};
 use hdf5::Group;
 use percute_core::contact_results::{ContactResults, ContactSteps, Resultant};
 
-/// Bytes that the results take in a file, at `instants` of maps over `nodes` nodes.
+/// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.
 pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {
     let (rows, steps) = (results.nodes.len(), results.instants.len());
     let resultants = (1 + results.obstacles.len()) * (steps * (24 * D + 40) + 4_000);
@@ -59,7 +59,7 @@ pub(super) fn write<const D: usize>(
     Ok(())
 }
 
-/// Name, unit, and how it is taken from a resultant.
+/// Name, unit, and the value of a resultant.
 type Named<const D: usize, T> = (&'static str, &'static str, fn(&Resultant<D>) -> T);
 
 fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>]) -> Result<(), FileCause> {

@@ -1,4 +1,4 @@
-//! Contact results read back.
+//! Reads contact results.
 
 use crate::error::{FileCause, FileError};
 use crate::estimate_file::open::size;
@@ -9,13 +9,13 @@ use percute_core::ids::NodeId;
 use percute_core::simplex::ByDimension;
 use std::path::Path;
 
-/// Arrays in which NaN stands for none.
+/// Arrays in which NaN stands for a missing value.
 const MAY_BE_NONE: [&str; 3] = ["first_touch", "time_of_peak", "centre"];
 
 /// Contact results of either dimension.
 pub type AnyContact = ByDimension<ContactResults<1>, ContactResults<2>>;
 
-/// Reads the contact results; none if the file holds none.
+/// Reads the contact results, if the file has any.
 ///
 /// # Errors
 /// As [`open`](crate::estimate_file::open).
@@ -33,7 +33,7 @@ pub fn contact(path: impl AsRef<Path>) -> Result<Option<AnyContact>, FileError> 
     })
 }
 
-/// Reads what [`write`] wrote.
+/// Reads the group written by [`write`].
 struct Reader<'a, 'f> {
     part: &'a Part<'f>,
 }
@@ -140,7 +140,7 @@ impl Reader<'_, '_> {
         Ok(self.all(name, &[shape, &[D]].concat())?.as_chunks::<D>().0.to_vec())
     }
 
-    /// Numbers, all of them finite but where there may be none.
+    /// Numbers, all of them finite except where values may be missing.
     fn all(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, FileCause> {
         let data = self.part.data(name)?;
         data.expect(shape, "as the other arrays of the group")?;

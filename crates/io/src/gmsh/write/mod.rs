@@ -1,4 +1,4 @@
-//! Meshes written for Gmsh, or to be read again bit by bit.
+//! Writes meshes for Gmsh, restored bit by bit on reading.
 
 mod parts;
 mod sink;
@@ -13,20 +13,20 @@ use percute_core::mesh::Mesh;
 use sink::Sink;
 use std::path::Path;
 
-/// How a mesh is written.
+/// Options for writing a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Format {
     /// Version of MSH.
     pub version: Version,
-    /// Numbers as they are in memory instead of a text.
+    /// Whether numbers are binary instead of text.
     pub binary: bool,
 }
 
-/// Writes a mesh in metres, whole or not at all; [`super::read`] makes the same mesh of it, bit by bit. Nodes and elements
-/// have their numbers plus 1 as tags; elements of the same groups are one part of the geometry.
+/// Writes a mesh in metres, completely or not at all. [`super::read`] restores the same mesh, bit by bit. Tags of nodes and
+/// elements are their numbers plus 1. Elements of the same groups form one part of the geometry.
 ///
 /// # Errors
-/// A file that cannot be made or is there already, names of groups that the format cannot hold.
+/// A file that cannot be created or exists already, group names that the format does not allow.
 pub fn write<const D: usize, const N: usize>(
     path: &Path,
     overwrite: Overwrite,

@@ -6,7 +6,7 @@ use super::sink::Sink;
 use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
 use percute_core::mesh::Mesh;
 
-/// An element as one of its groups has it.
+/// An element in one of its groups.
 struct Entry {
     tag: usize,
     group: usize,

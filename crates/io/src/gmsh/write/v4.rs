@@ -13,7 +13,7 @@ pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<
     out.line("$Nodes");
     let nodes = mesh.node_count();
     row(out, &[1, nodes, 1, nodes]);
-    // All nodes are said to be inside the first part of the body: their true place does not matter.
+    // All nodes are assigned to the first part of the body; the true assignment is not needed.
     head(out, [D, 1, 0], nodes);
     (1..=nodes).for_each(|tag| row(out, &[tag]));
     for point in mesh.points() {
