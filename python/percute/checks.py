@@ -1,4 +1,4 @@
-"""Checks of arguments: each gives the value in the type that the work takes, or says what is wrong with which argument."""
+"""Checks of arguments: each returns the value in the required type, or raises an error that names the argument."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ __all__ = [
 T = TypeVar("T")
 
 LARGEST = 2**63 - 1
-"""The largest whole number that the work takes."""
+"""The largest whole number of the engine."""
 
 MADE_BY = {"History": "percute.simulate, percute.run or percute.open", "Estimate": "percute.estimate, percute.run or percute.open"}
-"""What makes the objects that are not made by their class."""
+"""Functions that make the objects not made by their class."""
 
 _short = reprlib.Repr()
 _short.maxstring = _short.maxother = _short.maxlong = 80
 
 
 def _told(value: object) -> str:
-    """Show a value in one line that is not too long."""
+    """Show a value in one short line."""
     try:
         return " ".join(_short.repr(value).split())
     except Exception:  # What a value says of itself may fail: whole numbers of more than 4300 digits do.
@@ -52,12 +52,12 @@ def _told(value: object) -> str:
 
 
 def wrong(name: str, value: object, allowed: str) -> InputError:
-    """Say what an argument is and what it must be."""
+    """Make an error with the value of an argument and its allowed values."""
     return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
 
 
 def warn(plausibility_warnings: Iterable[str]) -> None:
-    """Warn of what is doubtful at the line that called the function which calls this one."""
+    """Issue a plausibility warning at the line that called the public function."""
     for plausibility_warning in plausibility_warnings:
         warnings.warn(plausibility_warning, InputWarning, stacklevel=3)
 
@@ -109,11 +109,11 @@ def encodable(file: str) -> str:
 
 
 def number(name: str, value: object, *, finite: bool = False, unit: str = "") -> float:
-    """Give a number; whether one that is not finite makes sense is for the work to say, unless it must be ``finite``."""
+    """Give a number. Without ``finite``, the engine checks numbers that are not finite."""
     allowed = ("a finite number" if finite else "a number") + (f" in {unit}" if unit else "")
     try:
         array = np.asarray(value)
-        # Texts and truth values could be converted, but are hardly meant to be numbers.
+        # Texts and truth values could be converted, but are probably mistakes.
         given = float(value) if array.ndim == 0 and array.dtype.kind in "fiuO" else None  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         given = None
@@ -142,7 +142,7 @@ def whole(name: str, value: object, *, least: int = 1, most: int = LARGEST) -> i
 
 def _array(value: object) -> NDArray[Any]:
     try:
-        # Among numbers a truth value would become 0 or 1, but is hardly meant to be one.
+        # Among numbers a truth value would become 0 or 1, but is probably a mistake.
         return np.asarray(None if isinstance(value, list | tuple) and _has_truth(value) else value)
     except (TypeError, ValueError, OverflowError, RecursionError):
         return np.asarray(None)
@@ -161,7 +161,7 @@ def _has_truth(rows: list[Any] | tuple[Any, ...]) -> bool:
 
 
 def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
-    """Give an array of numbers of at most so many dimensions."""
+    """Give an array of numbers with a maximum number of dimensions."""
     array = _array(value)
     if array.dtype.kind not in "fiu":
         raise wrong(name, value, f"numbers in rows of equal length{_no_truth(value)}")
@@ -173,7 +173,7 @@ def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDA
 
 
 def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
-    """Give whole numbers in rows of so many columns; without columns, one after the other."""
+    """Give whole numbers in rows of some columns; without columns, in one row."""
     array = _array(value)
     if array.size == 0 and array.dtype.kind == "f":
         array = array.astype(np.int64)

@@ -1,4 +1,4 @@
-"""What contact did: at each node and instant, and in all."""
+"""Contact results at each node and instant, and their resultants."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ __all__ = ["Contact", "ContactStatus", "Resultants"]
 
 
 class ContactStatus(IntEnum):
-    """What a node of the contact surface does under its reaction R_n, in the half step after t_n."""
+    """Status of a contact node under its reaction R_n, in the half step after t_n."""
 
     FREE = 0
-    """The plane does not push it: R_n is zero."""
+    """Free: R_n is zero."""
     STICK = 1
-    """It does not move along the plane: R_n is inside Coulomb's cone."""
+    """Stick: R_n is inside Coulomb's cone."""
     SLIP = 2
-    """It moves along the plane: R_n is on the cone, eq. [2]. Without friction all contact slips."""
+    """Slip: R_n is on the cone, eq. [2]. Without friction all contact slips."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Resultants:
-    """What the nodes of one plane, or of all, do together at each instant."""
+    """Resultants of the nodes of one plane, or of all planes, at each instant."""
 
     force: NDArray[np.float64]
     """ΣR_n (N), global axes, shape (instants, dimension)."""
     normal_force: NDArray[np.float64]
     """Sum of the normal components (N), shape (instants,)."""
     impulse: NDArray[np.float64]
-    """Impulse given to the body up to t_n (N s), shape (instants, dimension)."""
+    """Impulse on the body up to t_n (N s), shape (instants, dimension)."""
     area: NDArray[np.float64]
     """Area of contact (m²): the shares of the nodes that are not free, shape (instants,)."""
     in_contact: NDArray[np.int64]
-    """How many nodes are not free, shape (instants,)."""
+    """Number of nodes that are not free, shape (instants,)."""
     slipping: NDArray[np.int64]
-    """How many of these slip, shape (instants,)."""
+    """Number of slipping nodes, shape (instants,)."""
     friction_energy: NDArray[np.float64]
     """Energy dissipated by friction up to t_n (J), shape (instants,)."""
     centre: NDArray[np.float64]
@@ -58,7 +58,7 @@ class Resultants:
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Contact:
-    """What contact did, at the nodes of the contact surface and in all.
+    """Contact results at the nodes of the contact surface, and their resultants.
 
     Force, density, status and sliding velocity at t_n are those of the reaction R_n and of the half step after t_n, on which it
     acts: a node is not free at t_n exactly if it touches at t_{n+1}. Gaps and places are those of t_n itself.
@@ -69,9 +69,9 @@ class Contact:
     nodes: NDArray[np.int64]
     """Nodes of the contact surface, along the boundary, shape (contact nodes,)."""
     obstacle: NDArray[np.int64]
-    """Which plane each of them may touch, shape (contact nodes,)."""
+    """The plane that each of them may touch, shape (contact nodes,)."""
     points: NDArray[np.float64]
-    """Their places in the undeformed mesh (m), shape (contact nodes, dimension)."""
+    """Their undeformed positions (m), shape (contact nodes, dimension)."""
     normals: NDArray[np.float64]
     """Outward unit normals of their planes, shape (contact nodes, dimension)."""
     area: NDArray[np.float64]
@@ -88,13 +88,13 @@ class Contact:
     friction_energy: NDArray[np.float64]
     """Energy dissipated by friction up to t_n (J), shape (instants, contact nodes)."""
     first_touch: NDArray[np.float64]
-    """The first t_n at which each node touches (s), NaN if it never does, shape (contact nodes,)."""
+    """The first t_n at which each node touches (s), NaN if it never touches, shape (contact nodes,)."""
     time_in_contact: NDArray[np.float64]
-    """How long each node was not free (s), shape (contact nodes,)."""
+    """Total time for which each node was not free (s), shape (contact nodes,)."""
     peak_normal_force: NDArray[np.float64]
     """Largest normal force on each node (N), shape (contact nodes,)."""
     time_of_peak: NDArray[np.float64]
-    """When that was (s), NaN without force, shape (contact nodes,)."""
+    """Time of this force (s), NaN without force, shape (contact nodes,)."""
     peak_pressure: NDArray[np.float64]
     """Largest pressure on each node (Pa), shape (contact nodes,)."""
     impulse: NDArray[np.float64]

@@ -20,7 +20,7 @@ __all__ = ["plot_contact"]
 
 COLOURS = {ContactStatus.STICK: "#1f5fa8", ContactStatus.SLIP: "#e8862e"}
 MOST_COLUMNS = 2000
-"""More steps than these are thinned out: no screen shows them."""
+"""Largest number of drawn steps; more are thinned out."""
 
 
 def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None) -> list[Axes]:
@@ -35,14 +35,14 @@ def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None) -> 
     _draw_forces(panels[0], contact)
     for plane, panel in enumerate(panels[1:]):
         _draw_zone(panel, contact, plane, colour)
-    # Axes of their own share the time: the last one has its name.
+    # New axes share the time; only the last one is labelled.
     for panel in panels[-1:] if axes is None else panels:
         panel.set_xlabel(f"t ({_prefix(contact.time)[1]}s)")
     return panels
 
 
 def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
-    """Give so many axes, by default one below the other with a common time."""
+    """Give some axes, by default one below the other with a common time."""
     if axes is None:
         size = (6.8, 2.6 + 2.6 * (count - 1))
         return list(_pyplot().subplots(count, sharex=True, layout="constrained", figsize=size)[1])
@@ -72,7 +72,7 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
 
 
 def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
-    """Give the unit vector along a plane, towards where its larger component grows, and its name."""
+    """Give the unit vector along a plane, positive in its larger component, and its name."""
     x, y = contact.normals[contact.obstacle == plane][0]
     along = np.array([y, -x])
     along *= np.sign(along[np.argmax(np.abs(along))])
@@ -81,7 +81,7 @@ def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
 
 
 def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
-    """Draw which nodes of a plane are in contact when: what belongs to t_n fills the step after it."""
+    """Draw the nodes of a plane in contact over time. The status at t_n fills the step after it."""
     seconds, _ = _prefix(contact.time)
     rows = np.flatnonzero(contact.obstacle == plane)
     thin = -(-(len(contact.time) - 1) // MOST_COLUMNS)
@@ -118,7 +118,7 @@ def _style(colour: str, most: float) -> dict[str, Any]:
 def _cells(
     axes: Axes, contact: Contact, plane: int, rows: NDArray[np.intp], touched: NDArray[np.bool_]
 ) -> list[tuple[slice, Floats]]:
-    """Give the pieces of the contact surface with the borders of its nodes' shares, and look at what was touched."""
+    """Give the pieces of the contact surface near contact, with the borders of the shares of their nodes."""
     if contact.mesh.dimension == 1:
         axes.set_yticks(np.arange(len(rows)), [f"node {node}" for node in contact.nodes[rows]])
         return [(slice(None), np.arange(len(rows) + 1, dtype=np.float64) - 0.5)]
@@ -141,7 +141,7 @@ def _cells(
 
 
 def _pieces(contact: Contact, rows: NDArray[np.intp]) -> list[slice]:
-    """Give the runs of nodes that follow each other along the boundary."""
+    """Give the runs of consecutive nodes along the boundary."""
     cells = contact.mesh.cells
     nodes = contact.nodes[rows]
     beside = {tuple(sorted(pair)) for cell in cells[np.isin(cells, nodes).sum(axis=1) > 1] for pair in _pairs(cell)}

@@ -1,4 +1,4 @@
-"""What percute raises.
+"""Exceptions and warnings of percute.
 
 All exceptions are `PercuteError`; each is also the built-in exception that fits, so that code that knows nothing of
 percute can catch it. Messages name the argument, its value, its unit and what is allowed.
@@ -27,7 +27,7 @@ class InputError(PercuteError, ValueError):
 
 
 class InputWarning(UserWarning):
-    """What was given is possible, but more likely a slip: units that look mixed, a body that never touches."""
+    """A plausibility warning: the input is possible but probably a mistake, such as mixed units or a body that never touches."""
 
 
 class MissingFileError(PercuteError, FileNotFoundError):
@@ -39,7 +39,7 @@ class ExistingFileError(PercuteError, FileExistsError):
 
 
 class FileFormatError(PercuteError, ValueError):
-    """The file is damaged, of another kind or newer than this program; or its contents contradict each other."""
+    """The file is damaged, of another kind, newer than this program, or inconsistent."""
 
 
 class StorageError(PercuteError, OSError):
@@ -47,7 +47,7 @@ class StorageError(PercuteError, OSError):
 
 
 class SimulationError(PercuteError, RuntimeError):
-    """The simulation failed; ``history``, if there is one, holds the steps done."""
+    """The simulation failed; ``history``, if not None, has the completed steps."""
 
 
 class EstimateError(PercuteError, RuntimeError):
@@ -55,4 +55,4 @@ class EstimateError(PercuteError, RuntimeError):
 
 
 class MeshWarning(UserWarning):
-    """Something was reported, and left out, when a mesh was read; the message says what and why."""
+    """An import warning: a part of a mesh file was left out or changed; the message gives the part and the reason."""

@@ -1,4 +1,4 @@
-"""Estimates: how wrong a simulation is, where, when and why."""
+"""Estimates of the error of a simulation, over elements and over time."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Estimate:
 
     @cached_property
     def problem(self) -> Problem | None:
-        """The problem that was simulated; None if the estimate comes from a file, which does not hold its initial fields."""
+        """The problem that was simulated; None if the estimate comes from a file, which has no initial fields."""
         if isinstance(self._data, StoredEstimate):
             return None
         return self._history.problem if self._history is not None else Problem._of(self._data.problem())
@@ -109,7 +109,7 @@ class Estimate:
 
     @property
     def time_of_sup(self) -> float:
-        """When η is largest (s)."""
+        """Time of the largest η (s)."""
         return self._measures["time_of_sup"]
 
     @property
@@ -124,7 +124,7 @@ class Estimate:
 
     @property
     def meaning(self) -> str:
-        """What the error means and what it does not, and how far from the true error it was in tests."""
+        """The meaning of the error, its limits and its effectivity index in tests."""
         reconstruction, _, _ = self._data.options()
         return _percute.meaning(reconstruction)
 
@@ -135,7 +135,7 @@ class Estimate:
 
     @cached_property
     def parts(self) -> Parts:
-        """Parts of η when it is largest (J), eq. [14]."""
+        """Parts of η at its largest value (J), eq. [14]."""
         return Parts(*self._data.parts())
 
     @cached_property
@@ -150,18 +150,18 @@ class Estimate:
 
     @cached_property
     def residuals(self) -> Mapping[str, float]:
-        """How far each field is from exactly admissible, relative; above 1e-10 it is not (see ``docs/json.md``)."""
+        """Relative residuals of all admissibility conditions; above 1e-10 a field is not admissible (see ``docs/json.md``)."""
         return MappingProxyType(self._data.residuals())
 
     @cached_property
     def maps(self) -> tuple[ElementMap, ...]:
-        """What each element contributes, at the instants that were asked for."""
+        """Contributions of the elements at the requested instants."""
         kept = [{k: v for k, v in each.items() if k not in ("step", "accumulated")} for each in self._data.maps()]
         return tuple(ElementMap(**arguments) for arguments in kept)
 
     @cached_property
     def contact(self) -> Contact | None:
-        """What contact did, from the history or from the file; None if the estimate was unpickled, or the file does not hold it."""
+        """Contact results from the history or the file; None after unpickling, or if the file has none."""
         if self._history is not None:
             return self._history.contact
         if not isinstance(self._data, StoredEstimate):
@@ -171,13 +171,13 @@ class Estimate:
 
     @property
     def given(self) -> Mapping[str, bool]:
-        """Whether the history brought its own ``velocity`` and ``acceleration``; else they follow by the scheme."""
+        """Whether the history has its own ``velocity`` and ``acceleration``; otherwise they follow from the scheme."""
         velocity, acceleration = self._data.given()
         return MappingProxyType({"velocity": velocity, "acceleration": acceleration})
 
     @property
     def options(self) -> Mapping[str, str | int]:
-        """The choices ``reconstruction``, ``acceleration`` and ``every`` it was made with."""
+        """The options ``reconstruction``, ``acceleration`` and ``every`` of the estimate."""
         reconstruction, acceleration, every = self._data.options()
         return MappingProxyType({"reconstruction": reconstruction, "acceleration": acceleration, "every": every})
 
@@ -195,7 +195,7 @@ class Estimate:
         return Effectivity(sup=self.sup / true.sup, mean=self.mean / true.mean)
 
     def worst_elements(self, n: int = 5) -> list[WorstElement]:
-        """Give the ``n`` elements that contribute most, largest first."""
+        """Give the ``n`` largest contributions of elements, largest first."""
         count = whole("n", n, least=0)
         mesh = self.mesh
         worst = []
@@ -237,7 +237,7 @@ class Estimate:
         self._data.save(os.path.abspath(file), replace, self._name, of)
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
-        """Draw e_E, what each element contributes (J^½), eq. [20].
+        """Draw e_E, the contribution of each element (J^½), eq. [20].
 
         Parameters
         ----------
@@ -280,7 +280,7 @@ class Estimate:
         return "\n".join([repr(self).strip("<>"), self.meaning])
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle all but the history, which is large and can be pickled apart."""
+        """Pickle all but the history, which is large and can be pickled separately."""
         data = self._data
         if isinstance(data, StoredEstimate):
             return _reopen, (data.path,)
@@ -378,7 +378,7 @@ def estimate(
     options = (
         stated[0] if reconstruction is None else text("reconstruction", reconstruction),
         stated[1] if acceleration is None else text("acceleration", acceleration),
-        # The default without one of its parts: for the evidence of the purpose of each.
+        # The default without one of its parts, for the evidence on each part.
         text("_ablation", _ablation),
         stated[2] if every is None else whole("every", every),
     )
@@ -392,7 +392,7 @@ def estimate(
 
 
 def pace(threads: int | None, window: int | None) -> tuple[int | None, int | None]:
-    """Check how the work is done."""
+    """Check threads and window."""
     return (
         None if threads is None else whole("threads", threads, most=_percute.MOST_THREADS),
         None if window is None else whole("window", window),
@@ -400,7 +400,7 @@ def pace(threads: int | None, window: int | None) -> tuple[int | None, int | Non
 
 
 def _wanted(instants: int | ArrayLike | None, history: History) -> int | list[float] | None:
-    """Tell how many instants, or which (s); none may come after the end, but for the digits that a printed one lacks."""
+    """Give the number of instants, or their times (s). A time may exceed the end by the digits lost in printing only."""
     if instants is None:
         return None
     if isinstance(instants, int | np.integer):

@@ -1,4 +1,4 @@
-"""The evidence that the estimate is right, computed again."""
+"""Computes the evidence on the estimate again."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def reproduce(
     threads: int | None = None,
     progress: ProgressOption = None,
 ) -> Path:
-    """Compute the paper's tables and figures, exact solutions and effectivities again, as ``percute reproduce`` does.
+    """Compute the paper's tables and figures, exact solutions and effectivity indices again, like ``percute reproduce``.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Exact solutions, against which simulations and estimates can be measured."""
+"""Exact solutions as references for simulations and estimates."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class TrueError:
 
 @dataclass(frozen=True)
 class Effectivity:
-    """Estimated over true error; 1 would be perfect."""
+    """Effectivity index: estimated over true error."""
 
     sup: float
     """Of the largest error."""
@@ -71,7 +71,7 @@ class Effectivity:
 
 
 class _Exact:
-    """A closed-form solution: it checks its arguments; the extension has the formulas."""
+    """A closed-form solution with checked arguments; the extension has the formulas."""
 
     _data: _percute.ExactData
 
@@ -97,7 +97,7 @@ class _Exact:
         return partial(type(self), **{name: getattr(self, name) for name in self._arguments()}), ()
 
     def _evaluate(self, name: str, **at: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate a function at places and instants, broadcast against each other."""
+        """Evaluate a function at positions and instants, broadcast against each other."""
         given = [numbers(each, value, most=32, finite=True) for each, value in at.items()]
         try:
             rows = np.stack(np.broadcast_arrays(*given), axis=-1)
@@ -116,7 +116,7 @@ class _Bar(_Exact):
     section: float
 
     def displacement(self, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
-        """Displacement at the places ``x`` in [0, L] (m) and instants ``t`` (s), broadcast against each other (m)."""
+        """Displacement at the positions ``x`` in [0, L] (m) and instants ``t`` (s), broadcast against each other (m)."""
         return self._at("displacement", x, t)
 
     def velocity(self, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
@@ -128,7 +128,7 @@ class _Bar(_Exact):
         return self._at("normal_force", x, t)
 
     def error(self, history: History) -> TrueError:
-        """Give the true error of a simulation of this very bar, eq. [60].
+        """Give the true error of a simulation of this bar, eq. [60].
 
         Integrals over elements are sums over their parts.
 
@@ -193,7 +193,7 @@ class _StruckBar(_Bar):
 
 @dataclass(frozen=True, kw_only=True)
 class BarImpact(_StruckBar):
-    """A uniform bar on [0, L] that flies in -x against a rigid plane at x = -gap; see `bar_impact`.
+    """A uniform bar on [0, L] that moves in -x towards a rigid plane at x = -gap; see `bar_impact`.
 
     Source: Louf, Gallimard and Pelle, §7.1.
     """
@@ -207,15 +207,15 @@ class BarImpact(_StruckBar):
     wave_speed: float = field(init=False, repr=False, compare=False)
     """c = √(E/ρ) (m/s)."""
     impact_time: float = field(init=False, repr=False, compare=False)
-    """When it strikes (s)."""
+    """Time of impact (s)."""
     release_time: float = field(init=False, repr=False, compare=False)
-    """When it leaves the plane, 2L/c later (s)."""
+    """Time of release from the plane, 2L/c later (s)."""
 
     def _make(self, *values: Any) -> _percute.ExactData:
         return _percute.ExactData.bar_impact(values)
 
     def error(self, history: History) -> TrueError:
-        """Give the true error of a simulation of this very bar, eq. [60]; integrals are exact in space.
+        """Give the true error of a simulation of this bar, eq. [60]; integrals are exact in space.
 
         Raises
         ------
@@ -229,7 +229,7 @@ class BarImpact(_StruckBar):
 
 @dataclass(frozen=True, kw_only=True)
 class BouncingBar(_StruckBar):
-    """A uniform bar that falls from ``height`` on a rigid plane under ``gravity``, in -x, and comes back again and again.
+    """A uniform bar that falls from ``height`` on a rigid plane under ``gravity``, in -x, and bounces periodically.
 
     It starts undeformed on [0, L] and at rest. The time between two contacts must be a whole number, at least 3, of periods 2L/c.
 
@@ -245,11 +245,11 @@ class BouncingBar(_StruckBar):
     wave_speed: float = field(init=False, repr=False, compare=False)
     """c = √(E/ρ) (m/s)."""
     impact_time: float = field(init=False, repr=False, compare=False)
-    """When it touches first (s)."""
+    """Time of the first touch (s)."""
     contact_duration: float = field(init=False, repr=False, compare=False)
-    """How long each contact lasts, 2L/c (s)."""
+    """Duration of each contact, 2L/c (s)."""
     period: float = field(init=False, repr=False, compare=False)
-    """Time of two bounces, after which all repeats (s)."""
+    """Period of the motion, two bounces (s)."""
     energy: float = field(init=False, repr=False, compare=False)
     """Kinetic, strain and potential energy (J), zero at rest on the plane."""
 
@@ -262,7 +262,7 @@ class BouncingBar(_StruckBar):
 
 @dataclass(frozen=True, kw_only=True)
 class ClampedRod(_StruckBar):
-    """A rod on [0, L], clamped at x = L, that springs back against an obstacle at the undeformed place of its end x = 0.
+    """A rod on [0, L], clamped at x = L, that springs back against an obstacle at the undeformed position of its end x = 0.
 
     It starts at rest with u₀ = (1 - x/L) ``distance``.
 
@@ -277,7 +277,7 @@ class ClampedRod(_StruckBar):
     wave_speed: float = field(init=False, repr=False, compare=False)
     """c = √(E/ρ) (m/s)."""
     passage: float = field(init=False, repr=False, compare=False)
-    """L/c (s), after which it touches, and for which it does."""
+    """L/c (s), the time of the first touch and the duration of contact."""
     period: float = field(init=False, repr=False, compare=False)
     """3L/c (s)."""
     energy: float = field(init=False, repr=False, compare=False)
@@ -289,7 +289,7 @@ class ClampedRod(_StruckBar):
 
 @dataclass(frozen=True, kw_only=True)
 class BarMode(_Bar):
-    """A standing wave u = A φ(x) cos(ωt + θ) of a uniform bar, with the ends ``fixed`` that are named, the others free.
+    """A standing wave u = A φ(x) cos(ωt + θ) of a uniform bar, with the ends in ``fixed`` fixed and the others free.
 
     Source: Timoshenko, Vibration Problems in Engineering.
     """
@@ -320,7 +320,7 @@ class BarMode(_Bar):
 
 @dataclass(frozen=True, kw_only=True)
 class BarRamp(_Bar):
-    """A uniform bar at rest, clamped at x = 0, whose other end is pulled from t = 0 on by a traction that grows by ``rate``.
+    """A uniform bar at rest, clamped at x = 0, with a traction on its other end that grows by ``rate`` from t = 0 on.
 
     Source: Timoshenko, Vibration Problems in Engineering, modal series; here in d'Alembert's form.
     """
@@ -396,7 +396,7 @@ class RigidSlide(_Exact):
         return data
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
-        """How far it has come at the instants ``t`` (m)."""
+        """Displacement at the instants ``t`` (m)."""
         return self._evaluate("position", t=t)
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:

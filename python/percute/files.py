@@ -57,7 +57,7 @@ def run(
     window: int | None = None,
     progress: ProgressOption = None,
 ) -> Estimate:
-    """Run a case: simulate it and estimate the error, as ``percute run`` does.
+    """Run a case: simulate it and estimate the error, like ``percute run``.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def run(
         # The working directory may change in a callback.
         file, report = absolute(asked["history"]), absolute(asked["estimate"])
         warn(read.plausibility_warnings(file is None))
-        # Maps are what an estimate file is for; nobody else asked for them.
+        # Only an estimate file needs maps.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         history = History._of(_percute.simulate_case(read, file, replace, tell), name=name)
         try:
@@ -139,7 +139,7 @@ def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
 
 
 def _similar(path: Path) -> str:
-    """Ask for the file in the same folder that was likely meant."""
+    """Suggest a file of the same folder with a similar name."""
     try:
         names = difflib.get_close_matches(path.name, os.listdir(path.parent), 1)
     except OSError:

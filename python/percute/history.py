@@ -1,4 +1,4 @@
-"""Histories: what a simulation did, step by step."""
+"""Histories: all steps of a simulation."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ class Balance:
     work_of_supports: NDArray[np.float64]
     """Work of support reactions."""
     work_of_contact: NDArray[np.float64]
-    """Work of contact reactions, friction included."""
+    """Work of contact reactions, including friction."""
     friction: NDArray[np.float64]
     """Energy dissipated by friction."""
     energy_drift: NDArray[np.float64]
     """Largest error of the energy balance so far, over the largest energy or work."""
     impulse_drift: NDArray[np.float64]
-    """The same of momentum and impulses."""
+    """The same for momentum and impulses."""
 
     def __repr__(self) -> str:
         drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"
@@ -79,7 +79,7 @@ class History:
 
     @classmethod
     def _at(cls, file: str | None, problem: Problem | None, name: str = "") -> History:
-        """Give a history in a file, which is opened when it is needed."""
+        """Give a history in a file, which is opened on demand."""
         history = cls.__new__(cls)
         history._file = file
         history._problem = problem
@@ -119,28 +119,28 @@ class History:
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
         mapped = self._view("touching")
-        # Any byte but 0 says yes; as a bool of numpy only 1 may.
+        # Any byte but 0 means true in the file; a bool of numpy must be 1.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
         return mapped.view(np.bool_)
 
     def _view(self, name: str) -> NDArray[Any] | None:
-        """Give an array of the file; None if there is none that can be mapped."""
+        """Give an array of the file; None if it cannot be mapped."""
         array = self._mapped.get(name)
-        # Whoever reads what was cut off a mapped file ends by a signal.
+        # A read beyond the end of a truncated mapped file ends the process by a signal.
         if array is not None and array._mmap.size() < array.offset + array.nbytes:  # type: ignore[attr-defined]
             raise FileFormatError(f"{self.path}: the file has been truncated")
         return None if array is None else array[: len(self)]
 
     @cached_property
     def _mapped(self) -> dict[str, np.memmap[Any, Any]]:
-        """Map the arrays of the file that can be into memory: all at once, so that they are those of one run."""
+        """Map all possible arrays of the file into memory at once, so that they belong to one run."""
         path = self.path
         if path is None:
             return {}
         try:
             with path.open("rb") as file:
-                # Asked once the file is open: this fails if it is another one than before.
+                # Checked after the file is open: this fails if it was replaced.
                 arrays = {name: (shape, offset) for name, shape, offset in self._data.arrays() if 0 not in shape}
                 return {
                     name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))
@@ -163,7 +163,7 @@ class History:
 
     @cached_property
     def path(self) -> Path | None:
-        """The file that holds the steps; None if they are in memory."""
+        """The file with the steps; None if they are in memory."""
         path = self._data.path
         return None if path is None else Path(path)
 
@@ -173,12 +173,12 @@ class History:
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities v_n (m/s), shape (instants, nodes, dimension), eq. [29], [31]; computed when first asked for."""
+        """Velocities v_n (m/s), shape (instants, nodes, dimension), eq. [29], [31]; computed on first access."""
         return self._motion[0]
 
     @property
     def acceleration(self) -> NDArray[np.float64]:
-        """Accelerations a_n (m/s²), shape (instants, nodes, dimension), eq. [30]; computed when first asked for."""
+        """Accelerations a_n (m/s²), shape (instants, nodes, dimension), eq. [30]; computed on first access."""
         return self._motion[1]
 
     @cached_property
@@ -188,7 +188,7 @@ class History:
 
     @cached_property
     def contact(self) -> Contact:
-        """What contact did, at each node and in all; computed when first asked for."""
+        """Contact results at each node, and their resultants; computed on first access."""
         return Contact._of(self._data.contact(), self.problem.mesh)
 
     def error(self, reference: History) -> TrueError:
@@ -216,7 +216,7 @@ class History:
 
     @property
     def complete(self) -> bool:
-        """Whether all steps that were planned are there."""
+        """Whether all planned steps are present."""
         return self._data.complete
 
     def __len__(self) -> int:
@@ -395,13 +395,13 @@ def _errors(found: list[Any]) -> list[TrueError]:
 
 
 def absolute(file: str | os.PathLike[str] | None) -> str | None:
-    """Give a name that stays good when the working directory changes."""
+    """Give a name that stays valid when the working directory changes."""
     return None if file is None else os.path.abspath(file)
 
 
 @contextmanager
 def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
-    """Make a `History` of the data that hangs on an exception; what interrupted before the first step gets None."""
+    """Make a `History` of the data attached to an exception; None before the first step."""
     try:
         yield
     except BaseException as error:
@@ -411,7 +411,7 @@ def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
         elif isinstance(done, Path):
             done = History._at(str(done), problem, encodable(str(done)))
         if done is not None or not isinstance(error, PercuteError):
-            # An exception that takes no attributes is raised all the same.
+            # An exception without room for attributes is raised unchanged.
             with suppress(AttributeError):
                 error.history = done  # type: ignore[attr-defined]
         raise

@@ -21,18 +21,18 @@ __all__ = ["Mesh"]
 
 MOST_REFINEMENTS = 30
 MOST, MOST_RINGS = 20_000_000, 1825
-"""Elements, and rings of a disc, that a generated mesh may have, as the generators say."""
+"""Largest numbers of elements, and of rings of a disc, in a generated mesh."""
 
 
 class Mesh:
-    """A mesh of 2-node bars or 3-node triangles, checked once when it is made.
+    """A mesh of 2-node bars or 3-node triangles, checked once at its creation.
 
     Parameters
     ----------
     points : (nodes,), (nodes, 1) or (nodes, 2) floats
         Coordinates of the nodes (m). One coordinate makes a mesh of bars, two make one of triangles.
     cells : (elements, 2) or (elements, 3) ints
-        Nodes of each element, counted from 0. Elements that are given clockwise (a bar: backwards) are turned round.
+        Nodes of each element, counted from 0. Clockwise elements (a bar: backwards) are reoriented.
     edge_groups : dict of str to (edges, 2) ints, optional
         Named groups of boundary edges, each by its two nodes; of a bar: (ends,) or (ends, 1).
     element_groups : dict of str to (n,) ints, optional
@@ -95,7 +95,7 @@ class Mesh:
 
     @classmethod
     def disc(cls, radius: float, *, rings: int) -> Mesh:
-        """Make a disc of this radius (m) around the origin, of 6 ``rings``² triangles of nearly one size.
+        """Make a disc of this radius (m) around the origin, of 6 ``rings``² triangles of nearly equal size.
 
         Returns
         -------
@@ -116,7 +116,7 @@ class Mesh:
         return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
 
     def refined(self, times: int = 1) -> Mesh:
-        """Cut each element into halves (a bar) or quarters, so many times.
+        """Cut each element into halves (a bar) or quarters, repeatedly.
 
         Nodes keep their numbers and groups their edges and elements, so that the mesh is nested in the finer one: `History.error`
         compares runs on both.
@@ -172,7 +172,7 @@ class Mesh:
         binary: bool = False,
         overwrite: bool = False,
     ) -> None:
-        """Write the mesh, in metres, to a file: whole or not at all.
+        """Write the mesh, in metres, to a file: completely or not at all.
 
         Parameters
         ----------
@@ -230,12 +230,12 @@ class Mesh:
 
     @property
     def size(self) -> float:
-        """Diagonal of the box around the mesh (m)."""
+        """Diagonal of the bounding box of the mesh (m)."""
         return self._data.size
 
     @property
     def reoriented_elements(self) -> int:
-        """How many elements were given with the wrong orientation and turned round."""
+        """Number of elements that were given with the wrong orientation and reoriented."""
         return self._data.reoriented_elements
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Meshes in files of other programs, through meshlane, which is imported only when it is needed."""
+"""Meshes in files of other programs, through meshlane, which is imported on demand."""
 
 from __future__ import annotations
 
@@ -33,32 +33,32 @@ __all__ = ["is_gmsh", "read_foreign", "tell_of_mesh", "write_foreign"]
 _Integers = NDArray[np.int64]
 
 KINDS = {"vertex": 0, "line": 1, "triangle": 2}
-"""Kinds of cells that percute knows, with their dimensions."""
+"""Supported kinds of cells, with their dimensions."""
 
 LARGE = 10.0
-"""Size (m) above which a mesh is more likely in millimetres, as for files of Gmsh."""
+"""Size (m) above which a mesh is probably in millimetres, as for files of Gmsh."""
 
 REFERENCES = ("gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "su2:tag")
-"""Whole numbers of cells that name groups, as formats without names have them."""
+"""Names of cell data that number groups, in formats without group names."""
 
 SURE = ".msh, .vtu, .inp or .med"
-"""Endings of formats to choose where another one fails."""
+"""Endings of formats to suggest where another one fails."""
 
 NO_MESH = {
     ".geo": "is a Gmsh script without a mesh: `gmsh -2 block.geo -o block.msh` makes one",
     ".toml": "is a case, not a mesh; use percute.run",
     ".vtkhdf": "is a history or an estimate, not a mesh; use the `mesh` of percute.open",
 }
-"""What files with these endings are, for which nobody shall install anything."""
+"""Files with these endings need no meshlane."""
 
 
 def is_gmsh(file: str) -> bool:
-    """Tell whether a file is percute's own business."""
+    """Whether percute itself handles this file."""
     return file.lower().endswith(".msh")
 
 
 def tell_of_mesh(messages: Iterable[str]) -> None:
-    """Warn whoever called the caller of what was reported when a mesh was read."""
+    """Issue import warnings at the line that called the public function."""
     for message in messages:
         warnings.warn(message, MeshWarning, stacklevel=3)
 
@@ -74,7 +74,7 @@ def _meshlane(file: str) -> Any:
 
 
 def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[str]]:
-    """Read a mesh by meshlane; give it with what was left out."""
+    """Read a mesh by meshlane; give it with its import warnings."""
     if not 1e-12 <= scale <= 1e12:
         raise InputError(
             f"`scale` is {scale}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, "
@@ -99,7 +99,7 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
 
 
 def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "") -> Any:
-    """Let meshlane work, which prints what is wrong and may end the process; the folder ``draft`` is not for its messages."""
+    """Run meshlane, which prints errors and may end the process; messages do not show the folder ``draft``."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
@@ -114,7 +114,7 @@ def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft
 
 
 class _Reader:
-    """Takes from a mesh of meshlane what percute knows."""
+    """Converts a mesh of meshlane."""
 
     def __init__(self, name: str, found: Any) -> None:
         self.name = name
@@ -133,7 +133,7 @@ class _Reader:
         self.sets = _sets(found)
 
     def _of(self, dimension: int) -> tuple[_Integers, dict[str, _Integers]]:
-        """Give all cells of a dimension, and which of them are in each set."""
+        """Give all cells of a dimension, and the members of each set."""
         at = [i for i, (kind, _) in enumerate(self.blocks) if KINDS[kind] == dimension]
         cells = [self.blocks[i][1].reshape(-1, dimension + 1).astype(np.int64) for i in at]
         starts = np.cumsum([0, *map(len, cells)])
@@ -145,7 +145,7 @@ class _Reader:
         return (np.concatenate(cells) if cells else np.empty((0, dimension + 1), np.int64)), sets
 
     def arrays(self, scale: float) -> tuple[NDArray[np.float64], _Integers, dict[str, _Integers], dict[str, _Integers]]:
-        """Give points, cells, groups and elements as `Mesh` takes them."""
+        """Give points, cells and groups as arguments of `Mesh`."""
         cells, elements = self._of(self.dimension)
         facets, members = self._of(self.dimension - 1)
         points = self.points.reshape(len(self.points), -1) * scale
@@ -161,8 +161,8 @@ class _Reader:
         return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
 
     def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Leave out the coordinates in which the points do not differ."""
-        # The distance below which two nodes are one.
+        """Leave out constant coordinates."""
+        # The distance below which two nodes coincide.
         tolerance = 1e-10 * float(np.linalg.norm(np.ptp(points, axis=0)))
         if points.shape[1] < self.dimension or np.any(np.ptp(points[:, self.dimension :], axis=0) > tolerance):
             where = "in a plane z = const" if self.dimension == 2 else "along x, nor are there triangles"
@@ -192,7 +192,7 @@ class _Reader:
 
 
 def _sets(found: Any) -> dict[str, list[_Integers]]:
-    """Give the members of each group, block by block: of its sets, or else of the numbers that its cells have."""
+    """Give the members of each group, block by block, from sets, or from numbers of cells."""
     empty = np.empty(0, np.int64)
     sets = {
         str(name): [empty if part is None else np.asarray(part, np.int64) for part in parts]
@@ -212,7 +212,7 @@ def _sets(found: Any) -> dict[str, list[_Integers]]:
 
 
 def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
-    """Write a mesh by meshlane, whole or not at all."""
+    """Write a mesh by meshlane, completely or not at all."""
     name, meshlane, target = encodable(file), _meshlane(file), Path(file)
     if os.path.lexists(file) and not overwrite:
         raise ExistingFileError(f"{name}: the file exists already; give another name, or overwrite=True")

@@ -43,7 +43,7 @@ def _axes(axes: Axes | None) -> Axes:
 
 
 def _prefix(values: Floats) -> tuple[float, str]:
-    """Give a power of a thousand that makes values easy to read, and its prefix."""
+    """Give a power of a thousand for readable values, and its prefix."""
     largest = float(np.abs(values).max(initial=0.0))
     if largest == 0.0 or not np.isfinite(largest):
         return 1.0, ""
@@ -52,7 +52,7 @@ def _prefix(values: Floats) -> tuple[float, str]:
 
 
 def _draw_body(axes: Axes, points: Floats, cells: Any, values: Floats, label: str, colours: str) -> None:
-    """Draw values of nodes or elements on a plane body, coordinates in the unit that suits them."""
+    """Draw values of nodes or elements on a plane body, with coordinates in a suitable unit."""
     if len(values) == 0:
         raise InputError("there is nothing to draw")
     factor, prefix = _prefix(points)
@@ -61,7 +61,7 @@ def _draw_body(axes: Axes, points: Floats, cells: Any, values: Floats, label: st
     low, high = (-limit, limit) if colours == SIGNED else (min(0.0, float(values.min())), limit)
     drawn: ScalarMappable
     if len(values) == len(cells):
-        # Without smoothed edges: the body shines through between smoothed neighbours.
+        # Without anti-aliasing, which leaves light lines between neighbours.
         drawn = axes.tripcolor(
             x, y, facecolors=values, triangles=cells, cmap=colours, vmin=low, vmax=high, antialiased=False, rasterized=True
         )
@@ -73,7 +73,7 @@ def _draw_body(axes: Axes, points: Floats, cells: Any, values: Floats, label: st
     axes.margins(0.05)
     axes.set_xlabel(f"x ({prefix}m)")
     axes.set_ylabel(f"y ({prefix}m)")
-    # As high as the body, whatever its shape.
+    # As high as the body, for any shape.
     axes.figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
 
 
@@ -109,14 +109,14 @@ def plot_map(estimate: Estimate, axes: Axes | None) -> Axes:
 
 
 def plot_over_time(estimate: Estimate, axes: Axes | None) -> Axes:
-    """Draw √η and the parts of η as their share of it."""
+    """Draw √η and the shares of the parts of η."""
     axes = _axes(axes)
     over_time = estimate.over_time
     factor, prefix = _prefix(over_time.time)
     time = over_time.time / factor
     axes.plot(time, np.sqrt(over_time.total), color="black", label="error √η")
     for name in ("kinetic", "elastic", "contact"):
-        # The contact part is a sum of terms that are zero but for rounding where the law holds.
+        # The contact part is a sum of terms that are zero to rounding where the law holds.
         axes.plot(time, np.sqrt(np.maximum(getattr(over_time, name), 0.0)), linewidth=1.2, label=f"{name} part")
     axes.axhline(estimate.mean, color="black", linestyle=":", linewidth=1, label="mean error")
     axes.plot(estimate.time_of_sup / factor, estimate.sup, "ko", markersize=4, label="sup")

@@ -1,4 +1,4 @@
-"""Problems: a body, what it is made of, what holds, pushes and awaits it."""
+"""Problems: a body with its materials, supports, loads and obstacles."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def _materials(material: Elastic | Mapping[str, Elastic]) -> list[tuple[str | No
 
 
 def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64] | None:
-    """Give one row for all nodes, or one for each."""
+    """Give one row for all nodes, or one row for each node."""
     if field is None:
         return None
     array = numbers(name, field, most=2)
@@ -34,7 +34,7 @@ def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64
 
 
 class Problem:
-    """An elastic body that may strike rigid planes: everything to be simulated, checked.
+    """An elastic body that may strike rigid planes, checked at its creation.
 
     Parameters
     ----------

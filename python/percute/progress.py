@@ -1,4 +1,4 @@
-"""Showing how far a computation is."""
+"""Progress of a computation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ProgressOption = bool | Callable[[Progress], object] | None
 
 WIDTH = 32
 COUNTED = ("simulating", "estimating")
-"""What is done step by step; all else is told in per cent."""
+"""Stages that count steps; others are shown in per cent."""
 
 
 class _Display(Protocol):
@@ -44,7 +44,7 @@ class _Line:
         self.start = 0.0
 
     def text(self, progress: Progress) -> tuple[str, float]:
-        """Say how far it is, with the time left, and as a fraction."""
+        """Give the progress with the remaining time, and as a fraction."""
         now = time.monotonic()
         if progress.stage != self.stage:
             self.stage, self.start = progress.stage, now
@@ -56,7 +56,7 @@ class _Line:
 
 
 class _Terminal(_Line):
-    """A line of text that is written over."""
+    """A line of text that is overwritten."""
 
     def __call__(self, progress: Progress) -> None:
         text, fraction = self.text(progress)
@@ -70,7 +70,7 @@ class _Terminal(_Line):
 
 
 class _Notebook(_Line):
-    """An output of the cell that is updated."""
+    """An updated output of the cell."""
 
     def __init__(self, display: Any, as_html: Any) -> None:
         super().__init__()
@@ -96,7 +96,7 @@ class _Notebook(_Line):
 
 
 def _display() -> _Display | None:
-    """Choose a display for where output goes; none where nobody would see it."""
+    """Choose a display for the output; none if it would not be visible."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is not None and type(shell).__name__ == "ZMQInteractiveShell":
@@ -108,7 +108,7 @@ def _display() -> _Display | None:
 
 @contextmanager
 def shown(progress: ProgressOption) -> Iterator[Callable[[Progress], object] | None]:
-    """Give what is to be told, for an option ``progress``, and clean up at the end."""
+    """Give the callback of an option ``progress``, and clean up at the end."""
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise wrong("progress", progress, "True, False or a function that is called with a Progress")
     if progress is not True:

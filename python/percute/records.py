@@ -1,4 +1,4 @@
-"""What an estimate consists of."""
+"""Parts of an estimate."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class OverTime:
 
 @dataclass(frozen=True)
 class WorstElement:
-    """An element and what it contributes."""
+    """An element and its contribution."""
 
     element: int
     """Its number."""
@@ -65,7 +65,7 @@ class WorstElement:
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class ElementMap:
-    """What each element contributes at an instant, and on request the admissible fields there."""
+    """Contributions of the elements at an instant, and on request the admissible fields."""
 
     time: float
     """t_n (s)."""

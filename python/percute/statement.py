@@ -1,4 +1,4 @@
-"""The words in which a problem is stated: values, compared and shown by their contents.
+"""The statement of a problem: values, compared and shown by their contents.
 
 The types of their parts are checked here; whether they make sense on a mesh is checked when `Problem` puts them together.
 """
@@ -26,7 +26,7 @@ def _vector(name: str, value: object) -> Vector:
 
 
 def _table(name: str, value: object, time: object, columns: int | None) -> tuple[Vector | Rows, Vector | None]:
-    """Check a value that is constant, or has a row for each instant."""
+    """Check a value that is constant or has a row for each instant."""
     if time is None:
         constant = _vector(name, value)
         if columns is not None and len(constant) != columns:

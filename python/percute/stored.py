@@ -26,11 +26,11 @@ FIELDS = {
     "admissible_stress": "stress",
     "compatible_stress": "compatible_stress",
 }
-"""Data sets, and what they are called here."""
+"""Data sets, and their names here."""
 
 
 class _Report:
-    """The report in a file; what it lacks is an error that says so."""
+    """The report in a file; a missing part is an error."""
 
     def __init__(self, path: str, text: str) -> None:
         self.path = path
@@ -66,7 +66,7 @@ class _Report:
 
 
 class StoredEstimate:
-    """What a file says, in the words of `percute._percute.EstimateData`; all is checked at once, but the maps read later."""
+    """The contents of a file, with the interface of `percute._percute.EstimateData`. All is checked at once; the maps are read later."""
 
     def __init__(self, path: str) -> None:
         self.path = path
@@ -110,23 +110,23 @@ class StoredEstimate:
         return self._residuals
 
     def given(self) -> tuple[bool, bool]:
-        """Whether the history brought velocities, and accelerations."""
+        """Whether the history had its own velocities and accelerations."""
         velocity, acceleration = self._given
         return velocity, acceleration
 
     def options(self) -> tuple[str, str, int]:
-        """The choices it was made with."""
+        """Its options."""
         reconstruction, acceleration = self._options
         return reconstruction, acceleration, self._every
 
     def worst_elements(self, count: int) -> list[tuple[int, float]]:
-        """The elements that contribute most, largest first; of equal ones the one with the lower number."""
+        """The largest contributions of elements, largest first; equal ones by element number."""
         errors = self.by_element()
         order = np.argsort(-errors, kind="stable")[:count]
         return [(int(element), float(errors[element])) for element in order]
 
     def maps(self) -> list[dict[str, Any]]:
-        """What each element contributes at the instants of the file."""
+        """Contributions of the elements at the instants of the file."""
         times, columns = self._data.maps()
         d = self.mesh.dimension
         found = {}
@@ -139,7 +139,7 @@ class StoredEstimate:
         return [{"time": time, **{name: column[i] for name, column in found.items()}} for i, time in enumerate(times)]
 
     def contact(self) -> dict[str, Any] | None:
-        """What contact did, if the file holds it."""
+        """Contact results, if the file has them."""
         return self._data.contact()
 
     def to_json(self, name: str) -> str:
