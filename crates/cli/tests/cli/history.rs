@@ -151,7 +151,7 @@ fn outputs_are_checked_before_any_work() {
         (&["run", "case.toml", "--history", "a.svg", "--picture", "a.svg"], 2, "is the file of --history too"),
         (&["run", "case.toml", "--history", "none/a"], 1, "--history: cannot write none/a"),
         (&["run", "case.toml", "--estimate", "none/a"], 1, "--estimate: cannot write none/a"),
-        (&["simulate", "case.toml", "--history", "folder", "--force"], 1, "no regular file"),
+        (&["simulate", "case.toml", "--history", "folder", "--force"], 1, "not a regular file"),
         (&["run", "case.toml", "--history", "a", "--picture", "a.png"], 2, "ends in .svg"),
     ];
     for (arguments, code, phrase) in wrong {
@@ -367,5 +367,5 @@ fn what_an_estimate_file_holds_needs_one() {
     }
     let said = bench.percute(&["run", "case.vtkhdf"]);
     assert_eq!(said.status.code(), Some(2));
-    assert!(stderr(&said).contains("a history is for `percute estimate`"), "{}", stderr(&said));
+    assert!(stderr(&said).contains("use `percute estimate` for a history"), "{}", stderr(&said));
 }

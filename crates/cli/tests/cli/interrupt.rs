@@ -142,7 +142,7 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     child.kill().unwrap();
     child.wait().unwrap();
     let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
-    assert!(info.contains("NOT FINISHED"), "{info}");
+    assert!(info.contains("INCOMPLETE"), "{info}");
     let estimate = ["estimate", "case.vtkhdf", "--json", "--every", "1000"];
     let before = bench.percute(&estimate);
     assert_eq!(before.status.code(), Some(0), "{}", stderr(&before));

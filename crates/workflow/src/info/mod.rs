@@ -216,7 +216,7 @@ impl HistoryInfo {
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| format!("{steps} steps"));
         let ended =
-            if self.complete { "complete" } else { "INCOMPLETE: its run continues or was killed (percute recover)" };
+            if self.complete { "complete" } else { "INCOMPLETE (running, or killed)" };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));
