@@ -104,7 +104,7 @@ class _Exact:
         except ValueError:
             shapes = ", ".join(f"`{each}` has the shape {value.shape}" for each, value in zip(at, given, strict=True))
             raise InputError(f"{shapes}; they cannot be broadcast") from None
-        return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(rows.shape[:-1])
+        return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(np.broadcast_shapes(*map(np.shape, at.values())))
 
 
 class _Bar(_Exact):
@@ -180,7 +180,7 @@ class _Bar(_Exact):
         outside = (places < 0) | (places > self.length)
         if outside.any():
             raise InputError(f"`x` holds {places[outside][0]:g} m; it must lie in the bar, from 0 to {self.length:g} m")
-        return self._evaluate(name, x=places, t=t)
+        return self._evaluate(name, x=x, t=t)
 
 
 class _StruckBar(_Bar):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from percute.history import History
     from percute.problem import Problem
 
-__all__ = ["plot_field", "plot_map", "plot_over_time"]
+__all__ = ["field", "plot_field", "plot_map", "plot_over_time"]
 
 Floats = NDArray[np.float64]
 
@@ -146,8 +146,8 @@ def _stress(problem: Problem, displacement: Floats) -> tuple[Floats, Floats, Flo
     return along * exx + across * eyy, across * exx + along * eyy, xy, out_of_plane * (exx + eyy)
 
 
-def _field(history: History, quantity: str, step: int) -> tuple[Floats, str, str, str]:
-    """Values, name, unit and colours of a quantity."""
+def field(history: History, quantity: str, step: int) -> tuple[Floats, str, str, str]:
+    """Give the values of a quantity at a step, with its name, unit and colours."""
     problem = history.problem
     bar = problem.mesh.dimension == 1
     if quantity in ("displacement", "velocity"):
@@ -171,7 +171,7 @@ def plot_field(history: History, quantity: str, step: int, scale: float, axes: A
     if not -len(history) <= whole("step", step, least=-LARGEST) < len(history):
         raise wrong("step", step, f"from {-len(history)} to {len(history) - 1}: the history holds {len(history)} instants")
     scale = number("scale", scale, finite=True)
-    values, name, unit, colours = _field(history, text("quantity", quantity), step)
+    values, name, unit, colours = field(history, text("quantity", quantity), step)
     axes = _axes(axes)
     mesh = history.problem.mesh
     factor, prefix = _prefix(values)

@@ -9,7 +9,7 @@ from typing import Any
 
 import percute as pc
 
-__all__ = ["BAR", "Outcome", "Setting"]
+__all__ = ["BAR", "WHOLE", "Outcome", "Setting"]
 
 BAR = {"length": 0.1, "young": 70e9, "density": 2700.0, "section": 0.02, "speed": 400.0}
 """The bar of the paper's §7.1.4, but for the gap, which the paper does not state."""
@@ -23,8 +23,8 @@ class Outcome:
 
     exact: tuple[float, float]
     """Largest and mean true error (J^½), eq. [60]."""
-    estimates: list[tuple[float, float]]
-    """Largest and mean estimated error (J^½) of each choice."""
+    estimates: list[tuple[float, ...]]
+    """Largest and mean estimated error (J^½) of each choice, and both relative to their denominators, eq. [22]."""
 
     def effectivity(self, choice: int) -> tuple[float, float]:
         """Give e_RdC/e_Ex, of the largest and the mean error."""
@@ -63,4 +63,5 @@ class Setting:
         history = pc.simulate(problem, end=count * self.step, step=self.step, progress=stop)
         estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
-        return Outcome((true.sup, true.mean), [(each.sup, each.mean) for each in estimates])
+        errors = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
+        return Outcome((true.sup, true.mean), errors)

@@ -140,8 +140,8 @@ def _ticks(axis: Any, ticks: Sequence[float]) -> None:
 
 def lines(
     panels: Sequence[tuple[str, Sequence[Curve]]],
-    x: str,
-    y: str,
+    x: str | Sequence[str],
+    y: str | Sequence[str],
     *,
     log: str = "",
     columns: int = 1,
@@ -150,17 +150,19 @@ def lines(
     yticks: Sequence[float] | None = None,
     zero: bool = False,
 ) -> Drawing:
-    """Draw curves in panels with the same axes and one legend below.
+    """Draw curves in panels with one legend below.
 
-    ``panels`` are titles with curves, ``log`` names the logarithmic axes ("x", "y" or "xy"), ``band`` is a range of y that is
-    marked, ``zero`` lets y begin at 0.
+    ``panels`` are titles with curves. They have the same axes, unless ``x`` and ``y`` are lists with a label for each.
+    ``log`` names the logarithmic axes ("x", "y" or "xy"), ``band`` is a range of y that is marked, ``zero`` lets y begin at 0.
     """
     import matplotlib as mpl
 
     with mpl.rc_context(STYLE):
-        figure, all_axes = _panels(len(panels), columns)
+        shared = isinstance(x, str) and isinstance(y, str)
+        labels = [[x] * len(panels) if isinstance(x, str) else x, [y] * len(panels) if isinstance(y, str) else y]
+        figure, all_axes = _panels(len(panels), columns, shared=shared)
         entries: dict[str, Any] = {}
-        for axes, (title, curves) in zip(all_axes, panels, strict=True):
+        for axes, (title, curves), across, up in zip(all_axes, panels, *labels, strict=True):
             for k, curve in enumerate(curves):
                 # The first curve lies over the others.
                 look = {"color": curve.colour, "ls": "--" if curve.dashed else "-", "marker": "o" if curve.marked else None, "zorder": 3 - k / 100}
@@ -169,7 +171,7 @@ def lines(
             if band is not None:
                 axes.axhspan(*band, color=PALETTE[2], alpha=0.14, linewidth=0)
             axes.set_title(title)
-            axes.set(xlabel=x, ylabel=y)
+            axes.set(xlabel=across, ylabel=up)
             if "x" in log:
                 axes.set_xscale("log")
             if "y" in log:

@@ -77,8 +77,8 @@ class Table:
     caption: str
     columns: Sequence[Column]
     rows: list[list[Cell]] = field(default_factory=list)
-    on_page: bool = True
-    """Whether its rows are on the page; else the page names its CSV file."""
+    on_page: bool | dict[str, Cell] = True
+    """Whether its rows are on the page, or which ones: those with these cells. For the others the page names the CSV file."""
 
     def add(self, *cells: Cell) -> None:
         """Add a row; missing cells at its end are empty, as are numbers that are not finite."""
@@ -209,9 +209,13 @@ class _Markdown:
         if not table.on_page:
             return f"**Table {number}.** {table.caption} (`tables/{table.key}.csv`, {len(table.rows)} rows)"
         head = [" ".join(filter(None, (column.heading, column.equation))) for column in table.columns]
-        rows = [head, ["---"] * len(head), *([text.replace("|", "\\|") for text in row] for row in table.shown())]
+        names = [column.name for column in table.columns]
+        picked = [(names.index(name), cell) for name, cell in table.on_page.items()] if isinstance(table.on_page, dict) else []
+        shown = [text for row, text in zip(table.rows, table.shown(), strict=True) if all(row[i] == cell for i, cell in picked)]
+        rows = [head, ["---"] * len(head), *([text.replace("|", "\\|") for text in row] for row in shown)]
         lines = (f"| {' | '.join(row)} |" for row in rows)
-        return f"**Table {number}.** {table.caption}\n\n" + "\n".join(lines)
+        others = f" ({len(table.rows)} rows in `tables/{table.key}.csv`)" if picked else ""
+        return f"**Table {number}.** {table.caption}{others}\n\n" + "\n".join(lines)
 
 
 def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, str]) -> Iterator[tuple[Section, list[str], list[str]]]:

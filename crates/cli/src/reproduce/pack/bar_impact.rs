@@ -96,7 +96,7 @@ fn aluminium_trial(
     let steps = (exact.length / elements as f64) * COURANT / exact.wave_speed();
     exact.gap = (FLIGHT + gap) * steps * exact.speed;
     let end = exact.release_time() + 0.5 * (exact.release_time() - exact.impact_time());
-    let text = CaseText::new("bar_impact", include_str!("../../../../../examples/pack/bar_impact.toml"));
+    let text = CaseText::new("bar_impact", include_str!("../../../../../python/percute/verification/benchmarks/cases/bar_impact.toml"));
     let text = text.bar(exact.length, elements)?.number("point", -exact.gap)?.number("end", end)?;
     Ok((bar(&text, tally)?, exact))
 }
@@ -124,7 +124,7 @@ pub(super) fn aluminium(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError
 pub(super) fn steel(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
     let (mut meshes, mut step) = (Vec::new(), f64::NAN);
     for elements in MESHES {
-        let text = CaseText::new("steel_bar", include_str!("../../../../../examples/pack/steel_bar.toml"));
+        let text = CaseText::new("steel_bar", include_str!("../../../../../python/percute/verification/benchmarks/cases/steel_bar.toml"));
         let trial = bar(&text.bar(STEEL.length, elements)?, tally)?;
         meshes.push(vec![measure(&trial, &STEEL)?]);
         step = trial.step();

@@ -45,7 +45,7 @@ pub(super) fn bouncing(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError>
     let exact = exact()?;
     let (mut runs, mut curve) = (Vec::new(), None);
     for elements in MESHES {
-        let text = CaseText::new("bouncing_bar", include_str!("../../../../../examples/pack/bouncing_bar.toml"));
+        let text = CaseText::new("bouncing_bar", include_str!("../../../../../python/percute/verification/benchmarks/cases/bouncing_bar.toml"));
         let trial = bar(&text.bar(10.0, elements)?, tally)?;
         runs.push(measure(&trial, &exact));
         let time = trial.times().to_vec();

@@ -35,7 +35,7 @@ pub(super) fn clamped(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> 
     let (mut runs, mut curve) = (Vec::new(), None);
     for elements in MESHES {
         let start = (0..=elements).map(|i| ROD.displacement(i as f64 / elements as f64, 0.0));
-        let text = CaseText::new("clamped_rod", include_str!("../../../../../examples/pack/clamped_rod.toml"));
+        let text = CaseText::new("clamped_rod", include_str!("../../../../../python/percute/verification/benchmarks/cases/clamped_rod.toml"));
         let trial = bar(&text.bar(ROD.length, elements)?.bar_start(start)?, tally)?;
         runs.push(measure(&trial));
         let time = trial.times().to_vec();

@@ -13,7 +13,7 @@ const STIFFNESS: [f64; 4] = [3.2e6, 1.28e7, 5.12e7, 2.048e8];
 pub(super) const TILT_RUNS: usize = 2 * STIFFNESS.len();
 pub(super) const STICK_SLIP_RUNS: usize = STIFFNESS.len();
 
-const TILTED_PLANE: &str = include_str!("../../../../../examples/pack/tilted_plane.toml");
+const TILTED_PLANE: &str = include_str!("../../../../../python/percute/verification/benchmarks/cases/tilted_plane.toml");
 
 const DENSITY: f64 = 1000.0;
 const GRAVITY: f64 = 9.81;
@@ -125,7 +125,7 @@ pub(super) fn stick_slip(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceErro
     let [mut apart, mut energy] = [const { Vec::new() }; 2];
     let (mut dissipated, mut shown) = (f64::NAN, None);
     for young in STIFFNESS {
-        let text = CaseText::new("stick_slip", include_str!("../../../../../examples/pack/stick_slip.toml"));
+        let text = CaseText::new("stick_slip", include_str!("../../../../../python/percute/verification/benchmarks/cases/stick_slip.toml"));
         let trial = plane(&pressed(text, [0.4, 0.05], [1, 1], young, DENSITY * GRAVITY)?, tally)?;
         let mass = trial.mass();
         let push = PUSH.map(|(t, f)| (t, f * mass / DENSITY));

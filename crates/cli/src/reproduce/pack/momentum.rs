@@ -25,7 +25,7 @@ const HALF_MASS: &str =
 const STEP: &str = "forces and paths of the same steps, and of steps beside each other: order 1";
 
 fn run(cells: usize, velocity: f64, friction: f64, tally: &mut Tally<'_>) -> Result<Trial<2, 3>, ReproduceError> {
-    let text = CaseText::new("oblique", include_str!("../../../../../examples/pack/oblique.toml"));
+    let text = CaseText::new("oblique", include_str!("../../../../../python/percute/verification/benchmarks/cases/oblique.toml"));
     let text = text.rectangle([0.05, HEIGHT], [cells, cells * 4 / 5])?.number("friction", friction)?;
     plane(&text.with("velocity", &format!("[{velocity:e}, {:e}]", -SPEED))?, tally)
 }

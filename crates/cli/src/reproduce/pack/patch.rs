@@ -25,7 +25,7 @@ fn row(quantity: String, unit: &'static str, exact: f64, computed: f64, within: 
 
 /// Case 8, a free body: no error for any choice of the method.
 pub(super) fn free(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
-    let text = CaseText::new("patch", include_str!("../../../../../examples/pack/patch.toml"));
+    let text = CaseText::new("patch", include_str!("../../../../../python/percute/verification/benchmarks/cases/patch.toml"));
     let case = text.read_plane()?;
     let mut rows = Vec::new();
     for &reconstruction in Reconstruction::ALL {
@@ -41,7 +41,7 @@ pub(super) fn free(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
 
 /// Case 8, pressed and sheared against the ground: the density of the reactions is uniform.
 pub(super) fn contact(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
-    let text = CaseText::new("patch_contact", include_str!("../../../../../examples/pack/patch_contact.toml"));
+    let text = CaseText::new("patch_contact", include_str!("../../../../../python/percute/verification/benchmarks/cases/patch_contact.toml"));
     let trial = plane(&text, tally)?;
     let Some(steps) = &trial.contact.steps else { return Err(text.unexpected("no steps were kept")) };
     let count = trial.contact.nodes.len();

@@ -57,7 +57,7 @@ pub(super) fn bar_mode(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError>
     let (mut largest, mut energy) = (Vec::new(), Vec::new());
     for elements in BARS {
         let start = (0..=elements).map(|i| MODE.displacement(MODE.length * i as f64 / elements as f64, 0.0));
-        let text = CaseText::new("bar_mode", include_str!("../../../../../examples/pack/bar_mode.toml"));
+        let text = CaseText::new("bar_mode", include_str!("../../../../../python/percute/verification/benchmarks/cases/bar_mode.toml"));
         let trial = bar(&text.bar(MODE.length, elements)?.bar_start(start)?, tally)?;
         let last = trial.times().len() - 1;
         let apart = |(x, u): (&[f64; 1], &[f64; 1])| (u[0] - MODE.displacement(x[0], trial.times()[last])).abs();
@@ -107,7 +107,7 @@ fn block_error(mode: &BlockMode, cells: usize, tally: &mut Tally<'_>) -> Result<
         [0, 1].map(|c| if at[c] == 0 || at[c] == counts[c] { 0.0 } else { u[c] })
     });
     let end = 1.2 * std::f64::consts::TAU / mode.angular_frequency();
-    let text = CaseText::new("block_mode", include_str!("../../../../../examples/pack/block_mode.toml"));
+    let text = CaseText::new("block_mode", include_str!("../../../../../python/percute/verification/benchmarks/cases/block_mode.toml"));
     let trial = plane(&text.rectangle(mode.sides, counts)?.plane_start(start)?.number("end", end)?, tally)?;
     let problem = &trial.case.problem;
     let last = trial.times().len() - 1;
@@ -141,7 +141,7 @@ pub(super) fn ramp(tally: &mut Tally<'_>) -> Result<Outcome, ReproduceError> {
     let (mut mean, mut energy, mut end, mut shown) = (Vec::new(), Vec::new(), Vec::new(), None);
     let mut exact_end = f64::NAN;
     for elements in RAMPS {
-        let text = CaseText::new("bar_ramp", include_str!("../../../../../examples/pack/bar_ramp.toml"));
+        let text = CaseText::new("bar_ramp", include_str!("../../../../../python/percute/verification/benchmarks/cases/bar_ramp.toml"));
         let trial = bar(&text.bar(RAMP.length, elements)?, tally)?;
         let last = trial.times().len() - 1;
         let time = trial.times()[last];

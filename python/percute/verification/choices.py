@@ -1,0 +1,19 @@
+"""The choices of the method: reconstructions of the contact force and fields Γ_DA, the default first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["ACCELERATIONS", "CHOICES", "DEFAULT", "RECONSTRUCTIONS", "of_default"]
+
+RECONSTRUCTIONS = ("corrected", "consistent", "published")
+ACCELERATIONS = ("closest", "rigid", "weak")
+CHOICES: list[dict[str, Any]] = [{"reconstruction": r, "acceleration": a} for r in RECONSTRUCTIONS for a in ACCELERATIONS]
+"""All pairs, as arguments of `percute.estimate`."""
+DEFAULT = ACCELERATIONS[0]
+"""The default Γ_DA."""
+
+
+def of_default(reconstruction: str) -> int:
+    """Give the place of a reconstruction with the default Γ_DA among the choices."""
+    return CHOICES.index({"reconstruction": reconstruction, "acceleration": DEFAULT})
