@@ -63,5 +63,5 @@ class Setting:
         history = pc.simulate(problem, end=count * self.step, step=self.step, progress=stop)
         estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
-        errors = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
+        errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
         return Outcome((true.sup, true.mean), errors)

@@ -270,7 +270,7 @@ def _draw_sweep(table: Table) -> Drawing:
     """Draw a panel for each measure and step, with a curve for each reconstruction."""
 
     def curve(k: int, name: str, measure: str, ratio: float) -> figures.Curve:
-        of = {"contact force": name, "Δt/Δt_c": ratio}
+        of: dict[str, str | float | int | None] = {"contact force": name, "Δt/Δt_c": ratio}
         return figures.Curve(name, table.where("fraction", of), table.where(measure, of), figures.own(k), marked=True)
 
     panels = [

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from percute.errors import PercuteError
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure as Drawing
 
-    from percute.mesh import Mesh
 else:
     Drawing = object
 
@@ -25,7 +25,7 @@ __all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", 
 PALETTE = ("#2f79c8", "#da6228", "#24966e", "#9b55be", "#c83c64", "#967d1e", "#1496af", "#828791", "#a56450")
 INK, FAINT, GRID = "#282830", "#6e6e78", "#e1e2e8"
 AROUND = ("#214b8c", "#78aad7", "#f0eee2", "#ec965a", "#a02823")
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8.5,
     "axes.titlesize": 9,
@@ -56,8 +56,8 @@ class Curve:
     """A curve; it is broken where a value is not finite. Curves of one name have one entry in the legend."""
 
     name: str
-    x: Sequence[float]
-    y: Sequence[float]
+    x: Sequence[float] | NDArray[np.float64]
+    y: Sequence[float] | NDArray[np.float64]
     colour: str = INK
     dashed: bool = False
     marked: bool = False
@@ -97,14 +97,17 @@ def ratio(label: str, low: float, high: float) -> Colours:
     """Give colours from dark to light between two positive values, in equal ratios."""
     from matplotlib import colormaps, colors
 
-    return Colours(label, colors.LogNorm(low, high if high > low else 2.0 * low), colormaps["viridis"])
+    high = high if high > low else 2.0 * low
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
+    ticks = [digit * 10.0**power for power in powers for digit in (1, 2, 5) if low <= digit * 10.0**power <= high]
+    return Colours(label, colors.LogNorm(low, high), colormaps["viridis"], ticks)
 
 
 def around_one(label: str, factor: float) -> Colours:
     """Give colours that are blue below 1, pale at 1 and red above, from 1/``factor`` to ``factor``: for effectivities."""
     from matplotlib import colors
 
-    ticks = [tick for tick in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0) if 1 / factor <= tick <= factor]
+    ticks = [tick for tick in (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0) if 1 / factor <= tick <= factor]
     return Colours(label, colors.LogNorm(1 / factor, factor), colors.LinearSegmentedColormap.from_list("around", AROUND), ticks)
 
 
@@ -235,7 +238,7 @@ def heat_maps(
 
 
 def mesh_maps(
-    maps: Sequence[tuple[str, Mesh, Any]],
+    maps: Sequence[tuple[str, Any, Any]],
     colours: Colours,
     *,
     columns: int = 1,
@@ -243,27 +246,29 @@ def mesh_maps(
 ) -> Drawing:
     """Draw a value for each triangle of meshes, in panels with one bar of colours.
 
-    ``maps`` are titles with a mesh (or any object with ``points`` and ``cells``) and a value for each element; ``plane`` is the
-    height of a horizontal plane (m), if one is to be drawn.
+    ``maps`` are titles with a mesh, or any object with ``points`` and ``cells``, and a value for each element; ``plane`` is the
+    height of a horizontal rigid plane (m), which is grey.
     """
     import matplotlib as mpl
 
     with mpl.rc_context(STYLE | {"axes.grid": False}):
-        sides = [np.ptp(mesh.points, axis=0) for _, mesh, _ in maps]
+        corners = 1e3 * np.concatenate([mesh.points for _, mesh, _ in maps])
+        room = 0.04 * np.ptp(corners, axis=0).max()
+        (left, low), (right, high) = corners.min(axis=0) - room, corners.max(axis=0) + room
         columns = min(columns, len(maps))
-        height = WIDTHS[columns - 1] / (columns + 0.35) * max(side[1] / side[0] for side in sides) + 0.35
+        height = (WIDTHS[columns - 1] / columns - 0.75) * (high - low) / (right - left) + 0.5
         figure, all_axes = _panels(len(maps), columns, height)
         image = None
         for axes, (title, mesh, values) in zip(all_axes, maps, strict=True):
             x, y = 1e3 * mesh.points.T
-            image = axes.tripcolor(x, y, mesh.cells, facecolors=np.asarray(values), cmap=colours.map, norm=colours.norm)
+            look = {"cmap": colours.map, "norm": colours.norm, "antialiased": False, "rasterized": True}
+            image = axes.tripcolor(x, y, mesh.cells, facecolors=np.asarray(values), **look)
             if plane is not None:
+                axes.axhspan(low, 1e3 * plane, color=GRID, linewidth=0)
                 axes.axhline(1e3 * plane, color=FAINT, linewidth=1.0)
             axes.set_title(title)
-            axes.set_aspect("equal")
-            axes.set(xticks=[], yticks=[])
-            for spine in axes.spines.values():
-                spine.set_visible(False)
+            axes.set(aspect="equal", xlim=(left, right), ylim=(low, high), xlabel="x (mm)", ylabel="y (mm)")
+            axes.label_outer()
         _bar(figure, image, all_axes, colours)
     return figure
 

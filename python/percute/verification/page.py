@@ -8,7 +8,7 @@ import html
 import io
 import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -86,7 +86,7 @@ class Table:
         row = [cell if cell is None or isinstance(cell, str | int) else float(cell) for cell in row]
         self.rows.append(row + [None] * (len(self.columns) - len(row)))
 
-    def where(self, column: str, equal: dict[str, Cell] | None = None) -> list[Any]:
+    def where(self, column: str, equal: Mapping[str, Cell] | None = None) -> list[Any]:
         """Give the cells of a column in the rows whose other columns have these values; NaN where a cell is empty."""
         at = {each.name: i for i, each in enumerate(self.columns)}
         wanted = [(at[name], cell) for name, cell in (equal or {}).items()]

@@ -13,7 +13,8 @@ from percute._percute import Progress
 
 __all__ = ["Resolution"]
 
-T, R = TypeVar("T"), TypeVar("R")
+T = TypeVar("T")
+R = TypeVar("R")
 POLL = 0.05
 """How often progress is shown and Ctrl-C looked for (s)."""
 

@@ -59,7 +59,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     steps = [int(np.argmin(abs(history.time - time))) for time in times]
     titles = [f"t = {short(1e6 * time, 3)} µs" for time in times]
     bodies = [Body(history.problem.mesh.points + history.displacement[n], history.problem.mesh.cells) for n in steps]
-    height = history.problem.obstacles[0].point[1]  # type: ignore[index]
+    height = float(np.asarray(history.problem.obstacles[0].point)[1])
 
     def draw(values: Sequence[Floats], colours: figures.Colours) -> Drawing:
         return figures.mesh_maps(list(zip(titles, bodies, values, strict=True)), colours, columns=3, plane=height)
