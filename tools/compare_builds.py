@@ -19,6 +19,7 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
+CASES = ("examples", "python/percute/verification/benchmarks/cases")
 # Option and values by the names that a build knows.
 NAMES = {
     "--reconstruction": ("corrected", "consistent", "published"),
@@ -156,7 +157,7 @@ def main() -> int:
     wanted = set(filter(None, options.only.split(",")))
     failures = 0
     with tempfile.TemporaryDirectory() as folder:
-        for case in sorted((ROOT / "examples").rglob("*.toml")):
+        for case in sorted(path for folder in CASES for path in (ROOT / folder).glob("*.toml")):
             if wanted and case.stem not in wanted:
                 continue
             difference = compare(case, (options.old.resolve(), options.new.resolve()), Path(folder), options.tolerance)

@@ -189,13 +189,8 @@ SWEPT = (
 def _ranges(grid: Grid) -> list[str]:
     """State the ranges of the effectivities with the default Γ_DA."""
     of = {(name, m, end): Summary(grid.effectivities(of_default(name), m, _until(end))) for name in RECONSTRUCTIONS for m in (0, 1) for end in ENDS}
-    each = (
-        f"with `{name}` " + ", ".join(
-            f"{short(s.low, 2)} to {short(s.high, 3)} (`{MEASURES[m]}`, T = t_c + {end:g} L/c; {percent(s.within)} of the values within the paper's range)"
-            for (other, m, end), s in of.items() if other == name
-        )
-        for name in RECONSTRUCTIONS
-    )  # fmt: skip
+    whole = {name: [s for (other, *_), s in of.items() if other == name] for name in RECONSTRUCTIONS}
+    spans = [f"{short(min(s.low for s in each), 2)} to {short(max(s.high for s in each), 3)} with `{name}`" for name, each in whole.items()]
     wider = []
     for m, end in product((0, 1), ENDS):
         own, least = of["corrected", m, end].ratio, min(of[name, m, end].ratio for name in RECONSTRUCTIONS[1:])
@@ -205,10 +200,10 @@ def _ranges(grid: Grid) -> list[str]:
     below = [Summary(grid.effectivities(of_default("corrected"), m, lambda s: s.after_impact == ENDS[1] and s.ratio < 1)) for m in (0, 1)]
     ranges = " and ".join(f"{short(s.low, 3)} to {short(s.high, 3)} (`{name}`)" for s, name in zip(below, MEASURES, strict=True))
     return [
-        f"The paper finds effectivities from {PAPER[0]} to {PAPER[1]} and does not state of which measure. Over all runs and with Γ_DA `{DEFAULT}` they "
-        f"are: {'; '.join(each)}. The highest means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but for the step "
-        "of the impact. The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind the front: "
-        "a measure whose balance is that of the simulation's own displacements does not contain the accumulated error.",
+        f"The paper finds effectivities from {PAPER[0]} to {PAPER[1]} and does not state of which measure. Over all runs and both measures, with Γ_DA "
+        f"`{DEFAULT}`, they are {', '.join(spans)}. The highest means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but "
+        "for the step of the impact. The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind "
+        "the front: a measure whose balance is that of the simulation's own displacements does not contain the accumulated error.",
         "`corrected` balances an auxiliary solution with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c "
         "in the runs that go on beyond the contact. There the simulation is at its limit of stability, and its shortest wave, once the release has excited "
         "it, grows with time. That of the auxiliary solution does not grow, but the release excites it as well, and about half of that is missing in the "

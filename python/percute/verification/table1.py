@@ -87,7 +87,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         f"`corrected` with `{DEFAULT}`.",
         "The paper does not state the distance from which the block starts, the end T of the interval, and whether the block is in plane "
         "stress or plane strain. Taken here: plane stress, a gap that the block crosses in 1.3 steps, and the first whole step past "
-        f"{short(1e6 * base.past, 3)} µs. The second table shows the influence of each.",
+        f"{short(1e6 * base.past, 3)} µs. The influence of each is below.",
         Figure("table1-errors", CAPTION, _draw(absolute)),
         *_conclusions(rows, own),
         absolute,
