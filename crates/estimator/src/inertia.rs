@@ -10,54 +10,90 @@ use crate::options::Acceleration;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
-    /// x_i − centroid turned by a quarter, the unit rotation at node i; zero in 1D.
-    rotation: [[f64; D]; N],
-    /// 1/Σ|x_i − centroid|².
+    /// The first D(D − 1)/2 of them are the rotations of the element.
+    rotations: [Rotation<D, N>; D],
+}
+
+/// A rotation about the centroid, orthogonal to the others.
+#[derive(Clone, Copy, Debug)]
+struct Rotation<const D: usize, const N: usize> {
+    /// Its values at the nodes (m).
+    field: [[f64; D]; N],
+    /// 1 over the sum of their squares (1/m²).
     inverse: f64,
 }
 
+/// Places of the nodes from the centroid (m), from differences, so that a distant origin costs no digits.
+pub(crate) fn arms<const D: usize, const N: usize>(points: &[[f64; D]; N]) -> [[f64; D]; N] {
+    points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64))
+}
+
+/// Number of rotations.
+const fn rotation_count(dimension: usize) -> usize {
+    dimension * (dimension - 1) / 2
+}
+
 impl<const D: usize, const N: usize> Inertia<D, N> {
-    pub(crate) fn new(choice: Acceleration, points: &[[f64; D]; N]) -> Self {
-        let mut rotation = [[0.0; D]; N];
-        let mut sum = 0.0;
-        if D == 2 {
-            for i in 0..N {
-                // From differences, so that a distant origin costs no digits.
-                let arm = |c: usize| (0..N).map(|j| points[i][c] - points[j][c]).sum::<f64>() / N as f64;
-                rotation[i][0] = -arm(1);
-                rotation[i][1] = arm(0);
-                sum += rotation[i].iter().map(|r| r * r).sum::<f64>();
+    pub(crate) fn new(choice: Acceleration, arms: &[[f64; D]; N]) -> Self {
+        let mut rotations = [Rotation { field: [[0.0; D]; N], inverse: 0.0 }; D];
+        let planes = (1..D).flat_map(|b| (0..b).map(move |a| (a, b)));
+        for (at, (a, b)) in planes.enumerate() {
+            let (earlier, later) = rotations.split_at_mut(at);
+            let field = &mut later[0].field;
+            for (value, arm) in field.iter_mut().zip(arms) {
+                (value[a], value[b]) = (-arm[b], arm[a]);
             }
+            earlier.iter().for_each(|rotation| rotation.remove_from(field));
+            let square: f64 = field.iter().map(|value| value.iter().map(|x| x * x).sum::<f64>()).sum();
+            later[0].inverse = 1.0 / square;
         }
-        Self { choice, rotation, inverse: if D == 2 { 1.0 / sum } else { 0.0 } }
+        Self { choice, rotations }
     }
 
     /// Γ_DA/ρ at the nodes (m/s²), or its time integral.
     #[inline(always)]
     pub(crate) fn apply(&self, nodal: &[[f64; D]; N]) -> [[f64; D]; N] {
         let mut mean = [0.0; D];
-        let mut turning = 0.0;
-        for i in 0..N {
-            for c in 0..D {
-                mean[c] += nodal[i][c] / N as f64;
-                turning += nodal[i][c] * self.rotation[i][c];
-            }
+        for value in nodal {
+            (0..D).for_each(|c| mean[c] += value[c] / N as f64);
         }
-        turning *= self.inverse;
-        let mut field = *nodal;
-        for i in 0..N {
-            for c in 0..D {
-                field[i][c] = match self.choice {
-                    // The lumped moment is four times that of the linear field, whose own is
-                    // turning: add the other three.
-                    Acceleration::Closest => nodal[i][c] + 3.0 * turning * self.rotation[i][c],
-                    Acceleration::Rigid => mean[c] + 4.0 * turning * self.rotation[i][c],
-                    // M_consistent Γ/ρ = M_lumped ã.
-                    Acceleration::Weak => (D + 2) as f64 * nodal[i][c] - N as f64 * mean[c],
-                };
+        // The lumped moment is D + 2 times that of the linear field.
+        let (mut field, factor) = match self.choice {
+            // Add the other D + 1.
+            Acceleration::Closest => (*nodal, (D + 1) as f64),
+            Acceleration::Rigid => ([mean; N], (D + 2) as f64),
+            // M_consistent Γ/ρ = M_lumped ã.
+            Acceleration::Weak => {
+                return nodal.map(|a| std::array::from_fn(|c| (D + 2) as f64 * a[c] - N as f64 * mean[c]));
+            }
+        };
+        for rotation in &self.rotations[..rotation_count(D)] {
+            let turning = factor * (rotation.work_on(nodal) * rotation.inverse);
+            for i in 0..N {
+                (0..D).for_each(|c| field[i][c] += turning * rotation.field[i][c]);
             }
         }
         field
+    }
+}
+
+impl<const D: usize, const N: usize> Rotation<D, N> {
+    /// Σ of the products with another nodal field.
+    #[inline(always)]
+    fn work_on(&self, nodal: &[[f64; D]; N]) -> f64 {
+        let mut work = 0.0;
+        for i in 0..N {
+            (0..D).for_each(|c| work += nodal[i][c] * self.field[i][c]);
+        }
+        work
+    }
+
+    /// Makes another nodal field orthogonal to this one.
+    fn remove_from(&self, nodal: &mut [[f64; D]; N]) {
+        let share = self.work_on(nodal) * self.inverse;
+        for i in 0..N {
+            (0..D).for_each(|c| nodal[i][c] -= share * self.field[i][c]);
+        }
     }
 }
 
@@ -88,7 +124,7 @@ mod tests {
     #[test]
     fn resultant_and_moment_are_those_of_the_lumped_mass() {
         for choice in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
-            let map = Inertia::new(choice, &POINTS);
+            let map = Inertia::new(choice, &arms(&POINTS));
             let field = map.apply(&NODAL);
             let rotation = POINTS.map(|p| [-p[1], p[0]]);
             for test in [[[1.0, 0.0]; 3], [[0.0, 1.0]; 3], rotation] {
@@ -104,7 +140,7 @@ mod tests {
     #[test]
     fn closest_is_nearest() {
         let distance = |choice| {
-            let field = Inertia::new(choice, &POINTS).apply(&NODAL);
+            let field = Inertia::new(choice, &arms(&POINTS)).apply(&NODAL);
             let mut difference = field;
             (0..3).for_each(|i| (0..2).for_each(|c| difference[i][c] -= NODAL[i][c]));
             mass_product(1.0, &difference, &difference)
@@ -113,10 +149,27 @@ mod tests {
         assert!(distance(Acceleration::Closest) < distance(Acceleration::Weak));
     }
 
+    /// The rotations are rigid, orthogonal, and as many as the dimension allows.
+    #[test]
+    fn a_tetrahedron_has_three_rotations() {
+        let arms = arms(&[[0.0, 0.1, 0.0], [1.0, 0.0, 0.2], [0.3, 0.9, 0.0], [0.2, 0.3, 1.1]]);
+        let rotations = Inertia::new(Acceleration::Closest, &arms).rotations;
+        for (i, rotation) in rotations.iter().enumerate() {
+            assert!((rotation.work_on(&rotation.field) * rotation.inverse - 1.0).abs() < 1e-14);
+            rotations[..i].iter().for_each(|other| assert!(other.work_on(&rotation.field).abs() < 1e-14));
+            for (p, a) in arms.iter().zip(&rotation.field) {
+                for (q, b) in arms.iter().zip(&rotation.field) {
+                    let stretch: f64 = (0..3).map(|c| (p[c] - q[c]) * (a[c] - b[c])).sum();
+                    assert!(stretch.abs() < 1e-14);
+                }
+            }
+        }
+    }
+
     /// In 1D the consistent mass matrix inverts to the weak field.
     #[test]
     fn weak_bar() {
-        let field = Inertia::new(Acceleration::Weak, &[[0.0], [2.0]]).apply(&[[1.0], [4.0]]);
+        let field = Inertia::new(Acceleration::Weak, &arms(&[[0.0], [2.0]])).apply(&[[1.0], [4.0]]);
         // (1/6)(2Γ_0 + Γ_1) = ½·1 and (1/6)(Γ_0 + 2Γ_1) = ½·4 give Γ = (−2, 7).
         assert_eq!(field, [[-2.0], [7.0]]);
     }

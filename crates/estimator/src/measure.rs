@@ -1,12 +1,12 @@
 //! η of one element (§4.2), exact in space.
 
 use crate::element::Element;
-use crate::inertia::{Inertia, mass_product};
+use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
 use crate::reconstruction::{Form, MOMENTS};
 use crate::residual::{Residuals, worse};
-use crate::stress::{Loading, StressMap, facet_node};
+use crate::stress::{Loading, StressMap, facet_node, facet_position};
 use crate::time_level::{Side, TimeLevel};
 use crate::traction::Equilibration;
 use percute_core::ids::ElementId;
@@ -100,8 +100,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     ) -> Self {
         let points = problem.mesh().cell_points(id);
         let law = problem.material(id);
-        let arms: [[f64; D]; N] =
-            points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64));
+        let arms = arms(&points);
         let reach = arms.iter().flatten().fold(0.0_f64, |m, a| m.max(a.abs()));
         Self {
             element,
@@ -109,7 +108,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             law,
             arms,
             inverse_reach: 1.0 / reach,
-            inertia: Inertia::new(choice, &points),
+            inertia: Inertia::new(choice, &arms),
             stress: StressMap::new(problem.mesh().simplex(), &points, law),
             start: element.gather(problem.initial_velocity()),
         }
@@ -128,11 +127,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let mut acceleration = self.element.gather(&level.acceleration);
         for i in 0..N {
             let (entry, exit) = equilibration.flux_around(level, self.element, i, contact[i], side);
-            if D == 1 {
-                moments[1 - i][0] = if i == 0 { entry.map(|f| -f) } else { *exit };
-            } else {
-                moments[(i + 2) % N][0] = entry.map(|f| -f);
-                moments[(i + 1) % N][D - 1] = *exit;
+            for (facet, moment) in equilibration.walk[i].into_iter().zip([entry.map(|f| -f), *exit]) {
+                if let Some(k) = facet {
+                    moments[k][facet_position::<N>(k, i)] = moment;
+                }
             }
             if let (Some(at), Side::Before) = (contact[i], side) {
                 acceleration[i] = level.acceleration_before[at];
@@ -281,9 +279,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         (1e-12 * scale).max(balanced.terms * self.element.volume / N as f64) / self.law.extent()
     }
 
-    /// Resultant of tractions less Γ_DA − f_d, and in 2D their moment about the centroid.
+    /// Resultant of tractions less Γ_DA − f_d, and their moments about the centroid, one in each coordinate plane.
     fn resultant_residual(&self, balanced: &Balanced<D, N>, floor: f64) -> f64 {
-        let (mut resultant, mut moment) = ([0.0; D], 0.0);
+        let (mut resultant, mut moments) = ([0.0; D], [[0.0; D]; D]);
         // Tractions one by one: at a node between a fixed edge and elements at rest two of them cancel.
         let mut scale = balanced.loading.traction.iter().flatten().flatten().fold(0.0_f64, |m, t| m.max(t.abs()));
         scale = floor.max(scale / (D * (D + 1)) as f64);
@@ -292,12 +290,13 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 resultant[c] += force.outer[c] - force.inner[c];
                 scale = scale.max(force.outer[c].abs()).max(force.inner[c].abs());
             }
-            if D == 2 {
-                let net = |c: usize| force.outer[c] - force.inner[c];
-                moment += arm[0] * net(D - 1) - arm[D - 1] * net(0);
+            let net = |c: usize| force.outer[c] - force.inner[c];
+            for b in 1..D {
+                (0..b).for_each(|a| moments[a][b] += arm[a] * net(b) - arm[b] * net(a));
             }
         }
-        let miss = resultant.iter().fold(moment.abs() * self.inverse_reach, |m, f| worse(m, f.abs()));
+        let moment = moments.iter().flatten().fold(0.0, |m, x| worse(m, x.abs()));
+        let miss = resultant.iter().fold(moment * self.inverse_reach, |m, f| worse(m, f.abs()));
         miss / scale.max(f64::MIN_POSITIVE)
     }
 

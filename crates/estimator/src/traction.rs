@@ -31,7 +31,7 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     /// For each facet, its place among the loaded facets, then the candidate facets of contact.
     slots: Vec<u32>,
     /// For each local node, the facets by which a walk around it enters and leaves an element.
-    walk: [[Option<usize>; 2]; N],
+    pub(crate) walk: [[Option<usize>; 2]; N],
     /// Number of loaded facets.
     loaded: usize,
     /// Where the links of each contact node's star begin in [`TimeLevel::flux_before`].

@@ -58,8 +58,12 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let steps = times.step_count() / options.every.max(1) + 1;
     let elements = problem.mesh().element_count();
     let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
-    let whole = D > 1 && options.reconstruction == Reconstruction::Corrected;
-    let minimisation = if whole { TractionMinimisation::<D>::memory(elements, levels, threads) } else { 0 };
+    let minimisation = match options.reconstruction {
+        Reconstruction::Corrected => {
+            TractionMinimisation::<D>::memory(problem.mesh().simplex().shape(), elements, levels, threads)
+        }
+        Reconstruction::Consistent | Reconstruction::Published => 0,
+    };
     levels
         .saturating_mul(bytes_of_level(problem))
         .saturating_add(minimisation)

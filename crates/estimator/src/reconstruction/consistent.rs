@@ -2,6 +2,7 @@
 
 use super::{Densities, Interval, SurfaceStep, none};
 use percute_core::problem::Problem;
+use percute_core::simplex::Shape;
 
 /// The densities of one step: R = B F at both ends, with the consistent mass matrix B of the facets
 /// whose nodes touch at both ends, then the projection into the cone.
@@ -36,8 +37,9 @@ impl BoundaryMass {
             for &k in &facet.nodes {
                 mass.diagonal[k] += 2.0 * share;
             }
-            if D == 2 {
-                mass.upper[facet.nodes[0].min(facet.nodes[1])] += share;
+            match problem.mesh().simplex().shape() {
+                Shape::Bar => {}
+                Shape::Triangle => mass.upper[facet.nodes[0].min(facet.nodes[1])] += share,
             }
         }
         mass

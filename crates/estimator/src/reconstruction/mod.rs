@@ -17,6 +17,7 @@ pub(crate) use corrected::{
 };
 use percute_core::obstacle::Plane;
 use percute_core::problem::{ContactFacet, Problem};
+use percute_core::simplex::{Shape, Simplex};
 use published::Published;
 
 /// Nodal values of a density on each candidate facet (Pa).
@@ -118,54 +119,43 @@ pub(crate) fn nodal_forces<const D: usize, const N: usize>(
 }
 
 /// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes, for F
-/// is zero unless both nodes stay on the plane, or is told by [`normal_power`]. In 2D both are linear along the
-/// edge, so that two Gauss points are exact on each piece on which w_t keeps its sign.
+/// is zero unless both nodes stay on the plane, or [`normal_power`] has it. In 2D both factors are linear along the
+/// edge.
 pub(crate) fn misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     facet: &ContactFacet<D>,
     density: &[[f64; D]; D],
     velocity: &[[f64; D]; D],
 ) -> f64 {
-    if D == 1 || density.iter().flatten().all(|f| *f == 0.0) {
+    let simplex = problem.mesh().simplex();
+    match simplex.shape() {
+        Shape::Bar => return 0.0,
+        Shape::Triangle => {}
+    }
+    if density.iter().flatten().all(|f| *f == 0.0) {
         return 0.0;
     }
     let plane = &problem.obstacles()[facet.obstacle];
     let tangent = tangent(plane);
-    let force = density.map(|f| (plane.split(&f).0, along(&f, &tangent)));
+    let (normal, tangential) = (density.map(|f| plane.split(&f).0), density.map(|f| along(&f, &tangent)));
     let sliding = velocity.map(|v| along(&v, &tangent));
-
-    facet.area
-        * over_signs([sliding[0], sliding[1]], |s| {
-            let line = |a: f64, b: f64| (1.0 - s) * a + s * b;
-            let w = line(sliding[0], sliding[1]);
-            let (normal, tangential) = (line(force[0].0, force[1].0), line(force[0].1, force[1].1));
-            plane.friction() * normal * w.abs() + w * tangential
-        })
+    let power = |weights: &[f64; D]| {
+        let w = along(weights, &sliding);
+        plane.friction() * along(weights, &normal) * w.abs() + w * along(weights, &tangential)
+    };
+    facet.area * simplex.facet_mean(&sliding, &power)
 }
 
 /// Along a plane in 2D: its normal turned back by a quarter.
 fn tangent<const D: usize>(plane: &Plane<D>) -> [f64; D] {
     let mut tangent = [0.0; D];
-    (tangent[0], tangent[D - 1]) = (plane.normal()[D - 1], -plane.normal()[0]);
+    (tangent[0], tangent[1]) = (plane.normal()[1], -plane.normal()[0]);
     tangent
 }
 
-/// The component of a vector along a direction.
+/// The component of a vector along a direction, or a value from those at the nodes with their weights.
 fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
     vector.iter().zip(direction).map(|(a, b)| a * b).sum()
-}
-
-/// Mean over an edge of a quantity that is quadratic on each piece on which a linear velocity keeps its sign.
-fn over_signs([w0, w1]: [f64; 2], quantity: impl Fn(f64) -> f64) -> f64 {
-    let turn = if w0 * w1 < 0.0 { w0 / (w0 - w1) } else { 1.0 };
-    let gauss = 0.5 / 3.0_f64.sqrt();
-    let mut mean = 0.0;
-    for (from, to) in [(0.0, turn), (turn, 1.0)] {
-        for at in [0.5 - gauss, 0.5 + gauss] {
-            mean += 0.5 * (to - from) * quantity(from + at * (to - from));
-        }
-    }
-    mean
 }
 
 /// ∫F_n gap over a facet (J), both linear, the force in Pa.
@@ -175,12 +165,13 @@ pub(crate) fn gap_energy<const D: usize>(area: f64, force: &[f64; D], gap: &[f64
 }
 
 /// ∫F_n|w_n| over a facet (W), both linear, the force in Pa.
-pub(crate) fn normal_power<const D: usize>(area: f64, force: &[f64; D], speed: &[f64; D]) -> f64 {
-    if D == 1 {
-        return area * force[0] * speed[0].abs();
-    }
-    let line = |values: &[f64; D], s: f64| (1.0 - s) * values[0] + s * values[D - 1];
-    area * over_signs([speed[0], speed[D - 1]], |s| line(force, s) * line(speed, s).abs())
+pub(crate) fn normal_power<const D: usize, const N: usize>(
+    simplex: &dyn Simplex<D, N>,
+    area: f64,
+    force: &[f64; D],
+    speed: &[f64; D],
+) -> f64 {
+    area * simplex.facet_mean(speed, &|weights| along(weights, force) * along(weights, speed).abs())
 }
 
 /// Checks that a step's densities are in the cone and, unless they may act `off_contact`, act only where both nodes

@@ -5,6 +5,7 @@ use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
+use percute_core::simplex::{Bar, Triangle};
 
 /// Four edges along the bottom of a block, μ = 0.2.
 fn problem() -> TriangleProblem {
@@ -284,10 +285,10 @@ fn normal_law_on_an_edge() {
     let line = |[a, b]: [f64; 2], s: f64| (1.0 - s) * a + s * b;
     for speed in [[3.0, 1.0], [-3.0, 1.0], [0.5, -4.0], [0.0, 0.0]] {
         let expected = area * mean(&|s| line(force, s) * line(speed, s).abs());
-        assert!((normal_power(area, &force, &speed) - expected).abs() < 1e-8, "{speed:?}");
+        assert!((normal_power(&Triangle {}, area, &force, &speed) - expected).abs() < 1e-8, "{speed:?}");
     }
     let expected = area * mean(&|s| line(force, s) * line(gap, s));
     assert!((gap_energy(area, &force, &gap) - expected).abs() < 1e-11);
     // On a bar both are products.
-    assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(2.0, &[3.0], &[-0.5])), (3.0, 3.0));
+    assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(&Bar {}, 2.0, &[3.0], &[-0.5])), (3.0, 3.0));
 }

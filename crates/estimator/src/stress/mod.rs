@@ -26,6 +26,12 @@ pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
     (k + 1 + p) % N
 }
 
+/// Position of node i in the facet opposite to node k.
+#[inline]
+pub(crate) const fn facet_position<const N: usize>(k: usize, i: usize) -> usize {
+    (i + N - k - 1) % N
+}
+
 /// Largest relative violations of the equations of one element's stress.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StressResiduals {
@@ -75,11 +81,13 @@ impl StressMap {
 
     /// Mean over the element of the stress that balances a loading (Pa).
     pub(crate) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[f64; D]; D] {
-        let [xx, yy, xy] = match self {
-            Self::Bar(map) => [map.mean(loading), 0.0, 0.0],
-            Self::Triangle(map) => map.mean(loading),
-        };
-        std::array::from_fn(|a| std::array::from_fn(|b| if a != b { xy } else { [xx, yy][a] }))
+        match self {
+            Self::Bar(map) => [[map.mean(loading); D]; D],
+            Self::Triangle(map) => {
+                let [xx, yy, xy] = map.mean(loading);
+                std::array::from_fn(|a| std::array::from_fn(|b| [[xx, xy], [xy, yy]][a][b]))
+            }
+        }
     }
 
     /// How well the stress satisfies its equations; `floor` is the smallest traction |e|F that

@@ -49,7 +49,7 @@ impl TriangleStress {
         let mut loads = [0.0; LOADS];
         let mut put = |slot: usize, v: &[f64; D], factor: f64| {
             for c in 0..2 {
-                loads[slot + c] = factor * (self.inverse[c][0] * v[0] + self.inverse[c][1] * v[D - 1]);
+                loads[slot + c] = factor * (self.inverse[c][0] * v[0] + self.inverse[c][1] * v[1]);
             }
         };
         for k in 0..N {
@@ -87,7 +87,7 @@ impl TriangleStress {
         for (k, slope) in slope.iter_mut().enumerate() {
             for (p, slope) in slope.iter_mut().enumerate() {
                 let at = 4 * k + 2 * p;
-                for (c, slope) in [0, D - 1].into_iter().zip(slope) {
+                for (c, slope) in slope.iter_mut().enumerate() {
                     *slope = self.inverse[0][c] * product[at] + self.inverse[1][c] * product[at + 1];
                 }
             }
@@ -201,7 +201,7 @@ impl TriangleStress {
             for (node, weight) in OUTER.into_iter().zip([0.0, 1.0, 0.5]) {
                 let found = traction_at(stress, sub, node, normal);
                 for c in 0..2 {
-                    let wanted = (1.0 - weight) * traction[0][c] + weight * traction[D - 1][c];
+                    let wanted = (1.0 - weight) * traction[0][c] + weight * traction[1][c];
                     miss = worse(miss, (found[c] - wanted).abs());
                     scale = scale.max(wanted.abs());
                 }

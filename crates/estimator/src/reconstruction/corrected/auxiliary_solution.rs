@@ -114,16 +114,14 @@ impl<const D: usize> AuxiliarySolution<D> {
 /// β of p(μ) = μ/2 − βμ².
 ///
 /// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from 0.97 of
-/// the critical step on. With it, p is at most ⅓, and x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: stable wherever the simulation
-/// is. In 1D it would be so without: but there the simulation takes the critical step exactly, its shortest wave grows with
-/// time once it is excited, and an auxiliary solution that does the same does not see it. 1/36 keeps it from that, at the
-/// price of a larger estimate at that step. It changes errors of the order that is left anyway.
+/// the critical step on. With the β that makes p ≤ ⅓, x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: the auxiliary solution is
+/// stable wherever the simulation is. In 1D this β is 0. But there the simulation takes the critical step exactly, its
+/// shortest wave grows with time once it is excited, and an auxiliary solution with the same growth does not show it. With
+/// β ≥ 1/36 the auxiliary solution does not grow, at the price of a larger estimate at that step. This changes errors of
+/// the order that is left anyway.
 fn damping<const D: usize>() -> f64 {
-    if D == 1 {
-        return 1.0 / 36.0;
-    }
     let largest = (D + 1) as f64 / (D + 2) as f64;
-    (0.5 * largest - 1.0 / 3.0) / (largest * largest)
+    ((0.5 * largest - 1.0 / 3.0) / (largest * largest)).max(1.0 / 36.0)
 }
 
 /// Whether the step before t_n is longer than those beside it, or shorter.

@@ -10,6 +10,7 @@
 use crate::reconstruction::{along, tangent};
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
+use percute_core::simplex::Shape;
 
 /// Such a part of a force is nothing: its place within an edge is known to 1e-16 only, which counts squared.
 const NOTHING: f64 = 1e-24;
@@ -44,8 +45,9 @@ pub(super) struct MomentCorrection<const D: usize> {
 
 impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        if D != 2 {
-            return Self::none();
+        match problem.mesh().simplex().shape() {
+            Shape::Bar => return Self::none(),
+            Shape::Triangle => {}
         }
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);

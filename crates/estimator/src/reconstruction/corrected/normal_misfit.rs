@@ -57,7 +57,8 @@ impl<const D: usize> FacetPressures<D> {
             let at = |half: usize, pressure: &Pressure<D>| {
                 let motion = facet.nodes.map(|at| tracks[at].at(knot + half));
                 let energy = gap_energy(facet.area, &pressure.acting, &motion.map(|(_, gap)| gap.max(0.0)));
-                (energy, normal_power(facet.area, &pressure.sudden, &motion.map(|(speed, _)| speed)))
+                let speed = motion.map(|(speed, _)| speed);
+                (energy, normal_power(problem.mesh().simplex(), facet.area, &pressure.sudden, &speed))
             };
             let [(before, p0), (between, p1), (after, p2)] = [at(0, start), at(1, &middle), at(2, end)];
             let half = 0.5 * times.step(self.first + k);

@@ -82,7 +82,7 @@ impl<const D: usize> Basis<D> {
         let mut tangents = Vec::new();
         for (f, facet) in mesh.facets().iter().enumerate().filter(|&each| unknown(each)) {
             place[f] = tangents.len() as u32;
-            tangents.push(unit(&difference(problem, facet.nodes[0], facet.nodes[D - 1])));
+            tangents.push(unit(&difference(problem, facet.nodes[0], facet.nodes[1])));
         }
         let sides = (0..mesh.element_count()).map(|e| std::array::from_fn(|k| side(problem, &place, e, k))).collect();
         let mut basis = Self {
@@ -131,7 +131,7 @@ impl<const D: usize> Basis<D> {
             let arm = difference(problem, node, other);
             let square: f64 = arm.iter().map(|x| x * x).sum();
             let mut lever = [0.0; D];
-            (lever[0], lever[D - 1]) = (-arm[D - 1] / square, arm[0] / square);
+            (lever[0], lever[1]) = (-arm[1] / square, arm[0] / square);
             self.spokes.push(Spoke { facet: at, position, sign, lever });
         }
         self.starts.push(self.spokes.len());
@@ -189,7 +189,7 @@ impl<const D: usize> Basis<D> {
         for (c, t) in self.tangents[edge].iter().enumerate() {
             for lane in 0..LANES {
                 moments[edge][0][c][lane] += s[lane] * t;
-                moments[edge][D - 1][c][lane] -= s[lane] * t;
+                moments[edge][1][c][lane] -= s[lane] * t;
             }
         }
     }
@@ -219,7 +219,7 @@ impl<const D: usize> Basis<D> {
         for ((s, tangent), moments) in modes.edges.iter_mut().zip(&self.tangents).zip(moments) {
             *s = [0.0; LANES];
             for c in 0..D {
-                (0..LANES).for_each(|lane| s[lane] += tangent[c] * (moments[0][c][lane] - moments[D - 1][c][lane]));
+                (0..LANES).for_each(|lane| s[lane] += tangent[c] * (moments[0][c][lane] - moments[1][c][lane]));
             }
         }
         for (node, mode) in modes.nodes.iter_mut().enumerate() {

@@ -19,6 +19,7 @@ use crate::traction::Equilibration;
 use basis::Basis;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
+use percute_core::simplex::Shape;
 use rayon::prelude::*;
 
 /// Conjugate gradients from the star problems' tractions on: they bring 95 % of what can be gained (a test holds them to
@@ -46,10 +47,11 @@ pub(crate) struct TractionMinimisation<const D: usize> {
 }
 
 impl<const D: usize> TractionMinimisation<D> {
-    /// Prepares all elements. In 1D there is nothing to choose.
+    /// Prepares all elements. In a bar there is nothing to choose.
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, elements: &[Element<D, N>]) -> Option<Self> {
-        if D == 1 {
-            return None;
+        match problem.mesh().simplex().shape() {
+            Shape::Bar => return None,
+            Shape::Triangle => {}
         }
         let form = |(e, element): (usize, &Element<D, N>)| {
             // Energy does not depend on Γ_DA here: any choice will do.
@@ -60,7 +62,11 @@ impl<const D: usize> TractionMinimisation<D> {
     }
 
     /// About how much memory it takes (bytes), with so many levels in a window and so many threads.
-    pub(crate) fn memory(elements: usize, levels: usize, threads: usize) -> usize {
+    pub(crate) fn memory(shape: Shape, elements: usize, levels: usize, threads: usize) -> usize {
+        match shape {
+            Shape::Bar => return 0,
+            Shape::Triangle => {}
+        }
         // Forms, and in a triangulation three edges and half a node of its basis for two elements.
         let fixed = size_of::<Form>() + 3 * size_of::<basis::Side>() + 600;
         // Slopes of each level; of each chunk at work, three arrays of moments and four of modes.
