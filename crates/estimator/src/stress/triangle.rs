@@ -6,6 +6,7 @@ use super::reference::{
 };
 use super::{Loading, StressResiduals};
 use crate::residual::worse;
+use nalgebra::{Matrix2, Matrix3};
 use percute_core::material::Elastic;
 
 /// The map of one triangle.
@@ -13,7 +14,7 @@ use percute_core::material::Elastic;
 pub(crate) struct TriangleStress {
     points: [[f64; 2]; 3],
     /// B⁻¹, which takes tractions to the reference triangle.
-    inverse: [[f64; 2]; 2],
+    inverse: Matrix2<f64>,
     /// J = 2|E|.
     jacobian: f64,
     /// Energy as a quadratic form of the reference loads.
@@ -24,10 +25,9 @@ pub(crate) struct TriangleStress {
 
 impl TriangleStress {
     pub(super) fn new(points: &[[f64; 2]; 3], law: &Elastic) -> Self {
-        let edge = |k: usize, c: usize| points[k][c] - points[0][c];
-        let map = [[edge(1, 0), edge(2, 0)], [edge(1, 1), edge(2, 1)]];
-        let jacobian = map[0][0] * map[1][1] - map[0][1] * map[1][0];
-        let inverse = [[map[1][1] / jacobian, -map[0][1] / jacobian], [-map[1][0] / jacobian, map[0][0] / jacobian]];
+        let map = Matrix2::from_fn(|c, k| points[k + 1][c] - points[0][c]);
+        // Elements are not degenerate.
+        let (jacobian, inverse) = (map.determinant(), map.try_inverse().unwrap_or_else(Matrix2::zeros));
         let form = reference_compliance(&map, law);
         let mut all = [[0.0; ALL]; ALL];
         let reference = Reference::get();
@@ -49,7 +49,7 @@ impl TriangleStress {
         let mut loads = [0.0; LOADS];
         let mut put = |slot: usize, v: &[f64; D], factor: f64| {
             for c in 0..2 {
-                loads[slot + c] = factor * (self.inverse[c][0] * v[0] + self.inverse[c][1] * v[1]);
+                loads[slot + c] = factor * (self.inverse[(c, 0)] * v[0] + self.inverse[(c, 1)] * v[1]);
             }
         };
         for k in 0..N {
@@ -88,7 +88,7 @@ impl TriangleStress {
             for (p, slope) in slope.iter_mut().enumerate() {
                 let at = 4 * k + 2 * p;
                 for (c, slope) in slope.iter_mut().enumerate() {
-                    *slope = self.inverse[0][c] * product[at] + self.inverse[1][c] * product[at + 1];
+                    *slope = self.inverse[(0, c)] * product[at] + self.inverse[(1, c)] * product[at + 1];
                 }
             }
         }
@@ -235,9 +235,9 @@ fn traction_at(stress: &[f64; COEFFICIENTS], sub: usize, node: usize, normal: [f
 
 /// The energy form α σ:σ − β (tr σ)² of σ = B σ̂ Bᵀ in the components of σ̂; with C = BᵀB it is
 /// α tr(Cσ̂Cσ̂) − β (C:σ̂)².
-fn reference_compliance(map: &[[f64; 2]; 2], law: &Elastic) -> [[f64; 3]; 3] {
+fn reference_compliance(map: &Matrix2<f64>, law: &Elastic) -> [[f64; 3]; 3] {
     let (alpha, beta) = law.compliance(2);
-    let metric = |i: usize, j: usize| map[0][i] * map[0][j] + map[1][i] * map[1][j];
+    let metric = |i: usize, j: usize| map[(0, i)] * map[(0, j)] + map[(1, i)] * map[(1, j)];
     let (c11, c22, c12) = (metric(0, 0), metric(1, 1), metric(0, 1));
     let trace = [c11, c22, 2.0 * c12];
     let square = [
@@ -251,8 +251,8 @@ fn reference_compliance(map: &[[f64; 2]; 2], law: &Elastic) -> [[f64; 3]; 3] {
 /// Minimises the energy over the free stresses: the form of the loads alone, and the free stresses
 /// as a map of the loads.
 fn eliminate(all: &[[f64; ALL]; ALL]) -> ([[f64; LOADS]; LOADS], [[f64; LOADS]; FREE]) {
-    let free_form = nalgebra::Matrix3::from_fn(|i, j| all[LOADS + i][LOADS + j]);
-    let inverse = free_form.try_inverse().unwrap_or_else(nalgebra::Matrix3::zeros);
+    let free_form = Matrix3::from_fn(|i, j| all[LOADS + i][LOADS + j]);
+    let inverse = free_form.try_inverse().unwrap_or_else(Matrix3::zeros);
     let mut free = [[0.0; LOADS]; FREE];
     for i in 0..FREE {
         for k in 0..FREE {
