@@ -31,9 +31,9 @@ pub enum MeshError {
     TooLarge {
         /// Nodes or elements.
         what: &'static str,
-        /// How many were given.
+        /// Their number.
         count: usize,
-        /// How many are allowed.
+        /// Largest number allowed.
         most: usize,
     },
     /// A generator was given an impossible value.
@@ -54,7 +54,7 @@ pub enum MeshError {
         /// The coordinate.
         value: f64,
     },
-    /// An element names a node that does not exist.
+    /// An element refers to a node that does not exist.
     #[error("element {element} names node {node}, but the mesh has nodes 0 to {last}, counted from 0")]
     NoSuchNode {
         /// The element.
@@ -69,7 +69,7 @@ pub enum MeshError {
     UnusedNodes {
         /// The first of them.
         first: usize,
-        /// How many there are.
+        /// Number of unused nodes.
         count: usize,
     },
     /// Two nodes at the same place.
@@ -120,7 +120,7 @@ pub enum MeshError {
         /// One element of each part.
         elements: [usize; 2],
     },
-    /// A node at which parts of the body touch by a point only.
+    /// A node where parts of the body touch at a point only.
     #[error(
         "at node {node} the body is connected by a point only ({reached} of its {elements} elements are joined by edges); \
          split the node or fill the gap"
@@ -133,7 +133,7 @@ pub enum MeshError {
         /// Elements that can be reached through facets.
         reached: usize,
     },
-    /// A group names a facet that is not there.
+    /// A group refers to a facet that does not exist.
     #[error(
         "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) of the \
          boundary, nodes are counted from 0", facet(.nodes)
@@ -144,7 +144,7 @@ pub enum MeshError {
         /// Nodes of the facet.
         nodes: Vec<usize>,
     },
-    /// A group names an element that is not there.
+    /// A group refers to an element that does not exist.
     #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}, counted from 0")]
     NoSuchElement {
         /// The group.
@@ -192,7 +192,7 @@ pub(super) fn cells<const N: usize>(node_count: usize, cells: &[[usize; N]]) -> 
     Ok(cells.iter().map(|cell| cell.map(NodeId::new)).collect())
 }
 
-/// Looks for near neighbours in the cells of a fine grid.
+/// Searches for duplicates in neighbouring cells of a fine grid.
 pub(super) fn duplicate_points<const D: usize>(points: &[[f64; D]], size: f64) -> Result<(), MeshError> {
     let spacing = (DUPLICATE * size).max(f64::MIN_POSITIVE);
     let origin = points[0];
@@ -219,7 +219,7 @@ pub(super) fn duplicate_points<const D: usize>(points: &[[f64; D]], size: f64) -
     Ok(())
 }
 
-/// Turns negatively oriented elements round and counts them; refuses degenerate ones.
+/// Reorients negatively oriented elements and counts them; refuses degenerate ones.
 pub(super) fn orient<const D: usize, const N: usize>(
     simplex: &dyn Simplex<D, N>,
     points: &[[f64; D]],

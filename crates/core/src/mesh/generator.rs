@@ -10,7 +10,7 @@ fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
     Err(MeshError::Generator { name, value, allowed: "a positive length in metres" })
 }
 
-/// A number of elements that must not be zero, nor exceed what memory can hold.
+/// A number of elements that must be positive and fit into memory.
 fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
     if (1..=20_000_000).contains(&value) {
         return Ok(());

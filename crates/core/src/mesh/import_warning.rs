@@ -1,14 +1,14 @@
-//! What the user of a mesh should know, though it is no error.
+//! Warnings from the import of a mesh.
 
-/// Something that was reported, and reoriented or left out, when a mesh was read.
+/// A change that the import made to a mesh, or a part of the file that it left out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportWarning {
     /// Its name, for programs.
     pub name: &'static str,
-    /// A few words.
+    /// A short form of the message.
     pub brief: String,
-    /// What was reported, and what to do if it was not meant.
+    /// The change, and the remedy if it was not intended.
     pub message: String,
-    /// The groups that it is about.
+    /// The groups concerned.
     pub groups: Vec<String>,
 }

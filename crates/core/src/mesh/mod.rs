@@ -55,10 +55,10 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// Builds and checks a mesh.
     ///
     /// `points` are coordinates in metres, `cells` node numbers from 0. Negatively oriented
-    /// elements are turned round (see [`Mesh::reoriented_elements`]).
+    /// elements are reoriented (see [`Mesh::reoriented_elements`]).
     ///
     /// # Errors
-    /// Whatever makes the mesh unfit, with the numbers of the nodes or elements at fault.
+    /// A mesh that fails a check, with the numbers of the nodes or elements at fault.
     pub fn new(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
@@ -104,7 +104,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         })
     }
 
-    /// Its kind of element.
+    /// The kind of its elements.
     #[must_use]
     pub fn simplex(&self) -> &'static dyn Simplex<D, N> {
         self.simplex
@@ -152,37 +152,37 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         &self.element_groups
     }
 
-    /// Diagonal of the bounding box (m): the length that geometric tolerances refer to.
+    /// Diagonal of the bounding box (m), the reference length of geometric tolerances.
     #[must_use]
     pub fn size(&self) -> f64 {
         self.size
     }
 
-    /// How many elements were given with the wrong orientation and turned round.
+    /// Number of elements that were given with the wrong orientation and reoriented.
     #[must_use]
     pub fn reoriented_elements(&self) -> usize {
         self.reoriented
     }
 
-    /// For each node the one that stands for its part: the first of it.
+    /// For each node the first node of its part.
     #[must_use]
     pub fn part_of_nodes(&self) -> Vec<NodeId> {
         parts::part_of_nodes(self.points.len(), &self.cells)
     }
 
-    /// How many separate parts there are: elements that share a node are of one part.
+    /// Number of separate parts; elements that share a node belong to one part.
     #[must_use]
     pub fn parts(&self) -> usize {
         self.parts
     }
 
-    /// The same mesh with what was reported when it was read.
+    /// The same mesh with the warnings of its import.
     #[must_use]
     pub fn with_import_warnings(self, import_warnings: Vec<ImportWarning>) -> Self {
         Self { import_warnings, ..self }
     }
 
-    /// What was reported when it was read.
+    /// The warnings of its import.
     #[must_use]
     pub fn import_warnings(&self) -> &[ImportWarning] {
         &self.import_warnings

@@ -1,7 +1,7 @@
 //! The separate parts of a mesh, which must be apart.
 //!
-//! Elements that share a node are of one part. Parts that touched or covered each other would not
-//! feel it: one would move through the other.
+//! Elements that share a node belong to one part. There is no contact between parts: if they touched or overlapped, one
+//! would move through the other.
 
 use super::{Facet, MeshError};
 use crate::ids::{ElementId, NodeId};
@@ -29,7 +29,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
     Ok(count)
 }
 
-/// For each node the one that stands for its part: the first of it.
+/// For each node the first node of its part.
 pub(super) fn part_of_nodes<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> Vec<NodeId> {
     let mut parent: Vec<NodeId> = (0..node_count).map(NodeId::new).collect();
     for cell in cells {
@@ -44,7 +44,7 @@ pub(super) fn part_of_nodes<const N: usize>(node_count: usize, cells: &[[NodeId;
     parent
 }
 
-/// Follows the parents to the last, and halves the way for whoever comes next.
+/// Follows the parents to the root, and halves the path for later searches.
 fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
     while parent[node.index()] != node {
         let above = parent[parent[node.index()].index()];
@@ -148,7 +148,7 @@ fn meet<const D: usize, const N: usize>(
     !simplex.separating_directions(a, b).into_iter().chain(between).any(|direction| gap(a, b, direction) > tolerance)
 }
 
-/// How far two simplices are apart along a direction (m), negative if they cover each other there.
+/// How far two simplices are apart along a direction (m), negative if they overlap there.
 fn gap<const D: usize, const N: usize>(a: &[[f64; D]; N], b: &[[f64; D]; N], direction: [f64; D]) -> f64 {
     let length = direction.iter().fold(0.0, |length: f64, x| length.hypot(*x));
     // From a corner, not from an origin that may be far away.

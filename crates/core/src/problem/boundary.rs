@@ -12,7 +12,7 @@ pub(super) fn facet_group<'m, const D: usize, const N: usize>(
     mesh: &'m Mesh<D, N>,
     name: &str,
 ) -> Result<&'m [FacetId], Cause> {
-    group(mesh.facet_groups(), name, GroupOf::facets(D), mesh.element_groups(), GroupOf::Elements)
+    group(mesh.facet_groups(), name, GroupOf::facets(mesh.simplex().shape()), mesh.element_groups(), GroupOf::Elements)
 }
 
 /// The members of a group of elements.
@@ -20,7 +20,7 @@ pub(super) fn element_group<'m, const D: usize, const N: usize>(
     mesh: &'m Mesh<D, N>,
     name: &str,
 ) -> Result<&'m [ElementId], Cause> {
-    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(D))
+    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(mesh.simplex().shape()))
 }
 
 fn group<'m, Id, Other>(

@@ -4,6 +4,7 @@ use super::plausibility::short;
 use crate::load::TableError;
 use crate::material::MaterialError;
 use crate::obstacle::PlaneError;
+use crate::simplex::Shape;
 use std::fmt;
 use thiserror::Error;
 
@@ -314,10 +315,13 @@ pub enum GroupOf {
 }
 
 impl GroupOf {
-    /// The facets of a dimension.
+    /// The facets of an element of this shape.
     #[must_use]
-    pub fn facets(dimension: usize) -> Self {
-        if dimension == 1 { Self::Ends } else { Self::Edges }
+    pub fn facets(shape: Shape) -> Self {
+        match shape {
+            Shape::Bar => Self::Ends,
+            Shape::Triangle => Self::Edges,
+        }
     }
 }
 
