@@ -26,7 +26,11 @@ NAMES = {
     "--contact-force": ("whole", "sharp", "paper"),
 }
 # Keys of reports that have another name in a later build.
-RENAMED = {"mended_elements": "reoriented_elements"}
+RENAMED = {
+    "mended_elements": "reoriented_elements",
+    "penetration_at_knots": "penetration_at_instants",
+    "penetration_between_knots": "penetration_between_instants",
+}
 # Clock, versions, texts in the case language and paths: no results.
 SKIPPED = {"version", "seconds", "elapsed", "wall", "file", "path", "duration", "case"}
 

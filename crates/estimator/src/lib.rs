@@ -7,9 +7,11 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur en
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
+mod acceleration;
 mod element;
 mod error;
 mod estimate;
+mod increment;
 mod inertia;
 mod kinematic;
 mod loaded;
@@ -29,7 +31,7 @@ mod traction;
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use map::{AdmissibleFields, ElementMap};
-pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName};
+pub use options::{Ablation, Acceleration, MOST_THREADS, Options, ReconstructionChoice as Reconstruction, UnknownName};
 pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};

@@ -1,14 +1,15 @@
 //! η of one element (§4.2), exact in space.
 
 use crate::element::Element;
+use crate::increment::ElementIncrement;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
 use crate::reconstruction::{Form, MOMENTS};
 use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node, facet_position};
-use crate::time_level::{Side, TimeLevel};
-use crate::traction::Equilibration;
+use crate::time_level::Side;
+use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::problem::Problem;
@@ -118,25 +119,25 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn balanced(
         &self,
         equilibration: &Equilibration<'_, D, N>,
-        level: &TimeLevel<D>,
+        level: &Equilibrated<D>,
         contact: &[Option<usize>; N],
         side: Side,
     ) -> Balanced<D, N> {
         // Outward moments of each facet at its nodes: entering moments with the other sign.
         let mut moments = [[[0.0; D]; D]; N];
-        let mut acceleration = self.element.gather(&level.acceleration);
+        let mut acceleration = self.element.gather(&level.forces.acceleration);
         for i in 0..N {
-            let (entry, exit) = equilibration.flux_around(level, self.element, i, contact[i], side);
-            for (facet, moment) in equilibration.walk[i].into_iter().zip([entry.map(|f| -f), *exit]) {
+            let (entry, exit) = equilibration.moments_around(level, self.element, i, contact[i], side);
+            for (facet, moment) in equilibration.crossing[i].into_iter().zip([entry.map(|f| -f), *exit]) {
                 if let Some(k) = facet {
                     moments[k][facet_position::<N>(k, i)] = moment;
                 }
             }
-            if let (Some(at), Side::Before) = (contact[i], side) {
-                acceleration[i] = level.acceleration_before[at];
+            if let (Some(at), Side::Before, Some(before)) = (contact[i], side, &level.forces.before) {
+                acceleration[i] = before.acceleration[at];
             }
         }
-        let body = level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
+        let body = level.forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
         let terms = acceleration.iter().flatten().fold(0.0_f64, |m, a| m.max(self.law.density() * a.abs()));
         let terms = body.iter().fold(terms, |m, f| m.max(f.abs()));
         let mut volume = self.inertia.apply(&acceleration);
@@ -147,15 +148,15 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         Balanced { forces: self.nodal_forces(&loading), terms, loading }
     }
 
-    /// The error at one sample; `increment` is ∫ã dt at the nodes.
+    /// The error at one sample.
     pub(crate) fn error(
         &self,
         balanced: &Balanced<D, N>,
-        increment: &[[f64; D]; N],
+        increment: &ElementIncrement<D, N>,
         motion: &ElementMotion<D, N>,
     ) -> ElementError {
         let mass = N as f64 * self.element.nodal_mass;
-        let integral = self.inertia.apply(increment);
+        let integral = self.inertia.apply(increment.values());
         let (mut dynamic, mut misfit) = (self.start, [[0.0; D]; N]);
         for i in 0..N {
             for c in 0..D {
@@ -177,9 +178,13 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
     /// the stress of the displacement that is equilibrated.
-    pub(crate) fn moment_slope(&self, equilibration: &Equilibration<'_, D, N>, level: &TimeLevel<D>) -> [f64; MOMENTS] {
+    pub(crate) fn moment_slope(
+        &self,
+        equilibration: &Equilibration<'_, D, N>,
+        level: &Equilibrated<D>,
+    ) -> [f64; MOMENTS] {
         let mut loading = self.balanced(equilibration, level, &[None; N], Side::After).loading;
-        self.subtract_tractions(&level.stress[self.id.index()], &mut loading);
+        self.subtract_tractions(&level.stress()[self.id.index()], &mut loading);
         self.slope_of(&loading)
     }
 
@@ -237,10 +242,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn means(
         &self,
         equilibration: &Equilibration<'_, D, N>,
-        level: &TimeLevel<D>,
+        level: &Equilibrated<D>,
     ) -> ([[f64; D]; D], [f64; D]) {
         let balanced = self.balanced(equilibration, level, &[None; N], Side::After);
-        let inertia = self.inertia.apply(&self.element.gather(&level.acceleration));
+        let inertia = self.inertia.apply(&self.element.gather(&level.forces.acceleration));
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
         (self.stress.mean(&balanced.loading), acceleration)
     }

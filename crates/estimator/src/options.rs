@@ -9,7 +9,7 @@ pub const MOST_THREADS: usize = 1024;
 
 /// The reading of the contact force, and what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Reconstruction {
+pub enum ReconstructionChoice {
     /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
     /// normal contact law measured where they act off contact; the balance of an auxiliary solution with less
     /// dispersion; tractions of least energy.
@@ -35,7 +35,7 @@ pub enum Acceleration {
     Weak,
 }
 
-/// What the reading [`Reconstruction::Corrected`] is without one of its parts, or with another: no choice for an estimate, but
+/// What the reading [`ReconstructionChoice::Corrected`] is without one of its parts, or with another: no choice for an estimate, but
 /// the evidence of what each part is for. The other readings have none of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ablation {
@@ -63,7 +63,7 @@ pub enum Ablation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Reading of the contact force.
-    pub reconstruction: Reconstruction,
+    pub reconstruction: ReconstructionChoice,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
     /// For evidence only.
@@ -81,7 +81,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            reconstruction: Reconstruction::default(),
+            reconstruction: ReconstructionChoice::default(),
             acceleration: Acceleration::default(),
             ablation: Ablation::default(),
             every: 1,
@@ -130,7 +130,7 @@ macro_rules! named {
     };
 }
 
-named!(Reconstruction: Corrected = "corrected", Consistent = "consistent", Published = "published");
+named!(ReconstructionChoice: Corrected = "corrected", Consistent = "consistent", Published = "published");
 named!(
     Ablation:
         None = "none",
@@ -153,9 +153,12 @@ mod tests {
         for &choice in Acceleration::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        for &choice in Reconstruction::ALL {
+        for &choice in ReconstructionChoice::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        assert_eq!("blunt".parse::<Reconstruction>().unwrap_err().known, ["corrected", "consistent", "published"]);
+        assert_eq!(
+            "blunt".parse::<ReconstructionChoice>().unwrap_err().known,
+            ["corrected", "consistent", "published"]
+        );
     }
 }

@@ -19,10 +19,10 @@ pub struct Residuals {
     pub onset: f64,
     /// Normal velocity during contact, eq. \[42\].
     pub normal_velocity: f64,
-    /// Penetration at the knots, eq. \[3\].
-    pub penetration_at_knots: f64,
-    /// Penetration between the knots.
-    pub penetration_between_knots: f64,
+    /// Penetration at the instants, eq. \[3\].
+    pub penetration_at_instants: f64,
+    /// Penetration between the instants.
+    pub penetration_between_instants: f64,
     /// F_DA in Coulomb's cone, eq. \[18\].
     pub cone: f64,
     /// F_DA where or when a node does not touch.
@@ -48,8 +48,8 @@ impl Residuals {
             ("supports", self.supports),
             ("onset", self.onset),
             ("normal_velocity", self.normal_velocity),
-            ("penetration_at_knots", self.penetration_at_knots),
-            ("penetration_between_knots", self.penetration_between_knots),
+            ("penetration_at_instants", self.penetration_at_instants),
+            ("penetration_between_instants", self.penetration_between_instants),
             ("cone", self.cone),
             ("force_off_contact", self.force_off_contact),
             ("star_compatibility", self.star_compatibility),
@@ -67,8 +67,8 @@ impl Residuals {
             (&mut self.supports, other.supports),
             (&mut self.onset, other.onset),
             (&mut self.normal_velocity, other.normal_velocity),
-            (&mut self.penetration_at_knots, other.penetration_at_knots),
-            (&mut self.penetration_between_knots, other.penetration_between_knots),
+            (&mut self.penetration_at_instants, other.penetration_at_instants),
+            (&mut self.penetration_between_instants, other.penetration_between_instants),
             (&mut self.cone, other.cone),
             (&mut self.force_off_contact, other.force_off_contact),
             (&mut self.star_compatibility, other.star_compatibility),

@@ -1,7 +1,12 @@
-//! All nodal and element fields at one instant t_n.
+//! The fields of one time level t_n, in the states in which they become known.
+//!
+//! The motion comes first ([`MotionKnown`]), then the contact force over the step that ends at t_n ([`ForcesBefore`]), then
+//! that over the step that begins there ([`ForcesKnown`]). Stress and tractions make it an
+//! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying them.
 
-use crate::kinematic::Knot;
-use crate::reconstruction::{Densities, Pressure, SurfaceStep};
+use crate::increment::Increment;
+use crate::kinematic::NodalMotion;
+use crate::reconstruction::{Densities, OffContact, SurfaceStep};
 
 /// Which value at an instant where contact changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,68 +15,88 @@ pub(crate) enum Side {
     After,
 }
 
-/// The fields of one instant, filled as they become known: first the motion, then the contact force
-/// on both sides and ã, then stress and tractions.
+/// The fields that do not change from state to state.
 #[derive(Clone, Debug)]
 pub(crate) struct TimeLevel<const D: usize> {
     /// n.
     pub(crate) index: usize,
-    pub(crate) knot: Knot<D>,
-    /// The knot t_{n−½}.
-    pub(crate) mid: Option<Knot<D>>,
-    /// u_n of the simulation (m).
+    /// The displacement whose stress is equilibrated (m).
     pub(crate) displacement: Vec<[f64; D]>,
-    /// Σ forces but contact (N): external, internal, supports. Emptied once ã is known.
-    pub(crate) force: Vec<[f64; D]>,
     /// f_d on each element (N/m³), empty if there is none.
     pub(crate) body_force: Vec<[f64; D]>,
     /// Prescribed moments on the loaded facets (N).
     pub(crate) load_moments: Vec<[[f64; D]; D]>,
     pub(crate) surface: SurfaceStep<D>,
-    /// ã (m/s²), at contact nodes on the side `After`.
-    pub(crate) acceleration: Vec<[f64; D]>,
-    /// ã at contact nodes on the side `Before`.
-    pub(crate) acceleration_before: Vec<[f64; D]>,
-    pub(crate) density_before: Densities<D>,
-    pub(crate) density_after: Densities<D>,
-    /// Where densities may act off contact: the normal pressures on each candidate facet, at its beginning and its end, of
-    /// each step since the sampled level before.
-    pub(crate) pressures: Vec<Vec<[Pressure<D>; 2]>>,
-    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
-    pub(crate) contact: Vec<[f64; 2]>,
-    /// σ_h of each element (Pa).
-    pub(crate) stress: Vec<[[f64; D]; D]>,
-    /// Largest nodal force of any element (N).
-    pub(crate) force_scale: f64,
-    /// Moments of the tractions along the walks around all nodes (N), side `After`.
-    pub(crate) flux: Vec<[f64; D]>,
-    /// The same around contact nodes, side `Before`.
-    pub(crate) flux_before: Vec<[f64; D]>,
 }
 
-impl<const D: usize> TimeLevel<D> {
-    /// A level of which the motion alone is known.
-    pub(crate) fn new(index: usize, mid: Option<Knot<D>>, knot: Knot<D>, contact_facets: usize) -> Self {
-        let none = vec![[[0.0; D]; D]; contact_facets];
-        Self {
-            index,
-            knot,
-            mid,
-            displacement: Vec::new(),
-            force: Vec::new(),
-            body_force: Vec::new(),
-            load_moments: Vec::new(),
-            surface: SurfaceStep { reaction: Vec::new(), smoothed_reaction: Vec::new(), touching: Vec::new() },
-            acceleration: Vec::new(),
-            acceleration_before: Vec::new(),
-            density_before: none.clone(),
-            density_after: none,
-            pressures: Vec::new(),
-            contact: vec![[0.0; 2]; contact_facets],
-            stress: Vec::new(),
-            force_scale: 0.0,
-            flux: Vec::new(),
-            flux_before: Vec::new(),
-        }
+/// A level of which the motion is known.
+#[derive(Clone, Debug)]
+pub(crate) struct MotionKnown<const D: usize> {
+    pub(crate) level: TimeLevel<D>,
+    /// At t_n.
+    pub(crate) now: NodalMotion<D>,
+    /// At t_{n−½}.
+    pub(crate) mid: Option<NodalMotion<D>>,
+    /// All nodal forces but those of contact (N): external, internal, of supports.
+    pub(crate) force: Vec<[f64; D]>,
+}
+
+/// Motion and ∫ã dt at one half-step instant.
+#[derive(Clone, Debug)]
+pub(crate) struct Velocities<const D: usize> {
+    pub(crate) motion: NodalMotion<D>,
+    pub(crate) increment: Increment<D>,
+}
+
+/// A level of which the fields before t_n are known, ã and the contact density among them.
+#[derive(Clone, Debug)]
+pub(crate) struct ForcesBefore<const D: usize> {
+    pub(crate) level: TimeLevel<D>,
+    pub(crate) now: Velocities<D>,
+    pub(crate) mid: Option<Velocities<D>>,
+    /// All forces but those of contact at the nodes of the contact surface (N).
+    pub(crate) surface_force: Vec<[f64; D]>,
+    /// ã (m/s²).
+    pub(crate) acceleration: Vec<[f64; D]>,
+    /// The contact density before t_n; `None` at t_0.
+    pub(crate) density: Option<Densities<D>>,
+    /// Densities where nodes do not touch, over the step before.
+    pub(crate) off_contact: Option<OffContact<D>>,
+    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
+    pub(crate) friction: Vec<[f64; 2]>,
+}
+
+/// A level of which ã and the contact density are known on both sides of t_n.
+#[derive(Clone, Debug)]
+pub(crate) struct ForcesKnown<const D: usize> {
+    pub(crate) level: TimeLevel<D>,
+    pub(crate) now: Velocities<D>,
+    pub(crate) mid: Option<Velocities<D>>,
+    /// ã after t_n (m/s²).
+    pub(crate) acceleration: Vec<[f64; D]>,
+    /// The contact density after t_n.
+    pub(crate) density: Densities<D>,
+    /// The values before t_n, where the contact force jumps there.
+    pub(crate) before: Option<BeforeJump<D>>,
+    /// Densities where nodes do not touch, over each step since the sampled level before.
+    pub(crate) off_contact: Vec<OffContact<D>>,
+    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
+    pub(crate) friction: Vec<[f64; 2]>,
+}
+
+/// Fields just before an instant at which the contact force jumps.
+#[derive(Clone, Debug)]
+pub(crate) struct BeforeJump<const D: usize> {
+    /// ã at the nodes of the contact surface (m/s²).
+    pub(crate) acceleration: Vec<[f64; D]>,
+    pub(crate) density: Densities<D>,
+}
+
+impl<const D: usize> ForcesBefore<D> {
+    /// The last level of a run: no step follows, and both its sides are one.
+    pub(crate) fn last(self) -> Option<ForcesKnown<D>> {
+        let Self { level, now, mid, acceleration, density, off_contact, friction, .. } = self;
+        let off_contact = off_contact.into_iter().collect();
+        Some(ForcesKnown { level, now, mid, acceleration, density: density?, before: None, off_contact, friction })
     }
 }

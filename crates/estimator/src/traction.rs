@@ -1,17 +1,19 @@
 //! Equilibrated tractions F̂ by star problems (§6.2.2).
 //!
-//! Around a node i, the moments b = ∫F̂φ_i on the facets must satisfy Σ η b = r on each element of
-//! its star. Walked along, the system is a chain: the moment that leaves an element is the one that
-//! enters it plus r. One constant per component is left where no facet of the chain is known; it is
+//! Around a node i, the projected traction moments b = ∫F̂φ_i on the facets must satisfy Σ η b = r on each element of
+//! its star. In the order of the star the system is a chain: the moment that leaves an element is the one that
+//! enters it plus r. One constant per component is left where no facet of the chain is known. It is
 //! chosen so that the moments are nearest to those of the averaged finite-element traction. That is
 //! the pseudo-inverse of the star matrix, in as many operations as the star has facets.
 
+mod equilibrated;
 mod star_solver;
 
 use crate::element::Element;
 use crate::loaded::LoadedFacets;
 use crate::reconstruction::Densities;
-use crate::time_level::{Side, TimeLevel};
+use crate::time_level::TimeLevel;
+pub(crate) use equilibrated::{Equilibrated, FemStress};
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::mesh::Star;
 use percute_core::problem::Problem;
@@ -23,28 +25,28 @@ const FREE: u32 = u32::MAX;
 /// A relative miss that is rounding for sure.
 const EXPLAINED: f64 = 1e-12;
 
-/// What the star problems know of the boundary.
+/// The fixed data of the star problems.
 #[derive(Debug)]
 pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     pub(crate) elements: Vec<Element<D, N>>,
     /// For each facet, its place among the loaded facets, then the candidate facets of contact.
     slots: Vec<u32>,
-    /// For each local node, the facets by which a walk around it enters and leaves an element.
-    pub(crate) walk: [[Option<usize>; 2]; N],
+    /// For each local node, the facets by which its star enters and leaves an element.
+    pub(crate) crossing: [[Option<usize>; 2]; N],
     /// Number of loaded facets.
     loaded: usize,
-    /// Where the links of each contact node's star begin in [`TimeLevel::flux_before`].
-    pub(crate) contact_links: Vec<usize>,
+    /// Where the links of each contact node's star begin among those of all contact nodes.
+    contact_links: Vec<usize>,
 }
 
 /// How far a star is from compatible.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Compatibility {
+struct Compatibility {
     /// Largest |Σ η b − r| (N).
-    pub(crate) miss: f64,
+    miss: f64,
     /// Largest term (N).
-    pub(crate) scale: f64,
+    scale: f64,
 }
 
 impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
@@ -61,8 +63,8 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
-        let walk = problem.mesh().simplex().walk();
-        Self { problem, elements, slots, walk, loaded, contact_links }
+        let crossing = problem.mesh().simplex().walk();
+        Self { problem, elements, slots, crossing, loaded, contact_links }
     }
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.
@@ -82,29 +84,31 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         Problem::<D, N>::facet_moments(area, &densities[contact])[position]
     }
 
-    /// Solves one star. `flux` receives, for each link, the moment that leaves the element before
+    /// Solves one star. `moments` receives, for each link, the moment that leaves the element before
     /// it (and enters, with the other sign, the one after it).
-    pub(crate) fn solve_star(
+    fn solve_star(
         &self,
         level: &TimeLevel<D>,
+        stress: &FemStress<D>,
         node: NodeId,
         acceleration: &[f64; D],
         densities: &Densities<D>,
-        flux: &mut [[f64; D]],
+        moments: &mut [[f64; D]],
     ) -> Compatibility {
         let star = self.problem.mesh().stars().star(node);
         let ends = self.ends(level, densities, node, &star);
-        let walk = StarSolver { all: self, level, node, acceleration, elements: star.elements, ends: &ends };
+        let stress = &stress.of_element;
+        let solver = StarSolver { all: self, level, stress, node, acceleration, elements: star.elements, ends: &ends };
         let mut scale: f64 = 0.0;
-        let lack = walk.along(flux, &mut scale);
-        let miss = ends.close(&lack, flux);
+        let lack = solver.along(moments, &mut scale);
+        let miss = ends.close(&lack, moments);
         for c in 0..D {
-            scale = scale.max(flux[0][c].abs()).max(ends.moments[1][c].abs());
+            scale = scale.max(moments[0][c].abs()).max(ends.moments[1][c].abs());
         }
         Compatibility { miss, scale }
     }
 
-    /// What the first and the last link of a walk know of their moments.
+    /// The known moments of the first and the last link of a star.
     #[inline]
     fn ends(&self, level: &TimeLevel<D>, densities: &Densities<D>, node: NodeId, star: &Star<'_>) -> Ends<D> {
         let closed = star.is_closed();
@@ -118,9 +122,9 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     ///
     /// The terms of ∫σ_h∇φ_i are themselves sums, modulus times displacement gradient, that cancel in a
     /// turning body. They are looked at only where what is left of them does not explain the miss.
-    pub(crate) fn star_residual(&self, star: Compatibility, level: &TimeLevel<D>, node: NodeId) -> f64 {
+    fn star_residual(&self, star: Compatibility, level: &TimeLevel<D>, stress: &FemStress<D>, node: NodeId) -> f64 {
         let relative = |scale: f64| if star.miss == 0.0 { 0.0 } else { star.miss / scale };
-        let scale = star.scale.max(1e-12 * level.force_scale);
+        let scale = star.scale.max(1e-12 * stress.force_scale);
         if relative(scale) <= EXPLAINED {
             return relative(scale);
         }
@@ -133,26 +137,5 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         };
         let elements = self.problem.mesh().stars().star(node).elements;
         relative(elements.iter().map(terms).fold(scale, f64::max))
-    }
-
-    /// The fluxes by which a walk around local node `i` enters and leaves an element.
-    #[inline]
-    pub(crate) fn flux_around<'l>(
-        &self,
-        level: &'l TimeLevel<D>,
-        data: &Element<D, N>,
-        i: usize,
-        contact: Option<usize>,
-        side: Side,
-    ) -> (&'l [f64; D], &'l [f64; D]) {
-        let link = data.links[i] as usize;
-        match contact {
-            Some(at) if side == Side::Before => {
-                let first = self.problem.mesh().stars().link_range(data.nodes[i]).start;
-                let link = self.contact_links[at] + link - first;
-                (&level.flux_before[link], &level.flux_before[link + 1])
-            }
-            _ => (&level.flux[link], &level.flux[link + 1]),
-        }
     }
 }

@@ -51,7 +51,7 @@ fn the_json_document_has_its_keys() {
         parts.kinetic parts.elastic parts.contact \
         balance.kinetic balance.strain balance.initial balance.work_of_loads balance.work_of_supports \
         balance.work_of_contact balance.friction balance.energy_drift balance.impulse_drift \
-        residuals.star_compatibility residuals.divergence residuals.penetration_between_knots";
+        residuals.star_compatibility residuals.divergence residuals.penetration_between_instants";
     for path in numbers.split_whitespace() {
         assert!(at(&document, path).is_number(), "{path}");
     }

@@ -1,27 +1,27 @@
 //! The normal motion of a candidate node over the whole run: contact phases and the windows
 //! between them.
 
-use super::window::{Path, Window, least_of_parabola};
+use super::window::{FlightWindow, Path, least_of_parabola};
 use crate::residual::{Residuals, worse};
 
-/// Normal velocity (m/s) and gap (m) of a candidate node at the knots known so far.
+/// Normal velocity (m/s) and gap (m) of a candidate node at the half-step instants known so far.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactTrack {
     undeformed_gap: f64,
     /// Body size (m), which the residuals of distances refer to.
     size: f64,
     known: Vec<(f64, f64)>,
-    /// Half steps and wanted velocities since the last known knot.
+    /// Half steps and wanted velocities since the last known instant.
     lengths: Vec<f64>,
     wanted: Vec<f64>,
     touching: bool,
-    /// The first knot whose motion is not that of the simulation.
+    /// The first instant whose motion is not that of the simulation.
     first_altered: usize,
     /// Whether contact is solved for; a prescribed node keeps its motion.
     free: bool,
     onset: f64,
-    at_knots: f64,
-    between_knots: f64,
+    at_instants: f64,
+    between_instants: f64,
 }
 
 /// One step of the simulation as a candidate node sees it.
@@ -48,8 +48,8 @@ impl ContactTrack {
             first_altered: usize::MAX,
             free,
             onset: 0.0,
-            at_knots: 0.0,
-            between_knots: 0.0,
+            at_instants: 0.0,
+            between_instants: 0.0,
         }
     }
 
@@ -78,10 +78,10 @@ impl ContactTrack {
         }
     }
 
-    /// Solves the window since the last known knot.
+    /// Solves the window since the last known instant.
     fn close(&mut self, arrives: bool, tolerance: f64) {
         let (velocity, gap) = self.last();
-        let window = Window { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
+        let window = FlightWindow { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
         // A prescribed node cannot be moved out of the way.
         let path = if self.free { window.solve(tolerance) } else { window.integrate(&self.wanted) };
         self.record(path, arrives);
@@ -105,8 +105,8 @@ impl ContactTrack {
         let mut before = (velocity, gap);
         for (m, &after) in path.iter().enumerate() {
             let (_, least) = least_of_parabola(before, after, self.lengths[m], m);
-            self.at_knots = worse(self.at_knots, -after.1 / self.size);
-            self.between_knots = worse(self.between_knots, -least / self.size);
+            self.at_instants = worse(self.at_instants, -after.1 / self.size);
+            self.between_instants = worse(self.between_instants, -least / self.size);
             before = after;
         }
         self.known.extend(path);
@@ -118,22 +118,22 @@ impl ContactTrack {
         self.known[self.known.len() - 1]
     }
 
-    /// Number of knots known so far.
+    /// Number of instants known so far.
     #[inline]
     pub(crate) fn known(&self) -> usize {
         self.known.len()
     }
 
-    /// Normal velocity (m/s) and gap (m) at a known knot.
+    /// Normal velocity (m/s) and gap (m) at a known instant.
     #[inline]
-    pub(crate) fn at(&self, knot: usize) -> (f64, f64) {
-        self.known[knot]
+    pub(crate) fn at(&self, instant: usize) -> (f64, f64) {
+        self.known[instant]
     }
 
-    /// Whether the motion at a known knot differs from that of the simulation.
+    /// Whether the motion at a known instant differs from that of the simulation.
     #[inline]
-    pub(crate) fn is_altered(&self, knot: usize) -> bool {
-        knot >= self.first_altered
+    pub(crate) fn is_altered(&self, instant: usize) -> bool {
+        instant >= self.first_altered
     }
 
     /// Gap of the node's place in the undeformed mesh (m).
@@ -145,8 +145,8 @@ impl ContactTrack {
     /// Adds what this node leaves to the residuals.
     pub(crate) fn report(&self, residuals: &mut Residuals) {
         residuals.onset = worse(residuals.onset, self.onset);
-        residuals.penetration_at_knots = worse(residuals.penetration_at_knots, self.at_knots);
-        residuals.penetration_between_knots = worse(residuals.penetration_between_knots, self.between_knots);
+        residuals.penetration_at_instants = worse(residuals.penetration_at_instants, self.at_instants);
+        residuals.penetration_between_instants = worse(residuals.penetration_between_instants, self.between_instants);
     }
 }
 

@@ -1,18 +1,34 @@
-//! Nodal motion between contacts: velocity continuous and linear between the knots t_n and
-//! t_{n+½}, displacement its exact integral.
+//! Nodal motion between contacts: velocity continuous and linear between the half-step instants,
+//! displacement its exact integral.
 
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// Nodal values at one knot.
+/// u_CA and u̇_CA at all nodes at one half-step instant; the normal components at contact nodes are those of the simulation.
 #[derive(Clone, Debug)]
-pub(crate) struct Knot<const D: usize> {
-    /// u_CA (m); the normal component at contact nodes is that of the simulation.
-    pub(crate) displacement: Vec<[f64; D]>,
-    /// u̇_CA (m/s), likewise.
-    pub(crate) velocity: Vec<[f64; D]>,
-    /// ∫₀ᵗ ã (m/s).
-    pub(crate) increment: Vec<[f64; D]>,
+pub(crate) struct NodalMotion<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    velocity: Vec<[f64; D]>,
+}
+
+impl<const D: usize> NodalMotion<D> {
+    /// u_CA (m).
+    #[inline]
+    pub(crate) fn displacement(&self) -> &[[f64; D]] {
+        &self.displacement
+    }
+
+    /// u̇_CA (m/s).
+    #[inline]
+    pub(crate) fn velocity(&self) -> &[[f64; D]] {
+        &self.velocity
+    }
+
+    /// Both, for tests that change them.
+    #[cfg(test)]
+    pub(crate) fn parts_mut(&mut self) -> [&mut Vec<[f64; D]>; 2] {
+        [&mut self.displacement, &mut self.velocity]
+    }
 }
 
 /// The motion of all nodes, advanced step by step.
@@ -24,9 +40,6 @@ pub(crate) struct FreeMotion<const D: usize> {
     half_step: Vec<[f64; D]>,
     next: usize,
 }
-
-/// Displacement and velocity at a knot.
-pub(crate) type Motion<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
 
 impl<const D: usize> FreeMotion<D> {
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
@@ -47,7 +60,7 @@ impl<const D: usize> FreeMotion<D> {
         times: &TimeGrid,
         acceleration: &[[f64; D]],
         given: Option<&[[f64; D]]>,
-    ) -> (Option<Motion<D>>, Motion<D>) {
+    ) -> (Option<NodalMotion<D>>, NodalMotion<D>) {
         let n = self.next;
         self.next += 1;
         let mut mid = None;
@@ -64,7 +77,7 @@ impl<const D: usize> FreeMotion<D> {
                 0.5 * (v(n - 1) + v(n))
             });
             self.integrate(half, &velocity);
-            mid = Some((self.displacement.clone(), velocity.clone()));
+            mid = Some(NodalMotion { displacement: self.displacement.clone(), velocity: velocity.clone() });
 
             // v_n = v_{n−½} + ½Δt_{n−1} a_n, [38] when the step is constant.
             match given {
@@ -82,7 +95,7 @@ impl<const D: usize> FreeMotion<D> {
         for (v, a) in self.half_step.iter_mut().zip(acceleration) {
             (0..D).for_each(|c| v[c] += h * a[c]);
         }
-        (mid, (self.displacement.clone(), self.velocity.clone()))
+        (mid, NodalMotion { displacement: self.displacement.clone(), velocity: self.velocity.clone() })
     }
 
     /// Exact integral of a velocity that is linear over a length of time.

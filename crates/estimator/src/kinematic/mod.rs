@@ -2,8 +2,10 @@
 //!
 //! [`FreeMotion`] carries the nodal values \[39\], \[40\], \[43\] of all nodes along the steps;
 //! [`ContactTrack`] replaces the normal component of a node that may touch by the solution of
-//! problem P_CA. Both end in an [`ElementMotion`], which only this module can make: the measure
-//! cannot be fed a raw finite-element field.
+//! problem P_CA. Both end in an [`ElementMotion`]. Only this module makes one, so that no raw finite-element field can be
+//! measured.
+//!
+//! Half-step instant k of a run is t_{k/2}: t_n for k = 2n, the middle of a step for odd k.
 
 mod contact_track;
 mod free_motion;
@@ -11,12 +13,12 @@ mod shape;
 mod window;
 
 pub(crate) use contact_track::{ContactTrack, NormalStep};
-pub(crate) use free_motion::{FreeMotion, Knot, Motion};
+pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
 use percute_core::ids::NodeId;
 use percute_core::obstacle::Plane;
 
-/// u_CA and u̇_CA at the nodes of one element at one knot.
+/// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ElementMotion<const D: usize, const N: usize> {
     displacement: [[f64; D]; N],
@@ -27,16 +29,16 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     /// The motion of an element of which no node may touch a plane, or before its contact nodes
     /// are known.
     #[inline]
-    pub(crate) fn gather(knot: &Knot<D>, nodes: &[NodeId; N]) -> Self {
+    pub(crate) fn gather(motion: &NodalMotion<D>, nodes: &[NodeId; N]) -> Self {
         Self {
-            displacement: nodes.map(|n| knot.displacement[n.index()]),
-            velocity: nodes.map(|n| knot.velocity[n.index()]),
+            displacement: nodes.map(|n| motion.displacement()[n.index()]),
+            velocity: nodes.map(|n| motion.velocity()[n.index()]),
         }
     }
 
     /// Puts the solution of P_CA in the place of the normal components at local node `i`.
-    pub(crate) fn set_normal(&mut self, i: usize, plane: &Plane<D>, track: &ContactTrack, knot: usize) {
-        settle(&mut self.displacement[i], &mut self.velocity[i], plane, track, knot);
+    pub(crate) fn set_normal(&mut self, i: usize, plane: &Plane<D>, track: &ContactTrack, instant: usize) {
+        settle(&mut self.displacement[i], &mut self.velocity[i], plane, track, instant);
     }
 
     #[inline]
@@ -56,13 +58,13 @@ pub(crate) fn settle<const D: usize>(
     velocity: &mut [f64; D],
     plane: &Plane<D>,
     track: &ContactTrack,
-    knot: usize,
+    instant: usize,
 ) {
-    if !track.is_altered(knot) {
+    if !track.is_altered(instant) {
         // Not rebuilt from the gap, in which a distant plane would drown the displacement.
         return;
     }
-    let (speed, gap) = track.at(knot);
+    let (speed, gap) = track.at(instant);
     let (_, tangential) = plane.split(displacement);
     let (_, sliding) = plane.split(velocity);
     for c in 0..D {

@@ -1,11 +1,11 @@
 //! Problem P_CA with the condition that the gap stays non-negative.
 //!
-//! The gap is linear in the knot velocities at every point of the window, so each point gives a
+//! The gap is linear in the velocities at the half-step instants, at every point of the window, so each point gives a
 //! linear constraint. Only a few matter: the points where the gap is least are added as they are
 //! found (an exchange method) and dropped when they no longer press, until nothing penetrates. The
 //! distance from the wanted velocities grows with every exchange, so that none comes back.
 
-use super::window::Window;
+use super::window::FlightWindow;
 use nalgebra::{DMatrix, DVector};
 
 /// Exchanges after which the search ends; what still penetrates shows in the residuals.
@@ -38,10 +38,10 @@ thread_local! {
 
 /// The velocities nearest to the wanted ones under the onset and a non-negative gap.
 /// `start` is the solution without the gap condition.
-pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
+pub(super) fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
     #[cfg(test)]
     SHAPED.set(SHAPED.get() + 1);
-    let free = window.free_knots();
+    let free = window.free_instants();
     let mut velocity = start.to_vec();
     let mut cuts: Vec<Cut> = Vec::new();
     for _ in 0..MOST_EXCHANGES {
@@ -74,7 +74,7 @@ pub(super) fn shape(window: &Window<'_>, start: &[f64], tolerance: f64) -> Vec<f
 }
 
 /// A point at the end of a half step is the beginning of the next.
-fn canonical(window: &Window<'_>, cut: Cut) -> Cut {
+fn canonical(window: &FlightWindow<'_>, cut: Cut) -> Cut {
     let ends = cut.offset == window.lengths[cut.half_step];
     if ends && cut.half_step + 1 < window.lengths.len() {
         Cut { half_step: cut.half_step + 1, offset: 0.0 }
@@ -98,12 +98,12 @@ fn add(cuts: &mut Vec<Cut>, new: Cut, apart: f64) {
 }
 
 /// The gap at a cut as a linear condition: gap ≥ 0.
-fn condition(window: &Window<'_>, cut: &Cut) -> Condition {
-    let free = window.free_knots();
+fn condition(window: &FlightWindow<'_>, cut: &Cut) -> Condition {
+    let free = window.free_instants();
     let (gap, first) = window.start;
     let mut row = vec![0.0; free];
     let mut given = gap;
-    // Velocity of knot k, counted from the first one, with a coefficient.
+    // Velocity of instant k, counted from the first one, with a coefficient.
     let mut add = |k: usize, coefficient: f64| match k {
         0 => given += coefficient * first,
         k if k <= free => row[k - 1] += coefficient,
@@ -123,8 +123,12 @@ fn condition(window: &Window<'_>, cut: &Cut) -> Condition {
 ///
 /// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows from
 /// them by the diagonal weights, and the system is as small as the number of conditions.
-fn nearest(window: &Window<'_>, equality: Option<Condition>, inequalities: Vec<Condition>) -> (Vec<f64>, Vec<bool>) {
-    let free = window.free_knots();
+fn nearest(
+    window: &FlightWindow<'_>,
+    equality: Option<Condition>,
+    inequalities: Vec<Condition>,
+) -> (Vec<f64>, Vec<bool>) {
+    let free = window.free_instants();
     let equal = usize::from(equality.is_some());
     let conditions: Vec<Condition> = equality.into_iter().chain(inequalities).collect();
     let count = conditions.len();

@@ -5,22 +5,22 @@ use super::shape::{Cut, shape};
 /// A window of half steps: from the start or the end of a contact phase to the beginning of the
 /// next one, or to the end of the run.
 #[derive(Clone, Debug)]
-pub(super) struct Window<'a> {
-    /// Gap (m) and normal velocity (m/s) at its first knot, both given.
+pub(super) struct FlightWindow<'a> {
+    /// Gap (m) and normal velocity (m/s) at its first instant, both given.
     pub(super) start: (f64, f64),
     /// Lengths of its half steps (s).
     pub(super) lengths: &'a [f64],
-    /// Normal velocity of the simulation at the knots after the first (m/s). If the window ends
-    /// in contact, the last knot is not free and its value is ignored.
+    /// Normal velocity of the simulation at the instants after the first (m/s). If the window ends
+    /// in contact, the last instant is not free and its value is ignored.
     pub(super) wanted: &'a [f64],
-    /// Whether the node arrives on the plane at rest at the last knot (the onset).
+    /// Whether the node arrives on the plane at rest at the last instant (the onset).
     pub(super) arrives: bool,
 }
 
-/// Velocity (m/s) and gap (m) at the knots after the first.
+/// Velocity (m/s) and gap (m) at the instants after the first.
 pub(super) type Path = Vec<(f64, f64)>;
 
-impl Window<'_> {
+impl FlightWindow<'_> {
     /// The velocity nearest to the wanted one that respects the onset and does not penetrate
     /// by more than `tolerance` (m).
     pub(super) fn solve(&self, tolerance: f64) -> Path {
@@ -32,17 +32,17 @@ impl Window<'_> {
         self.integrate(&shape(self, &velocity, 0.1 * tolerance))
     }
 
-    /// Number of knots whose velocity is free.
-    pub(super) fn free_knots(&self) -> usize {
+    /// Number of instants whose velocity is free.
+    pub(super) fn free_instants(&self) -> usize {
         self.wanted.len() - usize::from(self.arrives)
     }
 
-    /// Length that knot `k` (from 0, after the first) stands for in the trapezoidal integral.
+    /// Length that instant `k` (from 0, after the first) stands for in the trapezoidal integral.
     pub(super) fn trapezoid(&self, k: usize) -> f64 {
         0.5 * (self.lengths[k] + self.lengths.get(k + 1).copied().unwrap_or(0.0))
     }
 
-    /// ω of knot `k`: the mean length of the half steps that meet there, of the one at an end.
+    /// ω of instant `k`: the mean length of the half steps that meet there, of the one at an end.
     pub(super) fn weight(&self, k: usize) -> f64 {
         match self.lengths.get(k + 1) {
             Some(next) => 0.5 * (self.lengths[k] + next),
@@ -50,14 +50,14 @@ impl Window<'_> {
         }
     }
 
-    /// The solution of the equality problem: weights and trapezoidal lengths of free knots agree,
+    /// The solution of the equality problem: weights and trapezoidal lengths of free instants agree,
     /// so that the onset shifts all of them by the same amount.
     pub(super) fn shifted(&self) -> Vec<f64> {
         let mut velocity = self.wanted.to_vec();
         if !self.arrives {
             return velocity;
         }
-        let free = self.free_knots();
+        let free = self.free_instants();
         velocity[free] = 0.0;
         if free == 0 {
             return velocity;
@@ -117,23 +117,23 @@ pub(super) fn least_of_parabola(before: (f64, f64), after: (f64, f64), length: f
 mod tests {
     use super::*;
 
-    fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> Window<'a> {
-        Window { start, lengths, wanted, arrives: true }
+    fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> FlightWindow<'a> {
+        FlightWindow { start, lengths, wanted, arrives: true }
     }
 
-    /// A step has two half steps, so that tracks never make a window without a free knot; should one
+    /// A step has two half steps, so that tracks never make a window without a free instant; should one
     /// come, it is rest, and the way that is missing shows at its end.
     #[test]
-    fn without_free_knots() {
+    fn without_free_instants() {
         assert_eq!(window((0.0, 0.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.0)]);
         assert_eq!(window((2.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.5)]);
         // One that cannot but penetrate is left as it is.
         assert_eq!(window((0.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, -1.5)]);
     }
 
-    /// Between two contacts with nothing between them but one knot, only rest is left.
+    /// Between two contacts with nothing between them but one instant, only rest is left.
     #[test]
-    fn with_one_free_knot() {
+    fn with_one_free_instant() {
         for wanted in [-3.0, 0.0, 4.0] {
             let path = window((0.0, 0.0), &[1.0, 1.0], &[wanted, 0.0]).solve(1e-12);
             assert_eq!(path, [(0.0, 0.0), (0.0, 0.0)]);

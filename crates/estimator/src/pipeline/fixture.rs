@@ -1,7 +1,7 @@
 //! Small problems for the tests of this module, and their steps prepared.
 
 use super::prepare::Preparation;
-use crate::options::{Options, Reconstruction};
+use crate::options::{Options, ReconstructionChoice};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
@@ -66,7 +66,7 @@ pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
 pub(super) fn prepared<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    reconstruction: Reconstruction,
+    reconstruction: ReconstructionChoice,
 ) -> Preparation<'p, 2, 3> {
     prepared_until(problem, times, reconstruction, times.step_count())
 }
@@ -75,7 +75,7 @@ pub(super) fn prepared<'p>(
 pub(super) fn prepared_until<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    reconstruction: Reconstruction,
+    reconstruction: ReconstructionChoice,
     last: usize,
 ) -> Preparation<'p, 2, 3> {
     let mut history = History::new(times);

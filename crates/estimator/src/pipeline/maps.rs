@@ -8,13 +8,12 @@ use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::request::{Request, RequestError};
-use crate::time_level::TimeLevel;
-use crate::traction::Equilibration;
+use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use rayon::prelude::*;
 
-/// What one element contributes at one requested step.
+/// The contribution of one element at one requested step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contribution {
     pub(crate) element: ElementId,
@@ -59,17 +58,17 @@ impl<const D: usize> Maps<D> {
         instants: &[f64],
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
-        levels: &[TimeLevel<D>],
+        levels: &[Equilibrated<D>],
     ) {
         let zeros = vec![0.0; equilibration.elements.len()];
         for level in levels {
-            if !self.want(level.index) {
+            if !self.want(level.index()) {
                 continue;
             }
             let fields = self.request.fields.then(|| fields(problem, equilibration, choice, level));
             self.made.push(ElementMap {
-                step: level.index,
-                time: instants[level.index],
+                step: level.index(),
+                time: instants[level.index()],
                 kinetic: zeros.clone(),
                 elastic: zeros.clone(),
                 contact: zeros.clone(),
@@ -79,7 +78,7 @@ impl<const D: usize> Maps<D> {
         }
     }
 
-    /// Puts what elements contribute in its place.
+    /// Puts the contributions of elements in their places.
     pub(crate) fn put<'c>(&mut self, contributions: impl IntoIterator<Item = &'c Contribution>) {
         for contribution in contributions {
             let e = contribution.element.index();
@@ -120,7 +119,7 @@ fn fields<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     equilibration: &Equilibration<'_, D, N>,
     choice: Acceleration,
-    level: &TimeLevel<D>,
+    level: &Equilibrated<D>,
 ) -> AdmissibleFields<D> {
     let elements = &equilibration.elements;
     let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];
@@ -132,8 +131,8 @@ fn fields<const D: usize, const N: usize>(
     });
     let (stress, acceleration) = means.into_iter().unzip();
     AdmissibleFields {
-        displacement: level.knot.displacement.clone(),
-        velocity: level.knot.velocity.clone(),
+        displacement: level.forces.now.motion.displacement().to_vec(),
+        velocity: level.forces.now.motion.velocity().to_vec(),
         stress,
         compatible_stress: Vec::new(),
         acceleration,

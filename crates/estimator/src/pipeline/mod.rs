@@ -1,11 +1,13 @@
 //! From steps to an estimate: steps are prepared one after the other ([`prepare`]), gathered in
 //! windows, worked on in parallel ([`window`]), and summed in a fixed order ([`totals`]).
 
+mod far;
 #[cfg(test)]
 mod fixture;
 mod maps;
 mod near;
 mod prepare;
+mod sampling;
 mod totals;
 mod window;
 
@@ -19,7 +21,7 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
 use rayon::ThreadPool;
-use window::Window;
+use window::LevelWindow;
 pub use window::memory;
 
 /// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
@@ -42,7 +44,7 @@ pub struct Estimator<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     pool: ThreadPool,
     preparation: Preparation<'p, D, N>,
-    window: Window<'p, D, N>,
+    window: LevelWindow<'p, D, N>,
 }
 
 impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
@@ -62,13 +64,11 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         }
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-        Ok(Self {
-            problem,
-            times,
-            pool: pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?,
-            preparation: Preparation::new(problem, times, &options),
-            window: Window::new(problem, times, &options, Maps::new(Request::default(), problem)?),
-        })
+        let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;
+        let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
+        let mut preparation = Preparation::new(problem, times, &options);
+        preparation.prepare(&window.equilibration.elements);
+        Ok(Self { problem, times, pool, preparation, window })
     }
 
     /// Keeps the maps requested as well; asked before the first step, for of steps already taken there
@@ -99,7 +99,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     /// Hands the levels that are ready to the window.
     fn pass_on(&mut self, last: bool) {
         while let Some(level) = self.preparation.next_ready(last) {
-            self.window.push(&self.pool, level, self.preparation.tracks());
+            self.window.push(&self.pool, level, &self.preparation);
         }
     }
 }

@@ -4,50 +4,47 @@ mod impulse;
 mod interval;
 mod supports;
 
+use crate::acceleration::accelerate;
+use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
-use crate::kinematic::{ContactTrack, FreeMotion, Knot, Motion, NormalStep};
+use crate::kinematic::{ContactTrack, FreeMotion, NodalMotion, NormalStep};
 use crate::loaded::LoadedFacets;
-use crate::options::{Ablation, Options};
-use crate::reconstruction::{AuxiliarySolution, ImpulseSmoothing, Pressure, Reading, SurfaceStep, kinetic_energy};
+use crate::options::Options;
+use crate::reconstruction::{self, BalancedFields, OffContact, Reconstruction, SimulatedStep, SurfaceStep};
 use crate::residual::{Residuals, worse};
-use crate::time_level::TimeLevel;
+use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, TimeLevel};
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{Step, StepCheck};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use supports::SupportCheck;
 
-/// A auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error would be a
-/// thousand times what there is.
-const UNSTABLE: f64 = 1e6;
-
-/// Turns steps into levels whose fields are known on both sides.
+/// Turns steps into levels whose forces are known.
 #[derive(Debug)]
 pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     dynamics: Dynamics<'p, D, N>,
     loaded: LoadedFacets<'p, D, N>,
-    reading: Reading<D>,
-    /// What the balance of the reading `corrected` is built on.
-    auxiliary: Option<AuxiliarySolution<D>>,
-    stopping: Option<ImpulseSmoothing<D>>,
-    /// Largest kinetic and strain energy of the simulation so far (J), for the auxiliary solution.
-    liveliest: f64,
+    reconstruction: Box<dyn Reconstruction<D, N> + 'p>,
     every: usize,
     motion: FreeMotion<D>,
     tracks: Vec<ContactTrack>,
     supports: SupportCheck,
-    /// Levels not yet handed on; `ready` of them are complete.
-    levels: VecDeque<TimeLevel<D>>,
-    ready: usize,
-    /// Normal pressures of the steps since the last sampled level that was handed on.
-    pressures: Vec<Vec<[Pressure<D>; 2]>>,
-    /// The step before the first of `levels` that is not complete.
+    /// The step before `current`.
     before: Option<SurfaceStep<D>>,
+    /// The level at which the first step without F_DA begins.
+    current: Option<ForcesBefore<D>>,
+    /// The levels after it.
+    motions: VecDeque<MotionKnown<D>>,
+    /// Complete levels not yet handed on.
+    ready: VecDeque<ForcesKnown<D>>,
+    /// Densities off contact of the steps since the last sampled level that was handed on.
+    off_contact: Vec<OffContact<D>>,
     steps: StepCheck,
     pub(crate) impulse: Impulse,
     pub(crate) residuals: Residuals,
@@ -55,30 +52,34 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
-        let reading = Reading::new(options.reconstruction, problem).without(options.ablation);
         Self {
             problem,
             times,
             dynamics: Dynamics::new(problem, times),
             loaded: LoadedFacets::new(problem),
-            auxiliary: (matches!(reading, Reading::Corrected(_)) && options.ablation != Ablation::AuxiliarySolution)
-                .then(|| AuxiliarySolution::new(problem, options.ablation != Ablation::Correction)),
-            stopping: (reading.acts_off_contact() && options.ablation != Ablation::ImpulseSmoothing)
-                .then(|| ImpulseSmoothing::new(problem)),
-            liveliest: 0.0,
-            reading,
+            reconstruction: reconstruction::new(problem, times, options),
             every: options.every,
             motion: FreeMotion::new(problem),
             tracks: Vec::new(),
             supports: SupportCheck::default(),
-            levels: VecDeque::new(),
-            ready: 0,
-            pressures: Vec::new(),
             before: None,
+            current: None,
+            motions: VecDeque::new(),
+            ready: VecDeque::new(),
+            off_contact: Vec::new(),
             steps: StepCheck::default(),
             impulse: Impulse::default(),
             residuals: Residuals::default(),
         }
+    }
+
+    /// Prepares what the reconstruction needs of the elements.
+    pub(super) fn prepare(&mut self, elements: &[Element<D, N>]) {
+        self.reconstruction.prepare(elements);
+    }
+
+    pub(super) fn reconstruction(&self) -> &dyn Reconstruction<D, N> {
+        &*self.reconstruction
     }
 
     /// Number of steps taken in.
@@ -107,7 +108,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
-            _ => self.check_auxiliary(step),
+            _ => self.reconstruction.check(step),
         }
     }
 
@@ -138,9 +139,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// A node that touches at step 1 must start at least |v_n|Δt₀/4 away, or P_CA has no solution.
     fn check_first_touch(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        let at_start = &self.levels[0].surface.touching;
+        let Some(start) = &self.current else { return Ok(()) };
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
-            if step.touching[at] && !at_start[at] {
+            if step.touching[at] && !start.level.surface.touching[at] {
                 let (velocity, gap) = self.tracks[at].at(0);
                 let smallest_gap = -0.25 * velocity * self.times.step(0);
                 if gap < smallest_gap {
@@ -153,136 +154,77 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Takes in one step.
     pub(super) fn push(&mut self, step: &Step<'_, D>) {
-        let n = step.index;
+        let (problem, n) = (self.problem, step.index);
         self.steps.accept(step);
         let mut force = vec![[0.0; D]; step.displacement.len()];
-        let strain = self.dynamics.forces_without_contact(n, step.displacement, &mut force);
-        // The equilibrium of ã needs what the scheme makes of u_n; the motion takes what is given.
-        let acceleration =
-            step.acceleration.map_or_else(|| self.total_acceleration(&force, step.reaction), <[_]>::to_vec);
-        let (mid, now) = self.motion.advance(self.problem, self.times, &acceleration, step.velocity);
-
-        let knot = |(displacement, velocity)| Knot { displacement, velocity, increment: Vec::new() };
-        let (mid, knot) = (mid.map(knot), knot(now));
-        self.track_contact(step, mid.as_ref(), &knot);
-        let miss = self.supports.advance(self.problem, self.times, n, &knot);
+        let strain_energy = self.dynamics.forces_without_contact(n, step.displacement, &mut force);
+        // The equilibrium of ã needs the acceleration that the scheme makes of u_n; the motion takes the given one.
+        let acceleration = step.acceleration.map_or_else(
+            || Cow::Owned(accelerate(problem, self.dynamics.inverse_mass(), force.clone(), step.reaction)),
+            Cow::Borrowed,
+        );
+        let (mid, now) = self.motion.advance(problem, self.times, &acceleration, step.velocity);
+        self.track_contact(step, mid.as_ref(), &now);
+        let miss = self.supports.advance(problem, self.times, n, &now);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
-        let smoothed_reaction = match &mut self.stopping {
-            Some(stopping) => stopping.advance(self.problem, self.times, n, step.reaction, &acceleration),
-            None => step.reaction.to_vec(),
-        };
-        let (displacement, force) = self.source_of_balance(n, step.displacement, &smoothed_reaction, force);
-        if self.auxiliary.is_some() {
-            self.liveliest = self.liveliest.max(strain + kinetic_energy(&knot.velocity, self.problem.mass()));
-        }
-        self.levels.push_back(TimeLevel {
+        let (velocity, acceleration) = (now.velocity(), &*acceleration);
+        let simulated = SimulatedStep { step, velocity, acceleration, strain_energy };
+        let BalancedFields { displacement, force, contact } =
+            self.reconstruction.advance(&self.dynamics, &simulated, force);
+        let level = TimeLevel {
+            index: n,
             displacement,
-            force,
-            body_force: self.problem.body_force_at(self.times.instants()[n]),
+            body_force: problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
-            surface: SurfaceStep {
-                reaction: step.reaction.to_vec(),
-                smoothed_reaction,
-                touching: step.touching.to_vec(),
-            },
-            ..TimeLevel::new(n, mid, knot, self.problem.surface().facets().len())
-        });
+            surface: SurfaceStep { reaction: step.reaction.to_vec(), force: contact, touching: step.touching.to_vec() },
+        };
+        let motion = MotionKnown { level, now, mid, force };
         if n == 0 {
-            self.start();
-        } else if n >= 2 {
+            self.check_initial(&motion.now);
+            self.current = Some(self.first(motion));
+            return;
+        }
+        self.motions.push_back(motion);
+        if n >= 2 {
             self.complete_interval();
         }
-    }
-
-    /// Refuses to go on with an auxiliary solution that has become unstable, as it does where a history of another scheme takes
-    /// steps above the critical one: a stable one has about the energy of the simulation, an unstable one soon any.
-    fn check_auxiliary(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        let Some(auxiliary) = &self.auxiliary else { return Ok(()) };
-        let energy = auxiliary.kinetic_energy(self.problem.mass());
-        // A body that starts unstrained at rest has no energy before it is loaded.
-        if self.liveliest > 0.0 && energy > UNSTABLE * self.liveliest {
-            let longest_step = self.times.longest_step();
-            return Err(EstimateError::AuxiliarySolution { step: step.index, time: step.time, longest_step });
-        }
-        Ok(())
     }
 
     /// Takes in that no more steps come.
     pub(super) fn finish(&mut self) {
         self.complete_interval();
-        if let Some(last) = self.levels.back_mut() {
-            self.impulse.add_last(self.problem, self.times, last.index, &last.surface.reaction);
-            // No step follows: both sides are one.
-            last.density_after = last.density_before.clone();
+        if let Some(last) = self.current.take() {
+            self.impulse.add_last(self.problem, self.times, last.level.index, &last.level.surface.reaction);
+            self.ready.extend(last.last());
         }
-        self.ready = self.levels.len();
         let tolerance = self.problem.contact_tolerance();
         self.tracks.iter_mut().for_each(|track| track.finish(tolerance));
     }
 
-    /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their pressures.
-    pub(super) fn next_ready(&mut self, last: bool) -> Option<TimeLevel<D>> {
-        while self.ready > 0 {
-            self.ready -= 1;
-            let mut level = self.levels.pop_front()?;
-            self.pressures.append(&mut level.pressures);
-            let end = last && self.levels.is_empty();
-            if level.index % self.every == 0 || end {
-                level.pressures = std::mem::take(&mut self.pressures);
+    /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities off
+    /// contact.
+    pub(super) fn next_ready(&mut self, last: bool) -> Option<ForcesKnown<D>> {
+        while let Some(mut level) = self.ready.pop_front() {
+            self.off_contact.append(&mut level.off_contact);
+            let end = last && self.ready.is_empty();
+            if level.level.index % self.every == 0 || end {
+                level.off_contact = std::mem::take(&mut self.off_contact);
                 return Some(level);
             }
         }
         None
     }
 
-    /// M⁻¹ of these forces and of those of contact: a_n of the simulation, ã_n of the auxiliary solution.
-    fn total_acceleration(&self, force: &[[f64; D]], reaction: &[[f64; D]]) -> Vec<[f64; D]> {
-        let mut acceleration = force.to_vec();
-        for (contact, reaction) in self.problem.surface().nodes().iter().zip(reaction) {
-            (0..D).for_each(|c| acceleration[contact.node.index()][c] += reaction[c]);
-        }
-        self.over_mass(&mut acceleration);
-        acceleration
-    }
-
-    fn over_mass(&self, force: &mut [[f64; D]]) {
-        for (f, inverse) in force.iter_mut().zip(self.dynamics.inverse_mass()) {
-            (0..D).for_each(|c| f[c] *= inverse);
-        }
-    }
-
-    /// The displacement whose stress is equilibrated, and its forces but contact: those of the simulation, or the
-    /// auxiliary solution's, which then goes on to the next step.
-    fn source_of_balance(
-        &mut self,
-        n: usize,
-        displacement: &[[f64; D]],
-        smoothed_reaction: &[[f64; D]],
-        mut force: Vec<[f64; D]>,
-    ) -> Motion<D> {
-        let (Some(auxiliary), Reading::Corrected(whole)) = (&self.auxiliary, &self.reading) else {
-            return (displacement.to_vec(), force);
-        };
-        let displacement = auxiliary.displacement().to_vec();
-        self.dynamics.forces_without_contact(n, &displacement, &mut force);
-        let pull = interval::pull(self.problem, &whole.densities(self.problem, smoothed_reaction));
-        let acceleration = self.total_acceleration(&force, &pull);
-        if let Some(auxiliary) = &mut self.auxiliary {
-            auxiliary.advance(self.problem, &self.dynamics, self.times, n, &acceleration);
-        }
-        (displacement, force)
-    }
-
     /// Hands the normal motion of the candidate nodes to their tracks.
-    fn track_contact(&mut self, step: &Step<'_, D>, mid: Option<&Knot<D>>, now: &Knot<D>) {
+    fn track_contact(&mut self, step: &Step<'_, D>, mid: Option<&NodalMotion<D>>, now: &NodalMotion<D>) {
         let tolerance = self.problem.contact_tolerance();
         let size = self.problem.mesh().size();
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
             let (i, plane) = (contact.node.index(), &self.problem.obstacles()[contact.obstacle]);
-            let normal = |knot: &Knot<D>| plane.split(&knot.velocity[i]).0;
+            let normal = |motion: &NodalMotion<D>| plane.split(&motion.velocity()[i]).0;
             let Some(mid) = mid else {
-                let gap = self.problem.surface().gap(at, &now.displacement[i], self.problem.obstacles());
+                let gap = self.problem.surface().gap(at, &now.displacement()[i], self.problem.obstacles());
                 let start = (gap, normal(now));
                 let track = ContactTrack::new(contact.undeformed_gap, size, contact.free, start, step.touching[at]);
                 self.tracks.push(track);
@@ -295,12 +237,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The initial conditions hold by construction; checked all the same.
-    fn start(&mut self) {
-        let knot = &mut self.levels[0].knot;
-        knot.increment = vec![[0.0; D]; knot.velocity.len()];
+    fn check_initial(&mut self, motion: &NodalMotion<D>) {
         let fields = [
-            (&knot.displacement, self.problem.initial_displacement()),
-            (&knot.velocity, self.problem.initial_velocity()),
+            (motion.displacement(), self.problem.initial_displacement()),
+            (motion.velocity(), self.problem.initial_velocity()),
         ];
         for (made, given) in fields {
             let largest = given.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));

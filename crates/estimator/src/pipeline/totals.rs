@@ -1,7 +1,8 @@
 //! Sums over elements and time, in a fixed order.
 
-use super::near::{NearElement, NearInterval};
+use super::near::NearElement;
 use super::prepare::{Impulse, Preparation};
+use super::sampling::{Course, trapezoid};
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
 use crate::map::ElementMap;
 use crate::measure::ElementError;
@@ -10,7 +11,7 @@ use percute_core::problem::Problem;
 use percute_core::ratio;
 use percute_core::time::TimeGrid;
 
-/// Sums over far elements at the levels and at the knots between them.
+/// Sums over far elements at the levels and in the middles between them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FarSums {
     pub(crate) levels: Vec<ElementError>,
@@ -35,17 +36,8 @@ impl FarSums {
     }
 }
 
-/// Trapezoidal integral over an interval, with or without a sample in its middle.
-#[inline]
-pub(crate) fn trapezoid(length: f64, start: f64, middle: Option<f64>, end: f64) -> f64 {
-    match middle {
-        Some(middle) => 0.25 * length * (start + 2.0 * middle + end),
-        None => 0.5 * length * (start + end),
-    }
-}
-
 /// One interval between sampled levels.
-struct Interval {
+struct SampledInterval {
     /// Times of its beginning and end (s).
     times: [f64; 2],
     /// Whether its middle is sampled.
@@ -54,12 +46,12 @@ struct Interval {
     samples: [(Parts, f64); 3],
 }
 
-/// What the windows leave.
+/// The results of all windows.
 pub(crate) struct Worked<const D: usize, const N: usize> {
     pub(crate) far: FarSums,
     pub(crate) near: Vec<NearElement<D, N>>,
-    /// Time integral of η_E, and η_E at the end, of far elements.
-    pub(crate) progress: Vec<(f64, f64)>,
+    /// η_E of far elements.
+    pub(crate) courses: Vec<Course>,
     pub(crate) residuals: Residuals,
     pub(crate) maps: Vec<ElementMap<D>>,
 }
@@ -71,12 +63,12 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,
 ) -> Estimate<D> {
-    let Worked { far, near, progress, mut residuals, maps } = worked;
+    let Worked { far, near, courses, mut residuals, maps } = worked;
     let last = preparation.count() - 1;
     let end = times.instants()[last];
-    let mut integral = progress.iter().map(|p| p.0).collect::<Vec<_>>();
+    let mut integral = courses.iter().map(|course| course.integral).collect::<Vec<_>>();
     for element in &near {
-        integral[element.element.index()] = element.integral;
+        integral[element.element.index()] = element.course.integral;
         residuals.merge(&element.residuals);
     }
     preparation.tracks().iter().for_each(|track| track.report(&mut residuals));
@@ -85,7 +77,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     let intervals = intervals(times, preparation.every(), last, &far, &near);
     let over_time = samples(&intervals);
     let worst = over_time.iter().fold(over_time[0], |a, b| if b.parts.total() > a.parts.total() { *b } else { a });
-    let Impulse { kept, whole } = preparation.impulse;
+    let Impulse { kept, simulated } = preparation.impulse;
     Estimate {
         error: measures(&intervals, &over_time, worst.parts.total().sqrt(), end),
         time_of_sup: worst.time,
@@ -94,7 +86,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
         by_element: integral.into_iter().map(|i| (i / end).sqrt()).collect(),
         maps,
         residuals,
-        kept_impulse: (!problem.obstacles().is_empty() && whole > 0.0).then(|| kept / whole),
+        kept_impulse: (!problem.obstacles().is_empty() && simulated > 0.0).then(|| kept / simulated),
         given: preparation.given(),
         steps: last,
         end,
@@ -102,9 +94,9 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
 }
 
 /// The measures of a run up to `end` (s), of which √sup η is known.
-fn measures(intervals: &[Interval], over_time: &[Sample], sup: f64, end: f64) -> ErrorMeasures {
+fn measures(intervals: &[SampledInterval], over_time: &[Sample], sup: f64, end: f64) -> ErrorMeasures {
     let root_mean = |value: &dyn Fn(&(Parts, f64)) -> f64| {
-        let each = |i: &Interval| {
+        let each = |i: &SampledInterval| {
             let [a, m, b] = &i.samples;
             trapezoid(i.times[1] - i.times[0], value(a), i.single.then(|| value(m)), value(b))
         };
@@ -130,7 +122,7 @@ fn intervals<const D: usize, const N: usize>(
     last: usize,
     far: &FarSums,
     near: &[NearElement<D, N>],
-) -> Vec<Interval> {
+) -> Vec<SampledInterval> {
     let mut levels: Vec<usize> = (0..=last).step_by(every).collect();
     if levels[levels.len() - 1] != last {
         levels.push(last);
@@ -138,16 +130,15 @@ fn intervals<const D: usize, const N: usize>(
     let interval = |k: usize| {
         let mut samples = [far.levels[k], far.mids[k], far.levels[k + 1]].map(|far| (far, 0.0));
         for element in near {
-            let NearInterval { errors, contact } = &element.intervals[k];
-            for ((sum, error), contact) in samples.iter_mut().zip(errors).zip(contact) {
-                sum.0.add(error);
-                sum.1 += contact;
+            for (sum, sample) in samples.iter_mut().zip(&element.samples[k]) {
+                sum.0.add(&sample.error);
+                sum.1 += sample.contact;
             }
         }
         let parts = |(error, contact): (ElementError, f64)| {
             (Parts { kinetic: error.kinetic, elastic: error.elastic, contact }, error.reference + contact)
         };
-        Interval {
+        SampledInterval {
             times: [times.instants()[levels[k]], times.instants()[levels[k + 1]]],
             single: levels[k + 1] == levels[k] + 1,
             samples: samples.map(parts),
@@ -157,7 +148,7 @@ fn intervals<const D: usize, const N: usize>(
 }
 
 /// All samples in order of time; an instant appears twice where its two sides differ.
-fn samples(intervals: &[Interval]) -> Vec<Sample> {
+fn samples(intervals: &[SampledInterval]) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::with_capacity(2 * intervals.len() + 1);
     for interval in intervals {
         let [start, end] = interval.times;

@@ -1,24 +1,34 @@
 //! Densities on the facets that touch throughout a step, statically equivalent to the reactions.
 
-use super::{Densities, Interval, SurfaceStep, none};
+use super::{Densities, Reconstruction, StepDensities, SurfaceSteps};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
-/// The densities of one step: R = B F at both ends, with the consistent mass matrix B of the facets
-/// whose nodes touch at both ends, then the projection into the cone.
-pub(super) fn interval<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    now: &SurfaceStep<D>,
-    next: &SurfaceStep<D>,
-) -> Interval<D> {
-    let touches = |k: usize| now.touching[k] && next.touching[k];
-    let live: Vec<bool> = problem.surface().facets().iter().map(|f| f.nodes.iter().all(|&k| touches(k))).collect();
-    if !live.contains(&true) {
-        return Interval { start: none(problem), end: none(problem) };
+/// The reconstruction whose densities of a step balance R = B F at both its ends, B the consistent mass matrix of the facets
+/// whose nodes touch at both ends. They are projected into the cone. Where these facets change, the densities jump.
+#[derive(Debug)]
+pub(super) struct Consistent<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+}
+
+impl<'p, const D: usize, const N: usize> Consistent<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+        Self { problem }
     }
-    let mass = BoundaryMass::new(problem, &live);
-    let densities = |reaction: &[[f64; D]]| mass.densities(problem, &live, reaction);
-    Interval { start: densities(&now.reaction), end: densities(&next.reaction) }
+}
+
+impl<const D: usize, const N: usize> Reconstruction<D, N> for Consistent<'_, D, N> {
+    fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
+        let (problem, now, next) = (self.problem, steps.now, steps.next);
+        let touches = |k: usize| now.touching[k] && next.touching[k];
+        let live: Vec<bool> = problem.surface().facets().iter().map(|f| f.nodes.iter().all(|&k| touches(k))).collect();
+        if !live.contains(&true) {
+            return StepDensities { start: Densities::none(problem), end: Densities::none(problem) };
+        }
+        let mass = BoundaryMass::new(problem, &live);
+        let densities = |force: &[[f64; D]]| mass.densities(problem, &live, force);
+        StepDensities { start: densities(&now.force), end: densities(&next.force) }
+    }
 }
 
 /// ∫φ_iφ_j over the live facets: tridiagonal, for facets join nodes that follow each other.
@@ -76,9 +86,9 @@ impl BoundaryMass {
         reaction: &[[f64; D]],
     ) -> Densities<D> {
         let nodal = self.solve(reaction);
-        let mut densities = none(problem);
+        let mut densities = Densities::none(problem);
         for ((facet, density), _) in
-            problem.surface().facets().iter().zip(&mut densities).zip(live).filter(|(_, l)| **l)
+            problem.surface().facets().iter().zip(&mut densities.0).zip(live).filter(|(_, l)| **l)
         {
             *density = facet.nodes.map(|k| problem.obstacles()[facet.obstacle].project_into_cone(&nodal[k]));
         }

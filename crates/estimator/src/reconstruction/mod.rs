@@ -1,207 +1,148 @@
-//! Admissible contact forces F_DA (§6.2.1), in three readings.
+//! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are balanced.
 //!
-//! A density lives on the candidate facets, linear on each and linear in time inside each step.
-//! An [`Interval`] holds it at both ends of a step; at an instant where the touching facets change,
-//! the `consistent` reading has one value before and another after.
+//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`Reconstruction`] makes
+//! it, and decides on all that goes with it. [`new`] is the one place where a choice becomes its reconstruction.
 
+mod admissibility;
 mod consistent;
+mod contact_law;
 mod corrected;
+mod densities;
 mod published;
 
-use crate::options::{Ablation, Reconstruction};
-use crate::residual::{Residuals, worse};
+use crate::element::Element;
+use crate::error::EstimateError;
+use crate::kinematic::ContactTrack;
+use crate::options::{Acceleration, Options, ReconstructionChoice};
+use crate::traction::{Equilibrated, Equilibration};
+pub(crate) use admissibility::check;
+use consistent::Consistent;
+pub(crate) use contact_law::misfit_power;
 use corrected::Corrected;
-pub(crate) use corrected::{
-    AuxiliarySolution, FacetPressures, Form, ImpulseSmoothing, MOMENTS, NormalMisfit, Pressure, TractionMinimisation,
-    kinetic_energy,
-};
-use percute_core::obstacle::Plane;
-use percute_core::problem::{ContactFacet, Problem};
-use percute_core::simplex::{Shape, Simplex};
+pub(crate) use corrected::{FacetPressures, Form, MOMENTS, NormalMisfit, OffContact};
+pub(crate) use densities::{Densities, driving_forces, nodal_forces};
+use percute_core::dynamics::Dynamics;
+use percute_core::history::Step;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use published::Published;
+use std::fmt::Debug;
 
-/// Nodal values of a density on each candidate facet (Pa).
-pub(crate) type Densities<const D: usize> = Vec<[[f64; D]; D]>;
-
-/// What the contact surface did at t_n.
+/// The state of the contact surface at t_n.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceStep<const D: usize> {
+    /// Reactions of the simulation (N).
     pub(crate) reaction: Vec<[f64; D]>,
-    /// What the densities of `corrected` are made of: the reactions, with the impulses that stop a node spread.
-    pub(crate) smoothed_reaction: Vec<[f64; D]>,
+    /// The forces of which densities are made (N).
+    pub(crate) force: Vec<[f64; D]>,
     pub(crate) touching: Vec<bool>,
+}
+
+/// The contact surface around one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceSteps<'a, const D: usize> {
+    /// Before the step; `None` at t_0.
+    pub(crate) before: Option<&'a SurfaceStep<D>>,
+    /// At its beginning.
+    pub(crate) now: &'a SurfaceStep<D>,
+    /// At its end.
+    pub(crate) next: &'a SurfaceStep<D>,
+    /// After the step; `None` if it is the last.
+    pub(crate) after: Option<&'a SurfaceStep<D>>,
 }
 
 /// F_DA at the beginning and the end of one step.
 #[derive(Clone, Debug)]
-pub(crate) struct Interval<const D: usize> {
+pub(crate) struct StepDensities<const D: usize> {
     pub(crate) start: Densities<D>,
     pub(crate) end: Densities<D>,
 }
 
-/// Makes densities from reactions.
+/// A step of the simulation with the fields that follow from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SimulatedStep<'a, const D: usize> {
+    pub(crate) step: &'a Step<'a, D>,
+    /// v_n and a_n (m/s, m/s²).
+    pub(crate) velocity: &'a [[f64; D]],
+    pub(crate) acceleration: &'a [[f64; D]],
+    /// ½ u_n·K u_n (J).
+    pub(crate) strain_energy: f64,
+}
+
+/// The fields that are balanced at t_n.
 #[derive(Clone, Debug)]
-pub(crate) enum Reading<const D: usize> {
-    Published(Published),
-    Consistent,
-    Corrected(Corrected<D>),
+pub(crate) struct BalancedFields<const D: usize> {
+    /// The displacement whose stress is equilibrated (m).
+    pub(crate) displacement: Vec<[f64; D]>,
+    /// Its forces but those of contact (N).
+    pub(crate) force: Vec<[f64; D]>,
+    /// The forces of which densities are made (N).
+    pub(crate) contact: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Reading<D> {
-    pub(crate) fn new<const N: usize>(choice: Reconstruction, problem: &Problem<D, N>) -> Self {
-        match choice {
-            Reconstruction::Published => Self::Published(Published::new(problem)),
-            Reconstruction::Consistent => Self::Consistent,
-            Reconstruction::Corrected => Self::Corrected(Corrected::new(problem)),
-        }
+/// A way to build dynamically admissible fields.
+pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + Sync {
+    /// Prepares the maps of the elements.
+    fn prepare(&mut self, _elements: &[Element<D, N>]) {}
+
+    /// About how much memory it takes (bytes), with so many levels in a window and so many threads.
+    fn memory(&self, _levels: usize, _threads: usize) -> usize {
+        0
     }
 
-    /// The same, and where it is asked for without the moments of the reactions.
-    pub(crate) fn without(self, ablation: Ablation) -> Self {
-        match self {
-            Self::Corrected(whole) if ablation == Ablation::Moment => {
-                Self::Corrected(whole.without_moment_correction())
-            }
-            other => other,
-        }
+    /// Whether it can go on with a step.
+    ///
+    /// # Errors
+    /// A reason that lies in the steps so far.
+    fn check(&self, _step: &Step<'_, D>) -> Result<(), EstimateError> {
+        Ok(())
     }
 
-    /// Whether forces may act where a node does not touch.
-    pub(crate) fn acts_off_contact(&self) -> bool {
-        matches!(self, Self::Corrected(_))
+    /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the reconstruction
+    /// has its own. `force` holds the forces but those of contact.
+    fn advance(
+        &mut self,
+        _dynamics: &Dynamics<'_, D, N>,
+        simulated: &SimulatedStep<'_, D>,
+        force: Vec<[f64; D]>,
+    ) -> BalancedFields<D> {
+        let step = simulated.step;
+        BalancedFields { displacement: step.displacement.to_vec(), force, contact: step.reaction.to_vec() }
     }
 
-    /// The densities of the step from `now` to `next`. `before` and `after` are the steps around
-    /// them; there is none before the first, nor after the last.
-    pub(crate) fn interval<const N: usize>(
+    /// F_DA over a step.
+    fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D>;
+
+    /// The densities of a step where they may act on nodes that do not touch; `None` if they never do.
+    fn off_contact(&self, _steps: &SurfaceSteps<'_, D>, _densities: &StepDensities<D>) -> Option<OffContact<D>> {
+        None
+    }
+
+    /// The part of the contact law that such densities miss, for the motion in the tracks.
+    fn normal_misfit(&self, _pressures: &FacetPressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
+        NormalMisfit::default()
+    }
+
+    /// Improves the tractions of levels.
+    fn improve(
         &self,
-        problem: &Problem<D, N>,
-        before: Option<&SurfaceStep<D>>,
-        now: &SurfaceStep<D>,
-        next: &SurfaceStep<D>,
-        after: Option<&SurfaceStep<D>>,
-    ) -> Interval<D> {
-        match self {
-            Self::Published(paper) => Interval {
-                start: before.map_or_else(
-                    || none(problem),
-                    |before| paper.densities(problem, &before.touching, now, Some(&next.touching)),
-                ),
-                end: paper.densities(problem, &now.touching, next, after.map(|a| a.touching.as_slice())),
-            },
-            Self::Consistent => consistent::interval(problem, now, next),
-            Self::Corrected(whole) => Interval {
-                start: whole.densities(problem, &now.smoothed_reaction),
-                end: whole.densities(problem, &next.smoothed_reaction),
-            },
-        }
+        _equilibration: &Equilibration<'_, D, N>,
+        _choice: Acceleration,
+        _levels: &mut [Equilibrated<D>],
+    ) {
     }
 }
 
-/// No force anywhere.
-pub(crate) fn none<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Densities<D> {
-    vec![[[0.0; D]; D]; problem.surface().facets().len()]
-}
-
-/// ∫F φ_k over all facets, for each node of the contact surface (N).
-pub(crate) fn nodal_forces<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    densities: &Densities<D>,
-) -> Vec<[f64; D]> {
-    let mut forces = vec![[0.0; D]; problem.surface().nodes().len()];
-    for (facet, density) in problem.surface().facets().iter().zip(densities) {
-        let moments = Problem::<D, N>::facet_moments(facet.area, density);
-        for (node, moment) in facet.nodes.iter().zip(moments) {
-            (0..D).for_each(|c| forces[*node][c] += moment[c]);
-        }
-    }
-    forces
-}
-
-/// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes, for F
-/// is zero unless both nodes stay on the plane, or [`normal_power`] has it. In 2D both factors are linear along the
-/// edge.
-pub(crate) fn misfit_power<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    facet: &ContactFacet<D>,
-    density: &[[f64; D]; D],
-    velocity: &[[f64; D]; D],
-) -> f64 {
-    let simplex = problem.mesh().simplex();
-    match simplex.shape() {
-        Shape::Bar => return 0.0,
-        Shape::Triangle => {}
-    }
-    if density.iter().flatten().all(|f| *f == 0.0) {
-        return 0.0;
-    }
-    let plane = &problem.obstacles()[facet.obstacle];
-    let tangent = tangent(plane);
-    let (normal, tangential) = (density.map(|f| plane.split(&f).0), density.map(|f| along(&f, &tangent)));
-    let sliding = velocity.map(|v| along(&v, &tangent));
-    let power = |weights: &[f64; D]| {
-        let w = along(weights, &sliding);
-        plane.friction() * along(weights, &normal) * w.abs() + w * along(weights, &tangential)
-    };
-    facet.area * simplex.facet_mean(&sliding, &power)
-}
-
-/// Along a plane in 2D: its normal turned back by a quarter.
-fn tangent<const D: usize>(plane: &Plane<D>) -> [f64; D] {
-    let mut tangent = [0.0; D];
-    (tangent[0], tangent[1]) = (plane.normal()[1], -plane.normal()[0]);
-    tangent
-}
-
-/// The component of a vector along a direction, or a value from those at the nodes with their weights.
-fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
-    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
-}
-
-/// ∫F_n gap over a facet (J), both linear, the force in Pa.
-pub(crate) fn gap_energy<const D: usize>(area: f64, force: &[f64; D], gap: &[f64; D]) -> f64 {
-    let products: f64 = force.iter().zip(gap).map(|(f, g)| f * g).sum();
-    area * (products + force.iter().sum::<f64>() * gap.iter().sum::<f64>()) / (D * (D + 1)) as f64
-}
-
-/// ∫F_n|w_n| over a facet (W), both linear, the force in Pa.
-pub(crate) fn normal_power<const D: usize, const N: usize>(
-    simplex: &dyn Simplex<D, N>,
-    area: f64,
-    force: &[f64; D],
-    speed: &[f64; D],
-) -> f64 {
-    area * simplex.facet_mean(speed, &|weights| along(weights, force) * along(weights, speed).abs())
-}
-
-/// Checks that a step's densities are in the cone and, unless they may act `off_contact`, act only where both nodes
-/// of a facet touch throughout the step.
-pub(crate) fn check<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    now: &SurfaceStep<D>,
-    next: &SurfaceStep<D>,
-    interval: &Interval<D>,
-    off_contact: bool,
-    residuals: &mut Residuals,
-) {
-    for densities in [&interval.start, &interval.end] {
-        let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let largest = densities.iter().flatten().map(size).fold(0.0, worse);
-        if largest == 0.0 {
-            continue;
-        }
-        for (facet, density) in problem.surface().facets().iter().zip(densities) {
-            let plane = &problem.obstacles()[facet.obstacle];
-            let touches = facet.nodes.iter().all(|&k| now.touching[k] && next.touching[k]);
-            for f in density {
-                let scale = size(f).max(1e-12 * largest);
-                let (normal, tangential) = plane.split(f);
-                let outside = worse(size(&tangential) - plane.friction() * normal, -normal);
-                residuals.cone = worse(residuals.cone, outside / scale);
-                let off = if touches || off_contact { 0.0 } else { size(f) / scale };
-                residuals.force_off_contact = worse(residuals.force_off_contact, off);
-            }
-        }
+/// The reconstruction that the options name.
+pub(crate) fn new<'p, const D: usize, const N: usize>(
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
+    options: &Options,
+) -> Box<dyn Reconstruction<D, N> + 'p> {
+    match options.reconstruction {
+        ReconstructionChoice::Published => Box::new(Published::new(problem)),
+        ReconstructionChoice::Consistent => Box::new(Consistent::new(problem)),
+        ReconstructionChoice::Corrected => Box::new(Corrected::new(problem, times, options.ablation)),
     }
 }
 

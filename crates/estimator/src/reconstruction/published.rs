@@ -1,15 +1,16 @@
-//! The paper's densities, eq. \[45\]–\[50\].
+//! The densities of the paper, eq. \[45\]–\[50\].
 
-use super::{Densities, SurfaceStep, none};
+use super::{Densities, Reconstruction, StepDensities, SurfaceStep, SurfaceSteps};
 use percute_core::problem::{ContactFacet, Problem};
 
 /// Edges that meet at more than 45° are no neighbours: their normals' cosine is below this.
 const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Lengths and neighbours, fixed in time.
-#[derive(Clone, Debug)]
-pub(crate) struct Published {
-    /// For each node of each candidate facet.
+/// The reconstruction of the paper: reaction over tributary length, from one step after impact to one step before release.
+#[derive(Debug)]
+pub(super) struct Published<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    /// Lengths and neighbours for each node of each candidate facet.
     ends: Vec<Vec<End>>,
 }
 
@@ -24,8 +25,8 @@ struct End {
     neighbours: Vec<usize>,
 }
 
-impl Published {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
         let facets = problem.surface().facets();
         let normals: Vec<_> = facets.iter().map(|f| problem.mesh().facet_normal(f.facet).0).collect();
         let mut around = vec![Vec::new(); problem.surface().nodes().len()];
@@ -44,29 +45,35 @@ impl Published {
             }
         };
         let ends = |(f, facet): (usize, &ContactFacet<D>)| facet.nodes.iter().map(|&node| end(f, node)).collect();
-        Self { ends: facets.iter().enumerate().map(ends).collect() }
+        Self { problem, ends: facets.iter().enumerate().map(ends).collect() }
     }
 
     /// Densities at one instant, given the touching status one step before and after (`None` after
     /// the last step, where an open phase goes on).
-    pub(super) fn densities<const D: usize, const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        before: &[bool],
-        now: &SurfaceStep<D>,
-        after: Option<&[bool]>,
-    ) -> Densities<D> {
+    fn at(&self, before: &[bool], now: &SurfaceStep<D>, after: Option<&[bool]>) -> Densities<D> {
         // i+1 ≤ n ≤ j−1: the node touches at the instants before, at and after t_n.
         let keeps = |k: usize| before[k] && now.touching[k] && after.is_none_or(|after| after[k]);
-        let mut densities = none(problem);
-        for ((facet, ends), density) in problem.surface().facets().iter().zip(&self.ends).zip(&mut densities) {
+        let mut densities = Densities::none(self.problem);
+        let facets = self.problem.surface().facets();
+        for ((facet, ends), density) in facets.iter().zip(&self.ends).zip(&mut densities.0) {
             for (end, value) in ends.iter().zip(density) {
                 if keeps(end.node) && end.neighbours.iter().all(|&k| keeps(k)) {
-                    let force = now.reaction[end.node].map(|r| r / end.tributary);
-                    *value = problem.obstacles()[facet.obstacle].project_into_cone(&force);
+                    let force = now.force[end.node].map(|r| r / end.tributary);
+                    *value = self.problem.obstacles()[facet.obstacle].project_into_cone(&force);
                 }
             }
         }
         densities
+    }
+}
+
+impl<const D: usize, const N: usize> Reconstruction<D, N> for Published<'_, D, N> {
+    fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
+        let SurfaceSteps { before, now, next, after } = *steps;
+        let at_start = |before: &SurfaceStep<D>| self.at(&before.touching, now, Some(&next.touching));
+        StepDensities {
+            start: before.map_or_else(|| Densities::none(self.problem), at_start),
+            end: self.at(&now.touching, next, after.map(|after| after.touching.as_slice())),
+        }
     }
 }

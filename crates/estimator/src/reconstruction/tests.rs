@@ -1,11 +1,12 @@
 //! The cone and the contact zone: densities that break them show.
 
 use super::*;
+use crate::options::ReconstructionChoice::{self, Consistent, Corrected, Published};
+use crate::residual::Residuals;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
-use percute_core::simplex::{Bar, Triangle};
 
 /// Four edges along the bottom of a block, μ = 0.2.
 fn problem() -> TriangleProblem {
@@ -19,25 +20,38 @@ fn problem() -> TriangleProblem {
 /// Nodes 0 to 3 of five touch, pressed and pulled along the plane up to the cone.
 fn surface() -> SurfaceStep<2> {
     let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
-    SurfaceStep { smoothed_reaction: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
+    SurfaceStep { force: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
 }
 
-fn residuals(interval: &Interval<2>) -> Residuals {
-    let mut residuals = Residuals::default();
-    check(&problem(), &surface(), &surface(), interval, false, &mut residuals);
+fn residuals(densities: &StepDensities<2>) -> Residuals {
+    let (mut residuals, step) = (Residuals::default(), surface());
+    check(&problem(), &alone(&step, &step), densities, false, &mut residuals);
     residuals
 }
 
-fn readings() -> [Interval<2>; 2] {
-    let problem = problem();
-    let step = surface();
-    [Reconstruction::Consistent, Reconstruction::Published]
-        .map(|choice| Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step)))
+/// The densities that a reconstruction makes of these steps.
+fn made(choice: ReconstructionChoice, problem: &TriangleProblem, steps: &SurfaceSteps<'_, 2>) -> StepDensities<2> {
+    let times = TimeGrid::uniform(1.0, 1).unwrap();
+    new(problem, &times, &Options { reconstruction: choice, ..Options::default() }).densities(steps)
+}
+
+/// One step without any other.
+fn alone<'a>(now: &'a SurfaceStep<2>, next: &'a SurfaceStep<2>) -> SurfaceSteps<'a, 2> {
+    SurfaceSteps { before: None, now, next, after: None }
+}
+
+/// One step where nothing changes.
+fn steady(step: &SurfaceStep<2>) -> SurfaceSteps<'_, 2> {
+    SurfaceSteps { before: Some(step), now: step, next: step, after: Some(step) }
+}
+
+fn both() -> [StepDensities<2>; 2] {
+    [Consistent, Published].map(|choice| made(choice, &problem(), &steady(&surface())))
 }
 
 #[test]
-fn both_readings_are_admissible() {
-    for interval in readings() {
+fn both_reconstructions_are_admissible() {
+    for interval in both() {
         assert!(interval.start[0][0][1] > 0.0);
         // Rounding of the projection.
         assert!(residuals(&interval).largest() < 1e-15);
@@ -47,11 +61,11 @@ fn both_readings_are_admissible() {
 /// 1 % more friction than the cone allows, or a pull; off contact nothing changes.
 #[test]
 fn forces_outside_the_cone_show() {
-    for interval in readings() {
+    for interval in both() {
         for end in 0..2 {
             for push in [[0.202e6, 1e6], [0.0, -1.0]] {
                 let mut wrong = interval.clone();
-                [&mut wrong.start, &mut wrong.end][end][0][0] = push;
+                [&mut wrong.start, &mut wrong.end][end].0[0][0] = push;
                 let found = residuals(&wrong);
                 assert!(found.cone > 1e-6, "{found:?}");
                 assert_eq!(found.force_off_contact, 0.0);
@@ -63,10 +77,10 @@ fn forces_outside_the_cone_show() {
 /// A force on the last edge, of which one node does not touch, within the cone.
 #[test]
 fn forces_off_contact_show() {
-    for interval in readings() {
+    for interval in both() {
         for end in 0..2 {
             let mut wrong = interval.clone();
-            [&mut wrong.start, &mut wrong.end][end][3][0] = [0.0, 1.0];
+            [&mut wrong.start, &mut wrong.end][end].0[3][0] = [0.0, 1.0];
             let found = residuals(&wrong);
             assert!(found.force_off_contact > 1e-6, "{found:?}");
             assert!(found.cone < 1e-15);
@@ -77,91 +91,90 @@ fn forces_off_contact_show() {
 /// Touching now but not at the end of the step is not contact throughout.
 #[test]
 fn forces_beside_a_release_show() {
-    let [sharp, _] = readings();
+    let [consistent, _] = both();
     let mut released = surface();
     released.touching[3] = false;
     let mut found = Residuals::default();
-    check(&problem(), &surface(), &released, &sharp, false, &mut found);
+    check(&problem(), &alone(&surface(), &released), &consistent, false, &mut found);
     assert!(found.force_off_contact > 1e-6);
 }
 
 #[test]
 fn nan_shows() {
-    let mut interval = Interval { start: none(&problem()), end: none(&problem()) };
-    interval.start[0][0] = [f64::NAN, f64::NAN];
+    let none = Densities::none(&problem());
+    let mut interval = StepDensities { start: none.clone(), end: none };
+    interval.start.0[0][0] = [f64::NAN, f64::NAN];
     assert!(residuals(&interval).largest().is_nan());
 }
 
-/// A node that touches alone has no edge that touches: no force in either reading (method, §4).
+/// A node that touches alone has no edge that touches: no force in either reconstruction (method, §4).
 #[test]
 fn a_node_that_touches_alone_gets_no_force() {
     let problem = problem();
     let mut step = surface();
     step.touching = vec![false, true, false, false, false];
-    for choice in [Reconstruction::Consistent, Reconstruction::Published] {
-        let interval = Reading::new(choice, &problem).interval(&problem, Some(&step), &step, &step, Some(&step));
-        for density in interval.start.iter().chain(&interval.end).flatten() {
+    for choice in [Consistent, Published] {
+        let interval = made(choice, &problem, &steady(&step));
+        for density in interval.start.iter().chain(interval.end.iter()).flatten() {
             assert_eq!(*density, [0.0; 2]);
         }
     }
 }
 
-/// A phase of one step, off before and after: no force in either reading.
+/// A phase of one step, off before and after: no force in either reconstruction.
 #[test]
 fn a_phase_of_one_step_gets_no_force() {
     let problem = problem();
-    let off =
-        SurfaceStep { reaction: vec![[0.0; 2]; 5], smoothed_reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], force: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [&off, &surface(), &off];
-    for choice in [Reconstruction::Consistent, Reconstruction::Published] {
-        let reading = Reading::new(choice, &problem);
+    for choice in [Consistent, Published] {
         for (before, now, next, after) in [(None, 0, 1, Some(steps[2])), (Some(steps[0]), 1, 2, None)] {
-            let interval = reading.interval(&problem, before, steps[now], steps[next], after);
-            assert!(interval.start.iter().chain(&interval.end).flatten().all(|f| *f == [0.0; 2]));
+            let around = SurfaceSteps { before, now: steps[now], next: steps[next], after };
+            let interval = made(choice, &problem, &around);
+            assert!(interval.start.iter().chain(interval.end.iter()).flatten().all(|f| *f == [0.0; 2]));
         }
     }
 }
 
 /// All five nodes touch and are pressed.
 fn pressed() -> SurfaceStep<2> {
-    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], smoothed_reaction: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
+    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], force: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
 }
 
 /// Whether there is force at any place, at the beginning and at the end of a step.
-fn acts(interval: &Interval<2>) -> [bool; 2] {
+fn acts(interval: &StepDensities<2>) -> [bool; 2] {
     [&interval.start, &interval.end].map(|d| d.iter().flatten().any(|f| f[1] > 0.0))
 }
 
-/// Touching from t_1 to t_4, the paper's force is there at t_2 and t_3 only, [45]–[48]; with a phase
+/// Touching from t_1 to t_4, the force of the paper is there at t_2 and t_3 only, [45]–[48]; with a phase
 /// that is still open at the last step it stays to the end. `consistent` has all of it.
 #[test]
 fn force_begins_and_ends_with_contact() {
     let problem = problem();
-    let off =
-        || SurfaceStep { reaction: vec![[0.0; 2]; 5], smoothed_reaction: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], force: vec![[0.0; 2]; 5], touching: vec![false; 5] };
     let steps = [off(), pressed(), pressed(), pressed(), pressed(), off()];
     let interval = |choice, n: usize, last: usize| {
         let before = n.checked_sub(1).map(|m| &steps[m]);
         let after = steps[..=last].get(n + 2);
-        acts(&Reading::new(choice, &problem).interval(&problem, before, &steps[n], &steps[n + 1], after))
+        acts(&made(choice, &problem, &SurfaceSteps { before, now: &steps[n], next: &steps[n + 1], after }))
     };
     let all = |choice, last: usize| (0..last).map(|n| interval(choice, n, last)).collect::<Vec<_>>();
     let (none, both) = ([false, false], [true, true]);
-    assert_eq!(all(Reconstruction::Published, 5), [none, [false, true], both, [true, false], none]);
-    assert_eq!(all(Reconstruction::Published, 4), [none, [false, true], both, both]);
-    assert_eq!(all(Reconstruction::Published, 2), [none, [false, true]]);
-    assert_eq!(all(Reconstruction::Consistent, 5), [none, both, both, both, none]);
+    assert_eq!(all(Published, 5), [none, [false, true], both, [true, false], none]);
+    assert_eq!(all(Published, 4), [none, [false, true], both, both]);
+    assert_eq!(all(Published, 2), [none, [false, true]]);
+    assert_eq!(all(Consistent, 5), [none, both, both, both, none]);
 }
 
-/// In the paper's reading a node beside one that arrives or leaves loses its force; the corner, which
+/// In the reconstruction of the paper a node beside one that arrives or leaves loses its force; the corner, which
 /// has a neighbour on one side only, keeps it.
 #[test]
 fn the_border_of_contact_has_no_force() {
     let problem = problem();
     let (now, mut before) = (pressed(), pressed());
     before.touching[3] = false;
-    let reading = Reading::new(Reconstruction::Published, &problem);
-    let interval = reading.interval(&problem, Some(&before), &now, &now, Some(&now));
+    let around = SurfaceSteps { before: Some(&before), now: &now, next: &now, after: Some(&now) };
+    let interval = made(Published, &problem, &around);
     let forces = nodal_forces(&problem, &interval.start);
     assert_eq!(
         interval.start.iter().map(|e| e.map(|f| f[1] > 0.0)).collect::<Vec<_>>(),
@@ -175,14 +188,14 @@ fn the_border_of_contact_has_no_force() {
 /// Where the cone cuts nothing off, `consistent` has the nodal forces of the simulation: made from a density,
 /// they give it back.
 #[test]
-fn sharp_is_statically_equivalent() {
+fn consistent_is_statically_equivalent() {
     let problem = problem();
     // Pressure and friction below 0.2 of it, continuous along the five nodes.
     let nodal = [[1e3, 6e3], [-1e3, 9e3], [2e3, 1.1e4], [1e3, 7e3], [0.0, 5e3]];
     let given: Vec<_> = problem.surface().facets().iter().map(|f| f.nodes.map(|k| nodal[k])).collect();
     let mut step = pressed();
-    step.reaction = nodal_forces(&problem, &given);
-    let interval = Reading::new(Reconstruction::Consistent, &problem).interval(&problem, None, &step, &step, None);
+    step.force = nodal_forces(&problem, &Densities(given.clone()));
+    let interval = made(Consistent, &problem, &alone(&step, &step));
     for (made, given) in interval.start.iter().flatten().flatten().zip(given.iter().flatten().flatten()) {
         // Rounding of a tridiagonal solve with five unknowns of order 1e4.
         assert!((made - given).abs() < 1e-10, "{made} against {given}");
@@ -205,16 +218,15 @@ fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
     (problem, places)
 }
 
-/// The paper's densities at the ends of the left and of the right edge, outer node first; the right end has
+/// The densities of the paper at the ends of the left and of the right edge, outer node first; the right end has
 /// just arrived if `arriving`. All reactions are 1 N.
-fn paper_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
+fn published_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let (problem, [left, right, middle]) = kinked(slope);
-    let now =
-        SurfaceStep { reaction: vec![[0.0, 1.0]; 3], smoothed_reaction: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
+    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], force: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
     let mut before = now.clone();
     before.touching[right] = !arriving;
-    let reading = Reading::new(Reconstruction::Published, &problem);
-    let density = reading.interval(&problem, Some(&before), &now, &now, Some(&now)).start;
+    let around = SurfaceSteps { before: Some(&before), now: &now, next: &now, after: Some(&now) };
+    let density = made(Published, &problem, &around).start;
     [left, right].map(|outer| {
         let f = problem.surface().facets().iter().position(|f| f.nodes.contains(&outer)).unwrap();
         [outer, middle].map(|node| {
@@ -232,7 +244,7 @@ fn edges_that_meet_smoothly_are_neighbours() {
     // 1 N over half an edge at the ends, over two halves in the middle; rounding of a few operations.
     let (end, middle) = (2.0 * slope.cos(), slope.cos());
     for (arriving, expected) in [(false, [[end, middle]; 2]), (true, [[end, 0.0], [0.0, 0.0]])] {
-        for (made, wanted) in paper_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
+        for (made, wanted) in published_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
             assert!((made - wanted).abs() <= 1e-14 * wanted, "{made} instead of {wanted}");
         }
     }
@@ -245,7 +257,7 @@ fn edges_that_meet_at_a_corner_are_not() {
     let slope = 23.0_f64.to_radians();
     let alone = 2.0 * slope.cos();
     for (arriving, expected) in [(false, [[alone; 2]; 2]), (true, [[alone; 2], [0.0; 2]])] {
-        for (made, wanted) in paper_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
+        for (made, wanted) in published_forces(slope, arriving).iter().flatten().zip(expected.iter().flatten()) {
             assert!((made - wanted).abs() <= 1e-14 * wanted, "{made} instead of {wanted}");
         }
     }
@@ -253,42 +265,23 @@ fn edges_that_meet_at_a_corner_are_not() {
 
 /// `corrected` drops nothing: its resultant is that of the reactions, off contact too, and one instant has one value.
 #[test]
-fn the_whole_reaction_is_kept() {
+fn no_reaction_is_dropped() {
     let problem = problem();
     let mut step = surface();
     // The last node brakes: it has a reaction before it touches.
-    step.smoothed_reaction[4] = [1.0, 50.0];
-    let reading = Reading::new(Reconstruction::Corrected, &problem);
-    let first = reading.interval(&problem, None, &surface(), &step, None);
-    let second = reading.interval(&problem, None, &step, &surface(), None);
+    step.force[4] = [1.0, 50.0];
+    let first = made(Corrected, &problem, &alone(&surface(), &step));
+    let second = made(Corrected, &problem, &alone(&step, &surface()));
     assert_eq!(first.end, second.start);
     let kept = nodal_forces(&problem, &first.end);
     for c in 0..2 {
         let sum = |forces: &[[f64; 2]]| forces.iter().map(|f| f[c]).sum::<f64>();
         // Rounding of a dozen terms.
-        assert!((sum(&kept) - sum(&step.smoothed_reaction)).abs() < 1e-12 * 600.0);
+        assert!((sum(&kept) - sum(&step.force)).abs() < 1e-12 * 600.0);
     }
     assert!(residuals(&first).cone < 1e-14 && first.end[3][1][1] > 0.0);
     // A reaction out of the cone, as a foreign history may have, is projected.
-    step.smoothed_reaction[0] = [0.0, -10.0];
-    let cut = reading.interval(&problem, None, &step, &step, None);
+    step.force[0] = [0.0, -10.0];
+    let cut = made(Corrected, &problem, &alone(&step, &step));
     assert_eq!(cut.start[0][0], [0.0; 2]);
-}
-
-/// The misfits of the normal law against the midpoint rule, which converges with the square of the interval.
-#[test]
-fn normal_law_on_an_edge() {
-    let (area, force, gap) = (0.3, [2.0, 5.0], [1e-3, 4e-3]);
-    let count = 20_000;
-    let mean =
-        |f: &dyn Fn(f64) -> f64| (0..count).map(|k| f((k as f64 + 0.5) / count as f64)).sum::<f64>() / count as f64;
-    let line = |[a, b]: [f64; 2], s: f64| (1.0 - s) * a + s * b;
-    for speed in [[3.0, 1.0], [-3.0, 1.0], [0.5, -4.0], [0.0, 0.0]] {
-        let expected = area * mean(&|s| line(force, s) * line(speed, s).abs());
-        assert!((normal_power(&Triangle {}, area, &force, &speed) - expected).abs() < 1e-8, "{speed:?}");
-    }
-    let expected = area * mean(&|s| line(force, s) * line(gap, s));
-    assert!((gap_energy(area, &force, &gap) - expected).abs() < 1e-11);
-    // On a bar both are products.
-    assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(&Bar {}, 2.0, &[3.0], &[-0.5])), (3.0, 3.0));
 }

@@ -1,13 +1,13 @@
-//! One star problem, walked from facet to facet.
+//! One star problem, solved from facet to facet.
 
 use super::Equilibration;
 use crate::residual::worse;
 use crate::time_level::TimeLevel;
 use percute_core::ids::{ElementId, NodeId};
 
-/// The two ends of a walk around a node.
+/// The two ends of a star.
 pub(super) struct Ends<const D: usize> {
-    /// Whether the walk comes back to its first facet.
+    /// Whether its last facet is the first.
     pub(super) closed: bool,
     /// Known outward moments (N); zero where there is none.
     pub(super) moments: [[f64; D]; 2],
@@ -22,37 +22,39 @@ impl<const D: usize> Ends<D> {
         self.closed || self.supported[end][c]
     }
 
-    /// Adds the constant to the moments of a walk that lack so much, and returns by how much the
+    /// Adds the constant to the moments of a star, whose sum lacks so much, and returns by how much the
     /// chain misses where no constant is left (N).
     #[inline]
-    pub(super) fn close(&self, lack: &[f64; D], flux: &mut [[f64; D]]) -> f64 {
-        let last = flux.len() - 1;
+    pub(super) fn close(&self, lack: &[f64; D], moments: &mut [[f64; D]]) -> f64 {
+        let last = moments.len() - 1;
         let mut miss: f64 = 0.0;
         for c in 0..D {
             let open = [self.open(0, c), self.open(1, c)];
             let shift = match open {
                 // The mean over all facets without a known moment.
                 [true, true] => lack[c] / (last + usize::from(!self.closed)) as f64,
-                [true, false] => self.moments[1][c] - flux[last][c],
+                [true, false] => self.moments[1][c] - moments[last][c],
                 _ => 0.0,
             };
             if self.closed {
-                miss = worse(miss, (flux[last][c] - flux[0][c]).abs());
+                miss = worse(miss, (moments[last][c] - moments[0][c]).abs());
             } else if open == [false, false] {
-                miss = worse(miss, (flux[last][c] - self.moments[1][c]).abs());
+                miss = worse(miss, (moments[last][c] - self.moments[1][c]).abs());
             }
             if shift != 0.0 {
-                flux.iter_mut().for_each(|f| f[c] += shift);
+                moments.iter_mut().for_each(|f| f[c] += shift);
             }
         }
         miss
     }
 }
 
-/// A walk through the elements around a node.
+/// The star problem of one node.
 pub(super) struct StarSolver<'a, 'p, const D: usize, const N: usize> {
     pub(super) all: &'a Equilibration<'p, D, N>,
     pub(super) level: &'a TimeLevel<D>,
+    /// σ_h of each element (Pa).
+    pub(super) stress: &'a [[[f64; D]; D]],
     pub(super) node: NodeId,
     pub(super) acceleration: &'a [f64; D],
     pub(super) elements: &'a [ElementId],
@@ -63,14 +65,14 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
     /// Finds the moments on all links with one choice of the constant. Returns by how much those
     /// without a known one, all together, fall short of the averaged finite-element traction.
     #[inline]
-    pub(super) fn along(&self, flux: &mut [[f64; D]], scale: &mut f64) -> [f64; D] {
+    pub(super) fn along(&self, moments: &mut [[f64; D]], scale: &mut f64) -> [f64; D] {
         let (last, ends) = (self.elements.len(), self.ends);
         let (mut target_sum, mut sum) = ([0.0; D], [0.0; D]);
-        flux[0] = ends.moments[0].map(|b| -b);
+        moments[0] = ends.moments[0].map(|b| -b);
         for c in 0..D {
             // In a closed chain the first link is the last and counts once.
             if ends.supported[0][c] {
-                flux[0][c] = 0.0;
+                moments[0][c] = 0.0;
                 target_sum[c] += self.average_before_first()[c];
             }
         }
@@ -78,10 +80,10 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
             let r = self.residual_of(element, scale);
             let target = self.average_after(m);
             for c in 0..D {
-                flux[m + 1][c] = flux[m][c] + r[c];
+                moments[m + 1][c] = moments[m][c] + r[c];
                 if m + 1 < last || ends.open(1, c) {
                     target_sum[c] += target[c];
-                    sum[c] += flux[m + 1][c];
+                    sum[c] += moments[m + 1][c];
                 }
             }
         }
@@ -94,7 +96,7 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
         let e = element.index();
         let data = &self.all.elements[e];
         let i = data.nodes.iter().position(|&n| n == self.node).unwrap_or(0);
-        let mut r = data.internal_force(i, &self.level.stress[e]);
+        let mut r = data.internal_force(i, &self.stress[e]);
         for c in 0..D {
             let inertia = data.nodal_mass * self.acceleration[c];
             *scale = scale.max(r[c].abs()).max(inertia.abs());
@@ -106,13 +108,13 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
         r
     }
 
-    /// ∫σφ_i n over the facet by which the walk leaves (1) or enters (0) element `e`, outward:
+    /// ∫σφ_i n over the facet by which the star leaves (1) or enters (0) element `e`, outward:
     /// |e|n/D = −V∇φ_k.
     #[inline]
     fn moment(&self, e: ElementId, exit: usize, stress: &[[f64; D]; D]) -> [f64; D] {
         let data = &self.all.elements[e.index()];
         let i = data.nodes.iter().position(|&n| n == self.node).unwrap_or(0);
-        let facet = self.all.walk[i][exit];
+        let facet = self.all.crossing[i][exit];
         facet.map_or([0.0; D], |k| data.internal_force(k, stress).map(|f| -f))
     }
 
@@ -120,18 +122,18 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
     #[inline]
     fn average_before_first(&self) -> [f64; D] {
         let e = self.elements[0];
-        self.moment(e, 0, &self.level.stress[e.index()]).map(|f| -f)
+        self.moment(e, 0, &self.stress[e.index()]).map(|f| -f)
     }
 
     /// Moment of the averaged finite-element traction ½(σ_h⁺ + σ_h⁻)·n that leaves element `m` of the
-    /// walk; on the boundary of σ_h·n.
+    /// star; on the boundary of σ_h·n.
     #[inline]
     fn average_after(&self, m: usize) -> [f64; D] {
         let e = self.elements[m];
-        let here = &self.level.stress[e.index()];
+        let here = &self.stress[e.index()];
         let next = match self.elements.get(m + 1) {
-            Some(next) => &self.level.stress[next.index()],
-            None if self.ends.closed => &self.level.stress[self.elements[0].index()],
+            Some(next) => &self.stress[next.index()],
+            None if self.ends.closed => &self.stress[self.elements[0].index()],
             None => here,
         };
         let mut mean = *here;

@@ -21,7 +21,7 @@ fn residuals(track: &ContactTrack) -> Residuals {
     residuals
 }
 
-/// From gap 4 at −1 to the plane at step 2. The wanted velocities −1 at all knots cover 3.5 m, half a
+/// From gap 4 at −1 to the plane at step 2. The wanted velocities −1 at all instants cover 3.5 m, half a
 /// half step less than 4 because the last is 0: the three free ones become −1 − ½/3.
 fn arriving() -> ContactTrack {
     let mut track = track(4.0, -1.0);
@@ -31,11 +31,11 @@ fn arriving() -> ContactTrack {
 }
 
 #[test]
-fn an_arrival_shifts_the_free_knots() {
+fn an_arrival_shifts_the_free_instants() {
     let track = arriving();
     assert_eq!((track.known(), track.at(4).0), (5, 0.0));
-    for knot in 1..=3 {
-        assert!((track.at(knot).0 + 7.0 / 6.0).abs() < 1e-15);
+    for instant in 1..=3 {
+        assert!((track.at(instant).0 + 7.0 / 6.0).abs() < 1e-15);
     }
     assert!(residuals(&track).largest() < 1e-15);
 }
@@ -51,7 +51,7 @@ fn a_phase_of_one_step() {
     assert!(residuals(&track).largest() < 1e-15);
 }
 
-/// The shortest way between two phases: off at one instant, back at the next. Three knots are free,
+/// The shortest way between two phases: off at one instant, back at the next. Three instants are free,
 /// and what goes up comes down: 2 and 1 and −4 become 7/3, 4/3 and −11/3, which would go through the
 /// plane were the last not followed by rest — the sum is zero.
 #[test]
@@ -59,8 +59,8 @@ fn two_phases_with_one_instant_between() {
     let mut track = arriving();
     track.push(&step([2.0, 1.0], false), TOLERANCE);
     track.push(&step([-4.0, 0.0], true), TOLERANCE);
-    for (knot, expected) in [(5, 7.0 / 3.0), (6, 4.0 / 3.0), (7, -11.0 / 3.0), (8, 0.0)] {
-        assert!((track.at(knot).0 - expected).abs() < 1e-14, "{:?}", track.at(knot));
+    for (instant, expected) in [(5, 7.0 / 3.0), (6, 4.0 / 3.0), (7, -11.0 / 3.0), (8, 0.0)] {
+        assert!((track.at(instant).0 - expected).abs() < 1e-14, "{:?}", track.at(instant));
     }
     assert!(track.at(8).1.abs() < 1e-15);
     assert!(residuals(&track).largest() < 1e-15);
@@ -72,14 +72,14 @@ fn two_phases_between_which_nothing_can_move() {
     let mut track = arriving();
     track.push(&step([-2.0, -1.0], false), TOLERANCE);
     track.push(&step([3.0, 0.0], true), TOLERANCE);
-    for knot in 5..=8 {
-        // The tolerance allows a gap of −1e-13 at each knot.
-        assert!(track.at(knot).0.abs() < 1e-12 && track.at(knot).1.abs() < 1e-12, "{:?}", track.at(knot));
+    for instant in 5..=8 {
+        // The tolerance allows a gap of −1e-13 at each instant.
+        assert!(track.at(instant).0.abs() < 1e-12 && track.at(instant).1.abs() < 1e-12, "{:?}", track.at(instant));
     }
     assert!(residuals(&track).largest() < 1e-12);
 }
 
-/// A window with a single free knot, the shortest there can be: touching at step 1. Gap 1 at −1 is
+/// A window with a single free instant, the shortest there can be: touching at step 1. Gap 1 at −1 is
 /// covered with −½ at t_½. Nearer than |v|Δt/4 = ½ nothing admissible exists, and it shows.
 #[test]
 fn touching_at_step_one() {
@@ -122,26 +122,26 @@ fn a_missed_onset_shows() {
     assert_eq!(found, Residuals { onset: found.onset, ..Residuals::default() });
 }
 
-/// A knot 1 % of the body's size behind the plane.
+/// A gap 1 % of the body's size behind the plane.
 #[test]
-fn penetration_at_a_knot_shows() {
+fn penetration_at_an_instant_shows() {
     let mut track = track(1.0, -1.0);
     track.lengths = vec![HALF; 2];
     track.record(vec![(-1.0, -0.01), (1.0, -0.01)], false);
     let found = residuals(&track);
-    assert_eq!(found.penetration_at_knots, 0.01);
-    // The parabola between the knots is deeper still, by v²h/(2·2) = ¼.
-    assert!((found.penetration_between_knots - 0.26).abs() < 1e-15);
+    assert_eq!(found.penetration_at_instants, 0.01);
+    // The parabola between the instants is deeper still, by v²h/(2·2) = ¼.
+    assert!((found.penetration_between_instants - 0.26).abs() < 1e-15);
 }
 
-/// Down to −¼ and back between two knots on the plane.
+/// Down to −¼ and back between two instants on the plane.
 #[test]
-fn penetration_between_knots_shows() {
+fn penetration_between_instants_shows() {
     let mut track = track(0.0, -1.0);
     track.lengths = vec![HALF];
     track.record(vec![(1.0, 0.0)], false);
     let found = residuals(&track);
-    assert_eq!(found, Residuals { penetration_between_knots: 0.25, ..Residuals::default() });
+    assert_eq!(found, Residuals { penetration_between_instants: 0.25, ..Residuals::default() });
 }
 
 /// What is no number must not pass as small.

@@ -43,21 +43,21 @@ impl Drawn {
         Self { start, lengths, wanted, arrives: random.bits().is_multiple_of(2) }
     }
 
-    fn window(&self) -> Window<'_> {
-        Window { start: self.start, lengths: &self.lengths, wanted: &self.wanted, arrives: self.arrives }
+    fn window(&self) -> FlightWindow<'_> {
+        FlightWindow { start: self.start, lengths: &self.lengths, wanted: &self.wanted, arrives: self.arrives }
     }
 }
 
 /// Half the weighted square of the distance from the wanted velocities.
-fn objective(window: &Window<'_>, velocity: &[f64]) -> f64 {
+fn objective(window: &FlightWindow<'_>, velocity: &[f64]) -> f64 {
     let square = |k: usize| window.weight(k) * (velocity[k] - window.wanted[k]).powi(2);
-    0.5 * (0..window.free_knots()).map(square).sum::<f64>()
+    0.5 * (0..window.free_instants()).map(square).sum::<f64>()
 }
 
 /// Minimum with a gap that is not negative at `points` points of every half step only, by an
 /// interior-point method.
-fn on_a_grid(window: &Window<'_>, points: usize) -> f64 {
-    let free = window.free_knots();
+fn on_a_grid(window: &FlightWindow<'_>, points: usize) -> f64 {
+    let free = window.free_instants();
     let mut conditions: Vec<Condition> = Vec::new();
     let last = window.lengths.len() - 1;
     if window.arrives {
@@ -84,7 +84,7 @@ fn on_a_grid(window: &Window<'_>, points: usize) -> f64 {
     objective(window, &solver.solution.x)
 }
 
-fn penetration(window: &Window<'_>, path: &Path) -> f64 {
+fn penetration(window: &FlightWindow<'_>, path: &Path) -> f64 {
     (-window.deepest(path).1).max(0.0)
 }
 
@@ -168,6 +168,6 @@ fn chatter_meets_windows_that_penetrate() {
                 .unwrap();
         assert!(SHAPED.get() > before, "case {k}: no window was solved again");
         // What the method allows.
-        assert!(estimate.residuals.penetration_between_knots <= 1e-12, "case {k}");
+        assert!(estimate.residuals.penetration_between_instants <= 1e-12, "case {k}");
     }
 }

@@ -1,9 +1,14 @@
 //! Residuals of the motion at contact rise when it is changed.
 
 use super::*;
-use crate::kinematic::NormalStep;
+use crate::increment::Increment;
+use crate::kinematic::{FreeMotion, NormalStep};
+use crate::options::{Acceleration, Options};
 use crate::pipeline::fixture::{SHOWS, impact};
+use crate::pipeline::maps::Maps;
+use crate::reconstruction;
 use crate::request::Request;
+use crate::traction::Equilibration;
 
 /// Runs one element at contact through a single step at whose end its nodes touch, with the normal
 /// motion in `track` for all of them.
@@ -11,26 +16,23 @@ fn checked(track: &ContactTrack) -> Residuals {
     let (problem, times) = impact();
     let equilibration = Equilibration::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
-    let context = Context {
+    let shared = Sampling {
         problem: &problem,
         times: &times,
         equilibration: &equilibration,
         choice: Acceleration::Closest,
-        normal_work: 1.0,
-        tracks: &tracks,
         maps: &Maps::new(Request::default(), &problem).unwrap(),
     };
+    let reconstruction = reconstruction::new(&problem, &times, &Options::default());
+    let context = ContactSampling { shared: &shared, reconstruction: &*reconstruction, tracks: &tracks };
     let mut near = near_elements(&problem).remove(0);
     let element = &equilibration.elements[near.element.index()];
-    let knot = Knot {
-        displacement: problem.initial_displacement().to_vec(),
-        velocity: problem.initial_velocity().to_vec(),
-        increment: vec![[0.0; 2]; problem.mesh().node_count()],
-    };
-    let mut stop = near.provisional(element, &knot, 2, 0.0);
+    let (_, motion) = FreeMotion::new(&problem).advance(&problem, &times, problem.initial_velocity(), None);
+    let velocities = Velocities { motion, increment: Increment::zero(problem.mesh().node_count()) };
+    let mut stop = near.at(element, &velocities, 2, 0.0);
     near.settle(&context, &mut stop);
     let touching = near.contact.map(|at| at.is_some());
-    near.check_contact(&context, &stop, &touching);
+    near.check_contact(&context, &stop.velocities, &touching);
     near.residuals
 }
 
@@ -61,6 +63,6 @@ fn a_normal_velocity_in_contact_shows() {
 #[test]
 fn penetration_shows() {
     let found = checked(&track(0.0, -1e-3));
-    assert!(found.penetration_at_knots > SHOWS, "{found:?}");
-    assert!(Residuals { penetration_at_knots: 0.0, ..found }.largest() < 1e-12, "{found:?}");
+    assert!(found.penetration_at_instants > SHOWS, "{found:?}");
+    assert!(Residuals { penetration_at_instants: 0.0, ..found }.largest() < 1e-12, "{found:?}");
 }

@@ -1,6 +1,6 @@
 //! How much of the simulation's contact impulse the admissible force keeps.
 
-use crate::reconstruction::{self, Interval};
+use crate::reconstruction::{StepDensities, nodal_forces};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
@@ -10,7 +10,7 @@ pub(crate) struct Impulse {
     /// Of the admissible force.
     pub(crate) kept: f64,
     /// Of the simulation.
-    pub(crate) whole: f64,
+    pub(crate) simulated: f64,
 }
 
 impl Impulse {
@@ -20,13 +20,12 @@ impl Impulse {
         problem: &Problem<D, N>,
         times: &TimeGrid,
         n: usize,
-        interval: &Interval<D>,
+        densities: &StepDensities<D>,
         reaction: &[[f64; D]],
     ) {
-        let [start, end] =
-            [&interval.start, &interval.end].map(|d| normal_sum(problem, &reconstruction::nodal_forces(problem, d)));
+        let [start, end] = [&densities.start, &densities.end].map(|d| normal_sum(problem, &nodal_forces(problem, d)));
         self.kept += 0.5 * times.step(n) * (start + end);
-        self.whole += times.velocity_step(n) * normal_sum(problem, reaction);
+        self.simulated += times.velocity_step(n) * normal_sum(problem, reaction);
     }
 
     /// Adds the simulation's impulse over the last half step, ½Δt_{N−1} R_N.
@@ -37,7 +36,7 @@ impl Impulse {
         last: usize,
         reaction: &[[f64; D]],
     ) {
-        self.whole += 0.5 * times.step(last - 1) * normal_sum(problem, reaction);
+        self.simulated += 0.5 * times.step(last - 1) * normal_sum(problem, reaction);
     }
 }
 

@@ -1,116 +1,114 @@
-//! What becomes known over a step: F_DA, then ã, ∫ã dt and the contact part of η.
+//! The fields that become known over a step: F_DA, then ã, ∫ã dt and the friction part of η.
 
 use super::Preparation;
-use crate::kinematic::Knot;
-use crate::reconstruction::{self, Densities, Interval, Reading};
-use crate::time_level::TimeLevel;
-use percute_core::problem::Problem;
+use crate::acceleration::accelerate;
+use crate::increment::Increment;
+use crate::kinematic::NodalMotion;
+use crate::reconstruction::{self, Densities, OffContact, SurfaceSteps, driving_forces};
+use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, MotionKnown, Velocities};
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     /// Finds F_DA over the earliest step that lacks it; then ã and ∫ã are known up to its end.
     pub(super) fn complete_interval(&mut self) {
-        let first = self.ready;
-        let level = |k: usize| self.levels.get(first + k);
-        let (Some(now), Some(next)) = (level(0), level(1)) else { return };
-        let after = level(2).map(|l| &l.surface);
-        let before = self.before.as_ref();
-        let interval = self.reading.interval(self.problem, before, &now.surface, &next.surface, after);
-        let off_contact = self.reading.acts_off_contact();
-        let residuals = &mut self.residuals;
-        reconstruction::check(self.problem, &now.surface, &next.surface, &interval, off_contact, residuals);
-        self.impulse.add(self.problem, self.times, now.index, &interval, &now.surface.reaction);
-        self.before = Some(self.levels[first].surface.clone());
-        if let Reading::Corrected(whole) = &self.reading {
-            let pressures = whole.pressures(self.problem, &now.surface, &next.surface, &interval);
-            self.levels[first + 1].pressures.push(pressures);
-        }
-        self.set_accelerations(first, interval);
-        self.integrate_acceleration(first);
-        self.add_contact_misfit(first);
-        self.ready += 1;
+        let Some(next) = self.motions.pop_front() else { return };
+        let Some(now) = self.current.take() else { return };
+        let after = self.motions.front().map(|motion| &motion.level.surface);
+        let (surface, before) = (&now.level.surface, self.before.as_ref());
+        let steps = SurfaceSteps { before, now: surface, next: &next.level.surface, after };
+        let densities = self.reconstruction.densities(&steps);
+        let off_contact = self.reconstruction.off_contact(&steps, &densities);
+        reconstruction::check(self.problem, &steps, &densities, off_contact.is_some(), &mut self.residuals);
+        self.impulse.add(self.problem, self.times, now.level.index, &densities, &surface.reaction);
+        self.before = Some(surface.clone());
+        let now = self.after(now, densities.start);
+        self.current = Some(self.reach(&now, next, densities.end, off_contact));
+        self.ready.push_back(now);
     }
 
-    /// ã after t_n at the beginning of the step, before t_{n+1} at its end \[55\].
-    fn set_accelerations(&mut self, first: usize, interval: Interval<D>) {
-        let surface = self.problem.surface().nodes();
-        let inverse_mass = self.dynamics.inverse_mass();
-        let corrected = |level: &TimeLevel<D>, densities| -> Vec<[f64; D]> {
-            let each = surface.iter().zip(pull(self.problem, densities)).map(|(contact, force)| {
-                let i = contact.node.index();
-                std::array::from_fn(|c| (level.force[i][c] + force[c]) * inverse_mass[i])
-            });
-            each.collect()
-        };
-        let after = corrected(&self.levels[first], &interval.start);
-        let before = corrected(&self.levels[first + 1], &interval.end);
-        if self.levels[first].acceleration.is_empty() {
-            // The first level has no earlier side.
-            let mut base = self.levels[first].force.clone();
-            self.over_mass(&mut base);
-            let level = &mut self.levels[first];
-            (level.acceleration, level.acceleration_before) = (base, after.clone());
-            level.density_before = interval.start.clone();
-        }
-        let mut base = self.levels[first + 1].force.clone();
-        self.over_mass(&mut base);
-        self.levels[first].density_after = interval.start;
-        self.levels[first].force = Vec::new();
-        self.levels[first + 1].density_before = interval.end;
-        self.levels[first + 1].acceleration = base;
-        for ((contact, after), before) in surface.iter().zip(after).zip(&before) {
-            self.levels[first].acceleration[contact.node.index()] = after;
-            self.levels[first + 1].acceleration[contact.node.index()] = *before;
-        }
-        self.levels[first + 1].acceleration_before = before;
-    }
-
-    /// ∫ã dt at t_{n+½} and t_{n+1}: ã is linear over the step.
-    fn integrate_acceleration(&mut self, first: usize) {
-        let dt = self.times.step(self.levels[first].index);
-        let (now, next) = (&self.levels[first], &self.levels[first + 1]);
-        let weigh = |a: f64, b: f64| -> Vec<[f64; D]> {
-            let each = now.knot.increment.iter().zip(now.acceleration.iter().zip(&next.acceleration));
-            each.map(|(w, (x, y))| std::array::from_fn(|c| w[c] + dt * (a * x[c] + b * y[c]))).collect()
-        };
-        let (mid, end) = (weigh(0.375, 0.125), weigh(0.5, 0.5));
-        let next = &mut self.levels[first + 1];
-        next.knot.increment = end;
-        if let Some(knot) = &mut next.mid {
-            knot.increment = mid;
+    /// The first level, before which there is no contact force.
+    pub(super) fn first(&self, first: MotionKnown<D>) -> ForcesBefore<D> {
+        let MotionKnown { level, now: motion, force, .. } = first;
+        let increment = Increment::zero(force.len());
+        ForcesBefore {
+            level,
+            now: Velocities { motion, increment },
+            mid: None,
+            surface_force: self.on_surface(&force),
+            acceleration: accelerate(self.problem, self.dynamics.inverse_mass(), force, &[]),
+            density: None,
+            off_contact: None,
+            friction: vec![[0.0; 2]; self.problem.surface().facets().len()],
         }
     }
 
-    /// Contact part of η over the step: the trapezoidal rule over its three knots.
-    fn add_contact_misfit(&mut self, first: usize) {
+    /// A level with the density at the beginning of the step that follows: ã after t_n \[55\].
+    fn after(&self, level: ForcesBefore<D>, density: Densities<D>) -> ForcesKnown<D> {
+        let ForcesBefore { level, now, mid, surface_force, mut acceleration, density: earlier, off_contact, friction } =
+            level;
+        let before = earlier.filter(|earlier| *earlier != density);
+        let before = before.map(|density| BeforeJump { acceleration: self.on_surface(&acceleration), density });
+        let pull = driving_forces(self.problem, &density);
+        for ((contact, force), pull) in self.problem.surface().nodes().iter().zip(&surface_force).zip(&pull) {
+            let i = contact.node.index();
+            acceleration[i] = std::array::from_fn(|c| (force[c] + pull[c]) * self.dynamics.inverse_mass()[i]);
+        }
+        let off_contact = off_contact.into_iter().collect();
+        ForcesKnown { level, now, mid, acceleration, density, before, off_contact, friction }
+    }
+
+    /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã is
+    /// linear over the step.
+    fn reach(
+        &self,
+        now: &ForcesKnown<D>,
+        next: MotionKnown<D>,
+        density: Densities<D>,
+        off_contact: Option<OffContact<D>>,
+    ) -> ForcesBefore<D> {
+        let friction = self.friction(now, &next, &density);
+        let MotionKnown { level, now: motion, mid, force } = next;
+        let surface_force = self.on_surface(&force);
+        let pull = driving_forces(self.problem, &density);
+        let acceleration = accelerate(self.problem, self.dynamics.inverse_mass(), force, &pull);
+        let length = self.times.step(now.level.index);
+        let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
+        ForcesBefore {
+            level,
+            now: Velocities { motion, increment },
+            mid: mid.map(|motion| Velocities { motion, increment: middle }),
+            surface_force,
+            acceleration,
+            density: Some(density),
+            off_contact,
+            friction,
+        }
+    }
+
+    /// Friction part of η on each candidate facet up to the middle and the end of the step from `now` to `next`: the
+    /// trapezoidal rule over its three half-step instants.
+    fn friction(&self, now: &ForcesKnown<D>, next: &MotionKnown<D>, density: &Densities<D>) -> Vec<[f64; 2]> {
         let problem = self.problem;
-        let dt = self.times.step(self.levels[first].index);
-        let (now, next) = (&self.levels[first], &self.levels[first + 1]);
-        let mut contact = Vec::with_capacity(problem.surface().facets().len());
+        let dt = self.times.step(now.level.index);
+        let mut friction = Vec::with_capacity(problem.surface().facets().len());
         for (f, facet) in problem.surface().facets().iter().enumerate() {
-            let (start, end) = (&now.density_after[f], &next.density_before[f]);
+            let (start, end) = (&now.density[f], &density[f]);
             let mut middle = *start;
             (0..D).for_each(|p| (0..D).for_each(|c| middle[p][c] = 0.5 * (start[p][c] + end[p][c])));
-            let power = |knot: &Knot<D>, density| {
-                let velocity = facet.nodes.map(|k| knot.velocity[problem.surface().nodes()[k].node.index()]);
+            let power = |motion: &NodalMotion<D>, density| {
+                let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
                 reconstruction::misfit_power(problem, facet, density, &velocity)
             };
-            let (a, b) = (power(&now.knot, start), power(&next.knot, end));
+            let (a, b) = (power(&now.now.motion, start), power(&next.now, end));
             let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &middle));
-            let so_far = now.contact[f][1];
+            let so_far = now.friction[f][1];
             // 2∫[…], twice over half a step each.
-            contact.push([so_far + 0.5 * dt * (a + m), so_far + 0.5 * dt * (a + 2.0 * m + b)]);
+            friction.push([so_far + 0.5 * dt * (a + m), so_far + 0.5 * dt * (a + 2.0 * m + b)]);
         }
-        self.levels[first + 1].contact = contact;
+        friction
     }
-}
 
-/// What moves each node of the contact surface under a density: its nodal force (N), but for the tangential
-/// part at a guided node, whose tangential motion is prescribed, whatever pulls at it.
-pub(super) fn pull<const D: usize, const N: usize>(problem: &Problem<D, N>, densities: &Densities<D>) -> Vec<[f64; D]> {
-    let mut forces = reconstruction::nodal_forces(problem, densities);
-    for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
-        let plane = &problem.obstacles()[contact.obstacle];
-        *force = plane.normal().map(|n| n * plane.split(force).0);
+    /// The values of a nodal field on the contact surface.
+    fn on_surface(&self, field: &[[f64; D]]) -> Vec<[f64; D]> {
+        self.problem.surface().nodes().iter().map(|contact| field[contact.node.index()]).collect()
     }
-    forces
 }

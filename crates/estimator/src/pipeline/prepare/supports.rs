@@ -1,6 +1,6 @@
 //! Whether u_CA follows the supports.
 
-use crate::kinematic::Knot;
+use crate::kinematic::NodalMotion;
 use crate::residual::worse;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -23,7 +23,7 @@ impl SupportCheck {
         problem: &Problem<D, N>,
         times: &TimeGrid,
         n: usize,
-        knot: &Knot<D>,
+        motion: &NodalMotion<D>,
     ) -> f64 {
         let mut largest = 0.0;
         for (k, p) in problem.prescribed().iter().enumerate() {
@@ -40,7 +40,7 @@ impl SupportCheck {
             *farthest = farthest.max(exact.abs());
             self.longest = self.longest.max(*farthest);
             let scale = farthest.max(1e-12 * self.longest);
-            let miss = (knot.displacement[p.node.index()][p.component] - *exact).abs();
+            let miss = (motion.displacement()[p.node.index()][p.component] - *exact).abs();
             largest = worse(largest, if miss == 0.0 { 0.0 } else { miss / scale });
         }
         largest

@@ -1,9 +1,16 @@
 //! Residuals of the sequential part rise when its fields are changed.
 
 use super::*;
-use crate::options::Reconstruction;
+use crate::options::ReconstructionChoice;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
+use crate::reconstruction::Densities;
+use crate::time_level::BeforeJump;
 use percute_core::problem::Initial;
+
+/// The density before t_n.
+fn before(level: &ForcesKnown<2>) -> &Densities<2> {
+    level.before.as_ref().map_or(&level.density, |BeforeJump { density, .. }| density)
+}
 
 /// u_CA and u̇_CA that start elsewhere.
 #[test]
@@ -39,31 +46,32 @@ fn wrong_initial_conditions_show() {
 #[test]
 fn a_missed_support_shows() {
     let (problem, times) = driven();
-    let mut preparation = prepared(&problem, &times, Reconstruction::Consistent);
+    let mut preparation = prepared(&problem, &times, ReconstructionChoice::Consistent);
     assert!(preparation.residuals.largest() < 1e-13);
     let last = times.step_count();
-    let Some(level) = preparation.levels.back() else { panic!("no levels") };
-    let mut knot = level.knot.clone();
+    let Some(level) = preparation.ready.back() else { panic!("no levels") };
+    let mut motion = level.now.motion.clone();
+    let [displacement, _] = motion.parts_mut();
     for p in problem.prescribed() {
-        knot.displacement[p.node.index()][p.component] *= 1.01;
+        displacement[p.node.index()][p.component] *= 1.01;
     }
     // The last step once more: its way is taken off first.
     for (k, p) in problem.prescribed().iter().enumerate() {
         let velocity = |m: usize| problem.prescribed_velocity(p, times.instants()[m]);
         preparation.supports.exact[k] -= 0.5 * times.step(last - 1) * (velocity(last - 1) + velocity(last));
     }
-    let miss = preparation.supports.advance(&problem, &times, last, &knot);
+    let miss = preparation.supports.advance(&problem, &times, last, &motion);
     let found = Residuals { supports: worse(preparation.residuals.supports, miss), ..preparation.residuals };
     assert!(found.supports > SHOWS, "{found:?}");
     assert!(Residuals { supports: 0.0, ..found }.largest() < 1e-13, "{found:?}");
 }
 
-/// Densities that leave the cone between reading and check.
+/// Densities that leave the cone between reconstruction and check.
 #[test]
-fn every_reading_is_checked_at_every_step() {
+fn every_reconstruction_is_checked_at_every_step() {
     let (problem, times) = impact();
-    for &reading in Reconstruction::ALL {
-        let preparation = prepared(&problem, &times, reading);
+    for &choice in ReconstructionChoice::ALL {
+        let preparation = prepared(&problem, &times, choice);
         assert!(preparation.residuals.largest() < 1e-13);
         assert!(preparation.impulse.kept > 0.0);
     }
@@ -87,36 +95,37 @@ fn power(length: f64, friction: f64, force: [[f64; 2]; 2], sliding: [f64; 2]) ->
 #[test]
 fn the_contact_part_step_by_step() {
     let (problem, times) = sticking();
-    for &reading in Reconstruction::ALL {
-        let preparation = prepared(&problem, &times, reading);
-        let levels = &preparation.levels;
+    for &choice in ReconstructionChoice::ALL {
+        let preparation = prepared(&problem, &times, choice);
+        let levels = &preparation.ready;
         let (mut turning, mut inside) = (0, 0);
         for (f, facet) in problem.surface().facets().iter().enumerate() {
             let mut sum = 0.0;
             for n in 0..times.step_count() {
-                let (now, next, mid) = (&levels[n], &levels[n + 1], levels[n + 1].mid.as_ref().unwrap());
+                let (now, next) = (&levels[n], &levels[n + 1]);
+                let mid = &next.mid.as_ref().unwrap().motion;
                 let nodes = facet.nodes.map(|k| problem.surface().nodes()[k].node.index());
-                let mut power = |knot: &Knot<2>, force: [[f64; 2]; 2]| {
-                    let sliding = nodes.map(|i| knot.velocity[i][0]);
+                let mut power = |motion: &NodalMotion<2>, force: [[f64; 2]; 2]| {
+                    let sliding = nodes.map(|i| motion.velocity()[i][0]);
                     let pressed = force.iter().any(|f| f[1] > 0.0);
                     turning += usize::from(pressed && sliding[0] * sliding[1] < 0.0);
                     inside += usize::from(force.iter().any(|f| f[1] > 0.0 && f[0].abs() < 0.5 * f[1]));
                     power(facet.area, 0.9, force, sliding)
                 };
-                let (start, end) = (now.density_after[f], next.density_before[f]);
+                let (start, end) = (now.density[f], before(next)[f]);
                 let middle = [0, 1].map(|p| [0, 1].map(|c| 0.5 * (start[p][c] + end[p][c])));
-                let [a, m, b] = [power(&now.knot, start), power(mid, middle), power(&next.knot, end)];
+                let [a, m, b] = [power(&now.now.motion, start), power(mid, middle), power(&next.now.motion, end)];
                 // 2∫: twice the trapezoids of two half steps.
                 let half = 0.5 * times.step(n);
-                let found = next.contact[f];
+                let found = next.friction[f];
                 let close = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b.abs();
-                assert!(close(found[0], sum + half * (a + m)), "{reading}, step {n}: {} ", found[0]);
+                assert!(close(found[0], sum + half * (a + m)), "{choice}, step {n}: {} ", found[0]);
                 sum += half * (a + m) + half * (m + b);
-                assert!(close(found[1], sum), "{reading}, step {n}: {} instead of {sum}", found[1]);
+                assert!(close(found[1], sum), "{choice}, step {n}: {} instead of {sum}", found[1]);
             }
-            assert!(sum > 0.0, "{reading}");
+            assert!(sum > 0.0, "{choice}");
         }
-        assert!(turning > 3 && inside > 3, "{reading}: {turning}, {inside}");
+        assert!(turning > 3 && inside > 3, "{choice}: {turning}, {inside}");
     }
 }
 
@@ -124,35 +133,35 @@ fn the_contact_part_step_by_step() {
 #[test]
 fn a_guided_node_keeps_its_tangential_motion() {
     let (problem, times) = guided();
-    for &reading in Reconstruction::ALL {
-        let preparation = prepared(&problem, &times, reading);
+    for &choice in ReconstructionChoice::ALL {
+        let preparation = prepared(&problem, &times, choice);
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();
-        let pulled = |d: &crate::reconstruction::Densities<2>| {
+        let pulled = |d: &Densities<2>| {
             let force = crate::reconstruction::nodal_forces(&problem, d)[at];
             usize::from(force[0] != 0.0 && force[1] > 0.0)
         };
-        let count: usize =
-            preparation.levels.iter().map(|l| pulled(&l.density_before) + pulled(&l.density_after)).sum();
-        assert!(count > 3, "{reading}: {count}");
-        for level in &preparation.levels {
-            assert_eq!([level.acceleration[node][0], level.acceleration_before[at][0]], [0.0; 2], "{reading}");
+        let count: usize = preparation.ready.iter().map(|level| pulled(before(level)) + pulled(&level.density)).sum();
+        assert!(count > 3, "{choice}: {count}");
+        for level in &preparation.ready {
+            assert_eq!(level.acceleration[node][0], 0.0, "{choice}");
+            assert!(level.before.iter().all(|before| before.acceleration[at][0] == 0.0), "{choice}");
         }
     }
 }
 
-/// A phase that is open at the last step goes on: the paper's force is there at t_N if the node touched
+/// A phase that is open at the last step goes on: the force of the paper is there at t_N if the node touched
 /// at t_{N−1} too, whatever was before.
 #[test]
 fn an_open_phase_has_its_force_at_the_last_step() {
     let (problem, times) = impact();
-    let whole = prepared(&problem, &times, Reconstruction::Published);
-    let first = whole.levels.iter().position(|level| level.surface.touching.contains(&true)).unwrap();
-    assert!(whole.levels[first].surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
+    let all = prepared(&problem, &times, ReconstructionChoice::Published);
+    let first = all.ready.iter().position(|level| level.level.surface.touching.contains(&true)).unwrap();
+    assert!(all.ready[first].level.surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
     for (last, acts) in [(first, false), (first + 1, true), (first + 2, true)] {
-        let ended = prepared_until(&problem, &times, Reconstruction::Published, last);
-        let pressed = |d: &crate::reconstruction::Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
-        let level = ended.levels.back().unwrap();
-        assert_eq!((level.index, pressed(&level.density_before)), (last, acts));
+        let ended = prepared_until(&problem, &times, ReconstructionChoice::Published, last);
+        let pressed = |d: &Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
+        let level = ended.ready.back().unwrap();
+        assert_eq!((level.level.index, pressed(before(level))), (last, acts));
     }
 }

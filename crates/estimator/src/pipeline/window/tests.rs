@@ -1,51 +1,64 @@
 //! Residuals of the parallel part rise when its fields are changed.
 
 use super::*;
-use crate::options::Reconstruction;
+use crate::options::ReconstructionChoice;
 use crate::pipeline::fixture::{SHOWS, impact, prepared};
 use crate::request::Request;
+use crate::traction::FemStress;
 
-/// The levels of a run with σ_h and fluxes, nothing changed yet.
-fn window<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> (Window<'p, 2, 3>, Preparation<'p, 2, 3>) {
-    let mut preparation = prepared(problem, times, Reconstruction::Consistent);
-    let mut window = Window::new(problem, times, &Options::default(), Maps::new(Request::default(), problem).unwrap());
-    while let Some(level) = preparation.next_ready(true) {
-        window.levels.push(level);
+/// A run with σ_h of its levels.
+struct Run<'p> {
+    window: LevelWindow<'p, 2, 3>,
+    preparation: Preparation<'p, 2, 3>,
+    levels: Vec<(ForcesKnown<2>, FemStress<2>)>,
+}
+
+/// Nothing changed yet.
+fn run<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> Run<'p> {
+    let mut preparation = prepared(problem, times, ReconstructionChoice::Consistent);
+    let maps = Maps::new(Request::default(), problem).unwrap();
+    let window = LevelWindow::new(problem, times, &Options::default(), maps);
+    let mut levels = Vec::new();
+    while let Some(forces) = preparation.next_ready(true) {
+        let stress = window.equilibration.stress(&forces);
+        levels.push((forces, stress));
     }
-    window.stresses(0);
-    (window, preparation)
+    Run { window, preparation, levels }
 }
 
-/// All residuals of the window.
-fn residuals(window: &mut Window<'_, 2, 3>, preparation: &Preparation<'_, 2, 3>) -> Residuals {
-    window.far_elements(0);
-    let context = Context {
-        problem: window.problem,
-        times: window.times,
-        equilibration: &window.equilibration,
-        choice: window.choice,
-        normal_work: 1.0,
-        tracks: preparation.tracks(),
-        maps: &window.maps,
-    };
-    window.near.iter_mut().for_each(|near| near.advance(&context, &window.levels));
-    let mut residuals = window.residuals;
-    window.near.iter().for_each(|near| residuals.merge(&near.residuals));
-    residuals
-}
+impl Run<'_> {
+    /// The levels with their stars solved, which leaves a residual in the window.
+    fn solve(&mut self) -> Vec<Equilibrated<2>> {
+        let levels = std::mem::take(&mut self.levels).into_iter();
+        let solved = levels.map(|(forces, stress)| {
+            let (level, miss) = self.window.equilibration.solve_stars(forces, stress);
+            self.window.residuals.star_compatibility = worse(self.window.residuals.star_compatibility, miss);
+            level
+        });
+        solved.collect()
+    }
 
-/// A level in the middle of the contact, and an element at contact and one away from it.
-fn places(window: &Window<'_, 2, 3>) -> (usize, [usize; 2]) {
-    let place = |near: bool| window.is_near.iter().position(|n| *n == near).unwrap();
-    (window.levels.len() / 2, [place(true), place(false)])
+    /// All residuals of these levels.
+    fn residuals(mut self, levels: &[Equilibrated<2>]) -> Residuals {
+        self.window.sample(&self.preparation, 0, levels);
+        let mut residuals = self.window.residuals;
+        self.window.near.iter().for_each(|near| residuals.merge(&near.residuals));
+        residuals
+    }
+
+    /// A level in the middle of the contact, and an element at contact and one away from it.
+    fn places(&self) -> (usize, [usize; 2]) {
+        let place = |near: bool| self.window.is_near.iter().position(|n| *n == near).unwrap();
+        (self.preparation.count() / 2, [place(true), place(false)])
+    }
 }
 
 #[test]
 fn nothing_changed_nothing_shows() {
     let (problem, times) = impact();
-    let (mut window, preparation) = window(&problem, &times);
-    window.stars(0);
-    assert!(residuals(&mut window, &preparation).largest() < 1e-12);
+    let mut run = run(&problem, &times);
+    let levels = run.solve();
+    assert!(run.residuals(&levels).largest() < 1e-12);
 }
 
 /// 1 % on the stress of one element, or on ã at one node, and its stars are out of balance.
@@ -53,16 +66,17 @@ fn nothing_changed_nothing_shows() {
 fn stars_out_of_balance_show() {
     let (problem, times) = impact();
     for change in 0..2 {
-        let (mut window, _) = window(&problem, &times);
-        let (level, [_, far]) = places(&window);
-        let node = window.equilibration.elements[far].nodes[0].index();
+        let mut run = run(&problem, &times);
+        let (level, [_, far]) = run.places();
+        let node = run.window.equilibration.elements[far].nodes[0].index();
+        let (forces, stress) = &mut run.levels[level];
         if change == 0 {
-            window.levels[level].stress[far].iter_mut().flatten().for_each(|s| *s *= 1.01);
+            stress.of_element_mut()[far].iter_mut().flatten().for_each(|s| *s *= 1.01);
         } else {
-            window.levels[level].acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
+            forces.acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
         }
-        window.stars(0);
-        assert!(window.residuals.star_compatibility > SHOWS, "{:?}", window.residuals);
+        run.solve();
+        assert!(run.window.residuals.star_compatibility > SHOWS, "{:?}", run.window.residuals);
     }
 }
 
@@ -70,25 +84,25 @@ fn stars_out_of_balance_show() {
 #[test]
 fn stars_out_of_balance_before_a_change_show() {
     let (problem, times) = impact();
-    let (mut window, _) = window(&problem, &times);
-    let (level, _) = places(&window);
-    window.levels[level].acceleration_before[1].iter_mut().for_each(|a| *a *= 1.01);
-    window.stars(0);
-    assert!(window.residuals.star_compatibility > SHOWS, "{:?}", window.residuals);
+    let mut run = run(&problem, &times);
+    let before = run.levels.iter_mut().find_map(|(forces, _)| forces.before.as_mut()).unwrap();
+    before.acceleration[1].iter_mut().for_each(|a| *a *= 1.01);
+    run.solve();
+    assert!(run.window.residuals.star_compatibility > SHOWS, "{:?}", run.window.residuals);
 }
 
-/// 1 % on one flux after the stars were solved: the element has no resultant any more. (Nor then a
+/// 1 % on one projected moment after the stars were solved: the element has no resultant any more. (Nor then a
 /// stress, but the stars stay as they are.)
 #[test]
-fn wrong_fluxes_show_in_the_resultants() {
+fn wrong_moments_show_in_the_resultants() {
     let (problem, times) = impact();
     for k in 0..2 {
-        let (mut window, preparation) = window(&problem, &times);
-        window.stars(0);
-        let (level, elements) = places(&window);
-        let link = window.equilibration.elements[elements[k]].links[2] as usize;
-        window.levels[level].flux[link].iter_mut().for_each(|f| *f *= 1.01);
-        let found = residuals(&mut window, &preparation);
+        let mut run = run(&problem, &times);
+        let mut levels = run.solve();
+        let (level, elements) = run.places();
+        let link = run.window.equilibration.elements[elements[k]].links[2] as usize;
+        levels[level].moments_mut()[link].iter_mut().for_each(|b| *b *= 1.01);
+        let found = run.residuals(&levels);
         assert!(found.element_resultants > SHOWS, "{found:?}");
         assert!(found.star_compatibility < 1e-12 && found.normal_velocity < 1e-12, "{found:?}");
     }
@@ -98,12 +112,12 @@ fn wrong_fluxes_show_in_the_resultants() {
 #[test]
 fn a_wrong_acceleration_shows_in_the_resultants() {
     let (problem, times) = impact();
-    let (mut window, preparation) = window(&problem, &times);
-    window.stars(0);
-    let (level, [_, far]) = places(&window);
-    let node = window.equilibration.elements[far].nodes[1].index();
-    window.levels[level].acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
-    let found = residuals(&mut window, &preparation);
+    let mut run = run(&problem, &times);
+    let mut levels = run.solve();
+    let (level, [_, far]) = run.places();
+    let node = run.window.equilibration.elements[far].nodes[1].index();
+    levels[level].forces.acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
+    let found = run.residuals(&levels);
     assert!(found.element_resultants > SHOWS && found.star_compatibility < 1e-12, "{found:?}");
 }
 
@@ -112,17 +126,17 @@ fn a_wrong_acceleration_shows_in_the_resultants() {
 fn wrong_initial_conditions_show() {
     let (problem, times) = impact();
     for change in 0..2 {
-        let (mut window, preparation) = window(&problem, &times);
-        window.stars(0);
-        let (_, [near, _]) = places(&window);
-        let node = window.equilibration.elements[near].nodes[0].index();
-        let knot = &mut window.levels[0].knot;
+        let mut run = run(&problem, &times);
+        let mut levels = run.solve();
+        let (_, [near, _]) = run.places();
+        let node = run.window.equilibration.elements[near].nodes[0].index();
+        let [displacement, velocity] = levels[0].forces.now.motion.parts_mut();
         if change == 0 {
-            knot.velocity[node][0] *= 1.01;
+            velocity[node][0] *= 1.01;
         } else {
-            knot.displacement[node][0] += 0.01 * problem.mesh().size();
+            displacement[node][0] += 0.01 * problem.mesh().size();
         }
-        let found = residuals(&mut window, &preparation);
+        let found = run.residuals(&levels);
         assert!(found.initial_conditions > SHOWS, "{found:?}");
         let rest = Residuals { initial_conditions: 0.0, ..found };
         assert!(rest.largest() < 1e-12, "{found:?}");

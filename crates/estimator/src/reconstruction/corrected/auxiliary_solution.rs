@@ -12,6 +12,7 @@
 //! uniform bar, where at the critical step both cancel and β alone is left. ã itself, of which Γ_DA and
 //! the tractions are made, balances M ã as before.
 
+use crate::reconstruction::SimulatedStep;
 use percute_core::dynamics::Dynamics;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -19,7 +20,7 @@ use percute_core::time::TimeGrid;
 
 /// Displacement and half-step velocity, advanced beside the simulation's steps.
 #[derive(Clone, Debug)]
-pub(crate) struct AuxiliarySolution<const D: usize> {
+pub(super) struct AuxiliarySolution<const D: usize> {
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
     correction: Vec<[f64; D]>,
@@ -27,7 +28,13 @@ pub(crate) struct AuxiliarySolution<const D: usize> {
     corrected: bool,
     /// How often so far a step has been longer than both its neighbours, or shorter.
     reversals: usize,
+    /// Largest kinetic and strain energy of the simulation so far (J).
+    peak_energy: f64,
 }
+
+/// An auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error
+/// would be a thousand times the energy.
+const UNSTABLE: f64 = 1e6;
 
 /// Reversals after which corrections are no longer made. Steps that are long and short in turn drive waves that need four of
 /// them for a period; the corrected scheme has such waves from shorter steps on than the plain one, and can be unstable where the
@@ -37,28 +44,36 @@ const FEW: usize = 8;
 const LONGER: f64 = 1e-3;
 
 impl<const D: usize> AuxiliarySolution<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
         Self {
             displacement: problem.initial_displacement().to_vec(),
             half_step: problem.initial_velocity().to_vec(),
             correction: vec![[0.0; D]; problem.mesh().node_count()],
             corrected,
             reversals: 0,
+            peak_energy: 0.0,
         }
     }
 
     /// u_n.
-    pub(crate) fn displacement(&self) -> &[[f64; D]] {
+    pub(super) fn displacement(&self) -> &[[f64; D]] {
         &self.displacement
     }
 
-    /// ½ v·M v at the last half step (J).
-    pub(crate) fn kinetic_energy(&self, mass: &[f64]) -> f64 {
-        kinetic_energy(&self.half_step, mass)
+    /// Takes in the energy of the simulation at a step.
+    pub(super) fn watch(&mut self, simulated: &SimulatedStep<'_, D>, mass: &[f64]) {
+        self.peak_energy = self.peak_energy.max(simulated.strain_energy + kinetic_energy(simulated.velocity, mass));
+    }
+
+    /// Whether it has become unstable, as it does where a history of another scheme takes steps above the critical one. A
+    /// stable one has about the energy of the simulation, an unstable one soon any.
+    pub(super) fn is_unstable(&self, mass: &[f64]) -> bool {
+        // A body that starts unstrained at rest has no energy before it is loaded.
+        self.peak_energy > 0.0 && kinetic_energy(&self.half_step, mass) > UNSTABLE * self.peak_energy
     }
 
     /// Goes on from t_n to t_{n+1} with ã_n; after the last step there is nowhere to go.
-    pub(crate) fn advance<const N: usize>(
+    pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         dynamics: &Dynamics<'_, D, N>,
@@ -131,7 +146,7 @@ fn reverses(times: &TimeGrid, n: usize) -> bool {
 }
 
 /// ½ v·M v (J).
-pub(crate) fn kinetic_energy<const D: usize>(velocity: &[[f64; D]], mass: &[f64]) -> f64 {
+fn kinetic_energy<const D: usize>(velocity: &[[f64; D]], mass: &[f64]) -> f64 {
     velocity.iter().zip(mass).map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
 }
 

@@ -1,4 +1,5 @@
-//! The whole reaction as a density on all candidate facets of its node.
+//! The whole reaction as a density on all candidate facets of its node, balanced by an auxiliary solution with less
+//! dispersion, with tractions of least energy.
 
 mod auxiliary_solution;
 mod impulse_smoothing;
@@ -6,87 +7,144 @@ mod moment_correction;
 mod normal_misfit;
 mod traction_minimisation;
 
-pub(crate) use auxiliary_solution::{AuxiliarySolution, kinetic_energy};
-pub(crate) use impulse_smoothing::ImpulseSmoothing;
+use super::{BalancedFields, Densities, Reconstruction, SimulatedStep, StepDensities, SurfaceSteps, driving_forces};
+use crate::acceleration::accelerate;
+use crate::element::Element;
+use crate::error::EstimateError;
+use crate::kinematic::ContactTrack;
+use crate::options::{Ablation, Acceleration};
+use crate::traction::{Equilibrated, Equilibration};
+use auxiliary_solution::AuxiliarySolution;
+use impulse_smoothing::ImpulseSmoothing;
 use moment_correction::MomentCorrection;
-pub(crate) use normal_misfit::{FacetPressures, NormalMisfit};
-pub(crate) use traction_minimisation::{Form, MOMENTS, TractionMinimisation};
+pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
+use percute_core::dynamics::Dynamics;
+use percute_core::history::Step;
+use percute_core::problem::{ContactNode, Problem};
+use percute_core::time::TimeGrid;
+use traction_minimisation::TractionMinimisation;
+pub(crate) use traction_minimisation::{Form, MOMENTS};
 
-use super::{Densities, Interval, SurfaceStep, none};
-use percute_core::problem::{ContactFacet, ContactNode, Problem};
-
-/// What is fixed in time.
-#[derive(Clone, Debug)]
-pub(crate) struct Corrected<const D: usize> {
+/// The reconstruction that drops no reaction.
+#[derive(Debug)]
+pub(super) struct Corrected<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
-    moment_correction: MomentCorrection<D>,
+    moment_correction: Option<MomentCorrection<D>>,
+    impulse_smoothing: Option<ImpulseSmoothing<D>>,
+    auxiliary: Option<AuxiliarySolution<D>>,
+    minimises: bool,
+    minimisation: Option<TractionMinimisation<D>>,
+    /// Weight of the work of normal forces off contact.
+    normal_work: f64,
 }
 
-/// Normal pressures (Pa) at the nodes of a facet at one instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pressure<const D: usize> {
-    /// Of the density.
-    pub(crate) acting: [f64; D],
-    /// Of the density that the reactions alone give, their impulses not spread in time.
-    pub(crate) sudden: [f64; D],
-}
-
-impl<const D: usize> Pressure<D> {
-    /// Halfway between two: pressures are linear in time over a step.
-    pub(crate) fn middle(start: &Self, end: &Self) -> Self {
-        let mean = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|p| 0.5 * (a[p] + b[p]));
-        Self { acting: mean(&start.acting, &end.acting), sudden: mean(&start.sudden, &end.sudden) }
-    }
-}
-
-impl<const D: usize> Corrected<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self { tributary: problem.surface().tributary_areas(), moment_correction: MomentCorrection::new(problem) }
-    }
-
-    /// The same with densities whose moment is not that of the reactions.
-    pub(super) fn without_moment_correction(self) -> Self {
-        Self { moment_correction: MomentCorrection::none(), ..self }
+impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, ablation: Ablation) -> Self {
+        let keeps = |part: Ablation| ablation != part;
+        Self {
+            problem,
+            times,
+            tributary: problem.surface().tributary_areas(),
+            moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
+            impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
+            auxiliary: keeps(Ablation::AuxiliarySolution)
+                .then(|| AuxiliarySolution::new(problem, keeps(Ablation::Correction))),
+            minimises: keeps(Ablation::LeastEnergy),
+            minimisation: None,
+            normal_work: match ablation {
+                Ablation::NormalWork => 0.0,
+                Ablation::DoubledWork => 2.0,
+                _ => 1.0,
+            },
+        }
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
-    /// facet, tilted so that they have the moment of the reactions too. Their resultant is that of the reactions,
+    /// facet, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    pub(crate) fn densities<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        smoothed_reaction: &[[f64; D]],
-    ) -> Densities<D> {
-        let mut densities = none(problem);
+    fn at(&self, reaction: &[[f64; D]]) -> Densities<D> {
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
-            problem.obstacles()[contact.obstacle].project_into_cone(force)
+            self.problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let mut smoothed_reaction: Vec<[f64; D]> =
-            problem.surface().nodes().iter().zip(smoothed_reaction).map(held).collect();
-        self.moment_correction.apply(&mut smoothed_reaction);
-        for (facet, density) in problem.surface().facets().iter().zip(&mut densities) {
-            *density = facet.nodes.map(|k| smoothed_reaction[k].map(|r| r / self.tributary[k]));
+        let surface = self.problem.surface();
+        let mut reaction: Vec<[f64; D]> = surface.nodes().iter().zip(reaction).map(held).collect();
+        if let Some(correction) = &self.moment_correction {
+            correction.apply(&mut reaction);
         }
-        densities
+        let facet_density = |nodes: [usize; D]| nodes.map(|k| reaction[k].map(|r| r / self.tributary[k]));
+        Densities(surface.facets().iter().map(|facet| facet_density(facet.nodes)).collect())
+    }
+}
+
+impl<const D: usize, const N: usize> Reconstruction<D, N> for Corrected<'_, D, N> {
+    fn prepare(&mut self, elements: &[Element<D, N>]) {
+        if self.minimises {
+            self.minimisation = TractionMinimisation::new(self.problem, elements);
+        }
     }
 
-    /// The normal pressures of a step on each facet, at its beginning and its end.
-    pub(crate) fn pressures<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        now: &SurfaceStep<D>,
-        next: &SurfaceStep<D>,
-        interval: &Interval<D>,
-    ) -> Vec<[Pressure<D>; 2]> {
-        let sudden = [now, next].map(|step| self.densities(problem, &step.reaction));
-        let acting = [&interval.start, &interval.end];
-        let one = |(f, facet): (usize, &ContactFacet<D>)| {
-            let plane = &problem.obstacles()[facet.obstacle];
-            let normal = |densities: &Densities<D>| densities[f].map(|force| plane.split(&force).0);
-            [0, 1].map(|end| Pressure { acting: normal(acting[end]), sudden: normal(&sudden[end]) })
+    fn memory(&self, levels: usize, threads: usize) -> usize {
+        let mesh = self.problem.mesh();
+        TractionMinimisation::<D>::memory(mesh.simplex().shape(), mesh.element_count(), levels, threads)
+    }
+
+    fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+        match &self.auxiliary {
+            Some(auxiliary) if auxiliary.is_unstable(self.problem.mass()) => Err(EstimateError::AuxiliarySolution {
+                step: step.index,
+                time: step.time,
+                longest_step: self.times.longest_step(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The balance is that of the auxiliary solution, which then goes on to the next step.
+    fn advance(
+        &mut self,
+        dynamics: &Dynamics<'_, D, N>,
+        simulated: &SimulatedStep<'_, D>,
+        mut force: Vec<[f64; D]>,
+    ) -> BalancedFields<D> {
+        let (step, problem) = (simulated.step, self.problem);
+        let contact = match &mut self.impulse_smoothing {
+            Some(smoothing) => {
+                smoothing.advance(problem, self.times, step.index, step.reaction, simulated.acceleration)
+            }
+            None => step.reaction.to_vec(),
         };
-        problem.surface().facets().iter().enumerate().map(one).collect()
+        let pull = driving_forces(problem, &self.at(&contact));
+        let Some(auxiliary) = &mut self.auxiliary else {
+            return BalancedFields { displacement: step.displacement.to_vec(), force, contact };
+        };
+        auxiliary.watch(simulated, problem.mass());
+        let displacement = auxiliary.displacement().to_vec();
+        dynamics.forces_without_contact(step.index, &displacement, &mut force);
+        let acceleration = accelerate(problem, dynamics.inverse_mass(), force.clone(), &pull);
+        auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration);
+        BalancedFields { displacement, force, contact }
+    }
+
+    fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
+        StepDensities { start: self.at(&steps.now.force), end: self.at(&steps.next.force) }
+    }
+
+    fn off_contact(&self, steps: &SurfaceSteps<'_, D>, densities: &StepDensities<D>) -> Option<OffContact<D>> {
+        let sudden = [steps.now, steps.next].map(|step| self.at(&step.reaction));
+        Some(OffContact::new(self.problem, [&densities.start, &densities.end], &sudden))
+    }
+
+    fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
+        pressures.misfit(self.problem, self.times, tracks, self.normal_work)
+    }
+
+    fn improve(&self, equilibration: &Equilibration<'_, D, N>, choice: Acceleration, levels: &mut [Equilibrated<D>]) {
+        if let Some(minimisation) = &self.minimisation {
+            minimisation.improve(self.problem, equilibration, choice, levels);
+        }
     }
 }

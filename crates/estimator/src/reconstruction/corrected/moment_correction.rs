@@ -7,7 +7,7 @@
 //! the forces weigh, affine along the plane, and 0 where that would be negative. Friction goes with its normal force, and what
 //! its sum lacks then is shared out where the cone has room, of which there is always enough.
 
-use crate::reconstruction::{along, tangent};
+use crate::reconstruction::contact_law::{along, tangent};
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -46,7 +46,7 @@ pub(super) struct MomentCorrection<const D: usize> {
 impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         match problem.mesh().simplex().shape() {
-            Shape::Bar => return Self::none(),
+            Shape::Bar => return Self { groups: Vec::new() },
             Shape::Triangle => {}
         }
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
@@ -71,11 +71,6 @@ impl<const D: usize> MomentCorrection<D> {
             });
         }
         Self { groups: groups.into_iter().map(|(_, group)| group).collect() }
-    }
-
-    /// One that leaves all reactions as they are.
-    pub(super) fn none() -> Self {
-        Self { groups: Vec::new() }
     }
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have the

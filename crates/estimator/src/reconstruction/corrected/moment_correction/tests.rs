@@ -1,10 +1,12 @@
 use super::MomentCorrection;
-use crate::options::Reconstruction;
-use crate::reconstruction::{Reading, nodal_forces};
+use crate::options::Ablation;
+use crate::reconstruction::corrected::Corrected;
+use crate::reconstruction::nodal_forces;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::obstacle::Plane;
 use percute_core::problem::{Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
 use percute_testkit::Random;
 
 /// Two blocks beside each other, with edges of unequal lengths, on a plane turned by an angle (rad); μ = 0.4.
@@ -40,8 +42,8 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
 
 /// The nodal forces that `corrected` makes of reactions.
 fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let Reading::Corrected(whole) = Reading::new(Reconstruction::Corrected, problem) else { panic!("another reading") };
-    nodal_forces(problem, &whole.densities(problem, reaction))
+    let times = TimeGrid::uniform(1.0, 1).unwrap();
+    nodal_forces(problem, &Corrected::new(problem, &times, Ablation::None).at(reaction))
 }
 
 /// Reactions in the cone: normal parts up to `range` times each other, friction up to a part of what the cone allows.

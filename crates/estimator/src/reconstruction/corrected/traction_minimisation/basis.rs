@@ -17,9 +17,9 @@ const KNOWN: u32 = u32::MAX;
 /// Moments of one facet at its two nodes, outward from its owner (N).
 pub(super) type FacetMoments<const D: usize> = [[Lanes; D]; D];
 
-/// An edge of an element as that element sees it.
+/// An edge of an element, in the order and with the sign of the element.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
+pub(super) struct ElementEdge {
     /// Place among the unknown facets, or [`KNOWN`].
     facet: u32,
     /// Whether the element's order of the two nodes is not the facet's.
@@ -34,7 +34,7 @@ struct Spoke<const D: usize> {
     facet: u32,
     /// Position of the node in the facet.
     position: usize,
-    /// 1 where a walk around the node leaves the facet's owner by it, else −1.
+    /// 1 where the star of the node leaves the facet's owner by it, else −1.
     sign: f64,
     /// d⊥/|d|² with d from the node to the other end (1/m): a unit couple of opposite forces.
     lever: [f64; D],
@@ -57,10 +57,10 @@ pub(super) struct Modes {
 
 /// Modes of a mesh, and the preconditioner of the energy in them.
 #[derive(Debug)]
-pub(crate) struct Basis<const D: usize> {
+pub(super) struct Basis<const D: usize> {
     /// Unit vector along each unknown facet.
     tangents: Vec<[f64; D]>,
-    pub(super) sides: Vec<[Side; 3]>,
+    pub(super) sides: Vec<[ElementEdge; 3]>,
     /// Spokes of surrounded nodes, one node after the other, and where each begins.
     spokes: Vec<Spoke<D>>,
     starts: Vec<usize>,
@@ -280,11 +280,11 @@ impl<const D: usize> Basis<D> {
         }
     }
 
-    /// Adds the change of one lane to the moments along the walks of all stars.
-    pub(super) fn add(&self, change: &[FacetMoments<D>], lane: usize, flux: &mut [[f64; D]]) {
-        for (flux, link) in flux.iter_mut().zip(&self.links) {
+    /// Adds the change of one lane to the moments on the links of all stars.
+    pub(super) fn add(&self, change: &[FacetMoments<D>], lane: usize, moments: &mut [[f64; D]]) {
+        for (moments, link) in moments.iter_mut().zip(&self.links) {
             if let Some(Link { facet, position, sign }) = link {
-                (0..D).for_each(|c| flux[c] += sign * change[*facet as usize][*position][c][lane]);
+                (0..D).for_each(|c| moments[c] += sign * change[*facet as usize][*position][c][lane]);
             }
         }
     }
@@ -303,12 +303,12 @@ pub(super) fn apply(form: &Form, moments: &[Lanes; MOMENTS]) -> [Lanes; MOMENTS]
 }
 
 /// Edge k of element e.
-fn side<const D: usize, const N: usize>(problem: &Problem<D, N>, place: &[u32], e: usize, k: usize) -> Side {
+fn side<const D: usize, const N: usize>(problem: &Problem<D, N>, place: &[u32], e: usize, k: usize) -> ElementEdge {
     let mesh = problem.mesh();
     let id = mesh.cell_facets()[e][k];
     let facet = &mesh.facets()[id.index()];
     let flipped = mesh.cells()[e][facet_node::<N>(k, 0)] != facet.nodes[0];
-    Side { facet: place[id.index()], flipped, sign: if facet.owner.index() == e { 1.0 } else { -1.0 } }
+    ElementEdge { facet: place[id.index()], flipped, sign: if facet.owner.index() == e { 1.0 } else { -1.0 } }
 }
 
 /// From one node to another (m).

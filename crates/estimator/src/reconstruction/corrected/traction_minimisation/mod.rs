@@ -1,4 +1,4 @@
-//! Tractions of least energy: from those of the star problems to better ones that balance as well.
+//! Tractions of least energy: changes of those of the star problems that balance as well.
 //!
 //! The star problems fix most of the tractions by what the finite-element stress does on each shape function,
 //! element by element. Where that stress jumps, at a corner or where contact begins, such tractions can cost
@@ -14,8 +14,7 @@ mod descent;
 use crate::element::Element;
 use crate::measure::ElementMeasure;
 use crate::options::Acceleration;
-use crate::time_level::TimeLevel;
-use crate::traction::Equilibration;
+use crate::traction::{Equilibrated, Equilibration};
 use basis::Basis;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -41,14 +40,17 @@ pub(super) type Lanes = [f64; LANES];
 
 /// What is fixed in time.
 #[derive(Debug)]
-pub(crate) struct TractionMinimisation<const D: usize> {
+pub(in crate::reconstruction) struct TractionMinimisation<const D: usize> {
     basis: Basis<D>,
     forms: Vec<Form>,
 }
 
 impl<const D: usize> TractionMinimisation<D> {
     /// Prepares all elements. In a bar there is nothing to choose.
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, elements: &[Element<D, N>]) -> Option<Self> {
+    pub(in crate::reconstruction) fn new<const N: usize>(
+        problem: &Problem<D, N>,
+        elements: &[Element<D, N>],
+    ) -> Option<Self> {
         match problem.mesh().simplex().shape() {
             Shape::Bar => return None,
             Shape::Triangle => {}
@@ -62,13 +64,13 @@ impl<const D: usize> TractionMinimisation<D> {
     }
 
     /// About how much memory it takes (bytes), with so many levels in a window and so many threads.
-    pub(crate) fn memory(shape: Shape, elements: usize, levels: usize, threads: usize) -> usize {
+    pub(in crate::reconstruction) fn memory(shape: Shape, elements: usize, levels: usize, threads: usize) -> usize {
         match shape {
             Shape::Bar => return 0,
             Shape::Triangle => {}
         }
         // Forms, and in a triangulation three edges and half a node of its basis for two elements.
-        let fixed = size_of::<Form>() + 3 * size_of::<basis::Side>() + 600;
+        let fixed = size_of::<Form>() + 3 * size_of::<basis::ElementEdge>() + 600;
         // Slopes of each level; of each chunk at work, three arrays of moments and four of modes.
         let chunk = size_of::<Lanes>() * (3 * 6 + 4 * 3);
         let chunks = levels.div_ceil(LANES).min(threads);
@@ -76,12 +78,12 @@ impl<const D: usize> TractionMinimisation<D> {
     }
 
     /// Improves the moments of all levels.
-    pub(crate) fn improve<const N: usize>(
+    pub(in crate::reconstruction) fn improve<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
-        levels: &mut [TimeLevel<D>],
+        levels: &mut [Equilibrated<D>],
     ) {
         let count = levels.len();
         let mut slopes = vec![[0.0; MOMENTS]; count * equilibration.elements.len()];
@@ -99,13 +101,7 @@ impl<const D: usize> TractionMinimisation<D> {
             };
             let change = descent::descend(&self.basis, &self.forms, slope, STEPS);
             for (lane, level) in levels.iter_mut().enumerate() {
-                self.basis.add(&change, lane, &mut level.flux);
-                // The density is continuous in time: both sides of the instant are one.
-                for (at, contact) in problem.surface().nodes().iter().enumerate() {
-                    let links = problem.mesh().stars().link_range(contact.node);
-                    let before = equilibration.contact_links[at]..equilibration.contact_links[at + 1];
-                    level.flux_before[before].copy_from_slice(&level.flux[links]);
-                }
+                self.basis.add(&change, lane, level.moments_mut());
             }
         });
     }

@@ -1,0 +1,35 @@
+//! The residuals of densities: Coulomb's cone and the contact zone.
+
+use super::{StepDensities, SurfaceSteps};
+use crate::residual::{Residuals, worse};
+use percute_core::problem::Problem;
+
+/// Checks that the densities of a step are in the cone and, unless they may act `off_contact`, act only where both nodes
+/// of a facet touch throughout the step.
+pub(crate) fn check<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    steps: &SurfaceSteps<'_, D>,
+    densities: &StepDensities<D>,
+    off_contact: bool,
+    residuals: &mut Residuals,
+) {
+    for densities in [&densities.start, &densities.end] {
+        let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let largest = densities.iter().flatten().map(size).fold(0.0, worse);
+        if largest == 0.0 {
+            continue;
+        }
+        for (facet, density) in problem.surface().facets().iter().zip(densities.iter()) {
+            let plane = &problem.obstacles()[facet.obstacle];
+            let touches = facet.nodes.iter().all(|&k| steps.now.touching[k] && steps.next.touching[k]);
+            for f in density {
+                let scale = size(f).max(1e-12 * largest);
+                let (normal, tangential) = plane.split(f);
+                let outside = worse(size(&tangential) - plane.friction() * normal, -normal);
+                residuals.cone = worse(residuals.cone, outside / scale);
+                let off = if touches || off_contact { 0.0 } else { size(f) / scale };
+                residuals.force_off_contact = worse(residuals.force_off_contact, off);
+            }
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The misfit of the contact law on a facet, for densities and velocities that are linear along it.
+
+use percute_core::obstacle::Plane;
+use percute_core::problem::{ContactFacet, Problem};
+use percute_core::simplex::Shape;
+
+/// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
+/// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors are
+/// linear along the edge.
+pub(crate) fn misfit_power<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    facet: &ContactFacet<D>,
+    density: &[[f64; D]; D],
+    velocity: &[[f64; D]; D],
+) -> f64 {
+    let simplex = problem.mesh().simplex();
+    match simplex.shape() {
+        Shape::Bar => return 0.0,
+        Shape::Triangle => {}
+    }
+    if density.iter().flatten().all(|f| *f == 0.0) {
+        return 0.0;
+    }
+    let plane = &problem.obstacles()[facet.obstacle];
+    let tangent = tangent(plane);
+    let (normal, tangential) = (density.map(|f| plane.split(&f).0), density.map(|f| along(&f, &tangent)));
+    let sliding = velocity.map(|v| along(&v, &tangent));
+    let power = |weights: &[f64; D]| {
+        let w = along(weights, &sliding);
+        plane.friction() * along(weights, &normal) * w.abs() + w * along(weights, &tangential)
+    };
+    facet.area * simplex.facet_mean(&sliding, &power)
+}
+
+/// Along a plane in 2D: its normal turned back by a quarter.
+pub(super) fn tangent<const D: usize>(plane: &Plane<D>) -> [f64; D] {
+    let mut tangent = [0.0; D];
+    (tangent[0], tangent[1]) = (plane.normal()[1], -plane.normal()[0]);
+    tangent
+}
+
+/// The component of a vector along a direction, or a value from those at the nodes with their weights.
+pub(super) fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
+    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
+}
