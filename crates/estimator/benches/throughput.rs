@@ -144,11 +144,14 @@ fn throughput(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("integrator", elements), |b| {
             b.iter_custom(|count| integrator(&problem, dt, count));
         });
-        for &reading in Reconstruction::ALL {
-            group.bench_function(BenchmarkId::new(format!("integrator and estimate, {reading}"), elements), |b| {
-                // Full windows of steps: the maps of the elements are made once for each.
-                b.iter_custom(|count| estimate(&problem, dt, STEPS * count, reading) / STEPS as u32);
-            });
+        for &reconstruction in Reconstruction::ALL {
+            group.bench_function(
+                BenchmarkId::new(format!("integrator and estimate, {reconstruction}"), elements),
+                |b| {
+                    // Full windows of steps: the maps of the elements are made once for each.
+                    b.iter_custom(|count| estimate(&problem, dt, STEPS * count, reconstruction) / STEPS as u32);
+                },
+            );
         }
         group.finish();
     }

@@ -7,18 +7,18 @@ use thiserror::Error;
 /// The most threads that an estimate may use: more than any machine has cores for are a slip.
 pub const MOST_THREADS: usize = 1024;
 
-/// The reading of the contact force, and what goes with it.
+/// How the admissible contact force and the fields that balance it are built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReconstructionChoice {
-    /// No reaction is dropped: densities of the whole reactions, the braking ones before contact included, and the
-    /// normal contact law measured where they act off contact; the balance of an auxiliary solution with less
-    /// dispersion; tractions of least energy.
+    /// No reaction is dropped: the densities hold all reactions, those that brake a node before contact included. The
+    /// normal contact law is measured where they act off contact. An auxiliary solution with less dispersion is balanced,
+    /// with tractions of least energy.
     #[default]
     Corrected,
     /// On each interval, on the edges that touch throughout it, statically equivalent to the
     /// reactions: force starts with contact.
     Consistent,
-    /// The paper's: reaction over tributary length, from one step after impact to one step before
+    /// That of the paper: reaction over tributary length, from one step after impact to one step before
     /// release and away from the border of the contact zone (eq. \[45\]–\[50\]).
     Published,
 }
@@ -35,8 +35,8 @@ pub enum Acceleration {
     Weak,
 }
 
-/// What the reading [`ReconstructionChoice::Corrected`] is without one of its parts, or with another: no choice for an estimate, but
-/// the evidence of what each part is for. The other readings have none of them.
+/// A part that [`ReconstructionChoice::Corrected`] leaves out, or changes, to show its effect: no choice for an estimate. The
+/// other reconstructions have no such parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ablation {
     /// All parts.
@@ -62,13 +62,13 @@ pub enum Ablation {
 /// Options of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Reading of the contact force.
+    /// Reconstruction of the contact force.
     pub reconstruction: ReconstructionChoice,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
     /// For evidence only.
     pub ablation: Ablation,
-    /// The error is sampled at every knot if 1, else at t_0, t_k, t_2k, … and at the end, so that the
+    /// The error is sampled at every half-step instant if 1, else at t_0, t_k, t_2k, … and at the end, so that the
     /// mean covers the whole run.
     pub every: usize,
     /// How many steps are worked on at once; by default as many as fit into a modest memory. The

@@ -48,8 +48,8 @@ fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [ErrorMeasure
     };
     let mut sink = (Recorder::new(problem, times), (estimator(0), estimator(1)));
     simulate(problem, times, &mut sink, &mut Unobserved).unwrap();
-    let (recorder, (sharp, paper)) = sink;
-    (recorder.finish(), [sharp, paper].map(|e| e.finish().unwrap().error))
+    let (recorder, (consistent, published)) = sink;
+    (recorder.finish(), [consistent, published].map(|e| e.finish().unwrap().error))
 }
 
 /// All sixteen in one test: they share the reference.
@@ -71,12 +71,12 @@ fn effectivities_against_a_fine_mesh() {
 
     for (k, cells) in MESHES.into_iter().enumerate() {
         assert_eq!(grids[k].step_count(), STEPS[k], "steps on {cells:?}");
-        for (which, (reading, sup, mean)) in INDEPENDENT.iter().enumerate() {
+        for (which, (reconstruction, sup, mean)) in INDEPENDENT.iter().enumerate() {
             let error = &runs[k].1[which];
             // 3 %: the values are rounded to 0.01, 0.9 % of the smallest, and both programs have a
             // critical step of their own, good to 1e-3, which moves the instants of impact.
-            assert_close(error.sup / exact[k].sup, sup[k], 0.03, &format!("{reading}, sup, {cells:?}"));
-            assert_close(error.mean / exact[k].mean, mean[k], 0.03, &format!("{reading}, mean, {cells:?}"));
+            assert_close(error.sup / exact[k].sup, sup[k], 0.03, &format!("{reconstruction}, sup, {cells:?}"));
+            assert_close(error.mean / exact[k].mean, mean[k], 0.03, &format!("{reconstruction}, mean, {cells:?}"));
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The gap is linear in the velocities at the half-step instants, at every point of the window, so each point gives a
 //! linear constraint. Only a few matter: the points where the gap is least are added as they are
-//! found (an exchange method) and dropped when they no longer press, until nothing penetrates. The
+//! found (an exchange method) and dropped when they are no longer active, until nothing penetrates. The
 //! distance from the wanted velocities grows with every exchange, so that none comes back.
 
 use super::window::FlightWindow;
@@ -65,10 +65,10 @@ pub(super) fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) ->
             let last = window.lengths.len() - 1;
             condition(window, &Cut { half_step: last, offset: window.lengths[last] })
         });
-        let (found, pressing) = nearest(window, end, conditions);
+        let (found, active) = nearest(window, end, conditions);
         velocity[..free].copy_from_slice(&found);
-        let mut pressing = pressing.into_iter();
-        cuts.retain(|_| pressing.next() == Some(true));
+        let mut active = active.into_iter();
+        cuts.retain(|_| active.next() == Some(true));
     }
     velocity
 }
@@ -119,7 +119,7 @@ fn condition(window: &FlightWindow<'_>, cut: &Cut) -> Condition {
     Condition { row, bound: -given }
 }
 
-/// Minimises ½Σω(x − wanted)² under one equality and several inequalities; tells which of these press.
+/// Minimises ½Σω(x − wanted)² under one equality and several inequalities; returns which of these are active too.
 ///
 /// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows from
 /// them by the diagonal weights, and the system is as small as the number of conditions.

@@ -33,8 +33,8 @@ struct Instant {
     touching: bool,
 }
 
-/// u_CA and u̇_CA at a knot.
-type Knot = (Vec<f64>, Vec<f64>);
+/// u_CA and u̇_CA at a half-step instant.
+type Motion = (Vec<f64>, Vec<f64>);
 
 /// What comes out: e_sup, e_mean, D_sup, √mean d, and e_E.
 #[derive(Clone, Debug)]
@@ -44,7 +44,7 @@ pub(crate) struct HandEstimate {
     pub(crate) reference_sup: f64,
     pub(crate) reference_mean: f64,
     pub(crate) by_element: Vec<f64>,
-    /// Whether node 0 stays out of the plane at the knots: else P_CA has another solution.
+    /// Whether node 0 stays out of the plane at the half-step instants: else P_CA has another solution.
     pub(crate) admissible: bool,
 }
 
@@ -81,10 +81,10 @@ impl Bar {
             let force = self.forces(&u);
             let pull = |i: usize| if i < n { force[i] } else { 0.0 } - if i > 0 { force[i - 1] } else { 0.0 };
             let free: Vec<f64> = (0..=n).map(|i| pull(i) / self.mass(i)).collect();
-            let whole = if k == 0 { 0.5 * dt } else { dt };
-            let predicted = self.gap + u[0] + dt * (v[0] + whole * free[0]);
+            let length = if k == 0 { 0.5 * dt } else { dt };
+            let predicted = self.gap + u[0] + dt * (v[0] + length * free[0]);
             let next = predicted < -1e-12 * self.length;
-            let reaction = if next { -self.mass(0) * predicted / (dt * whole) } else { 0.0 };
+            let reaction = if next { -self.mass(0) * predicted / (dt * length) } else { 0.0 };
             let mut total = free.clone();
             total[0] += reaction / self.mass(0);
             let half = v.clone();
@@ -92,7 +92,7 @@ impl Bar {
             let velocity = (0..=n).map(|i| v[i] + back * total[i]).collect();
             history.push(Instant { half, velocity, force, free, reaction, touching });
             for i in 0..=n {
-                v[i] += whole * total[i];
+                v[i] += length * total[i];
                 u[i] += dt * v[i];
             }
             touching = next;
@@ -103,8 +103,8 @@ impl Bar {
     /// N of the elements, and the acceleration that they alone give, which the balance is built on: the simulation's,
     /// or for `corrected` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
     /// acceleration a, and less (Δt_c²/6)² (K/M)² a/36: on a uniform bar that is what is left of (h²/12c² − Δt²/12), and β.
-    fn sources(&self, history: &[Instant], reading: Reconstruction) -> Vec<(Vec<f64>, Vec<f64>)> {
-        if reading != Reconstruction::Corrected {
+    fn sources(&self, history: &[Instant], reconstruction: Reconstruction) -> Vec<(Vec<f64>, Vec<f64>)> {
+        if reconstruction != Reconstruction::Corrected {
             return history.iter().map(|i| (i.force.clone(), i.free.clone())).collect();
         }
         let (n, dt) = (self.elements, self.step());
@@ -116,11 +116,11 @@ impl Bar {
         let (left, damping) = ((critical - dt * dt) / 12.0, critical * critical / 36.0 / 36.0);
         let (mut u, mut v) = (vec![0.0; n + 1], vec![-self.speed; n + 1]);
         let mut made = Vec::new();
-        for (k, pressing) in self.pressing(history).into_iter().enumerate() {
+        for (k, smoothed) in self.smoothed_reactions(history).into_iter().enumerate() {
             let force = self.forces(&u);
             let free = over_mass(&force);
             let mut a = free.clone();
-            a[0] += pressing / self.mass(0);
+            a[0] += smoothed / self.mass(0);
             let correction = over_mass(&self.forces(&a));
             let again = over_mass(&self.forces(&correction));
             for i in 0..=n {
@@ -132,23 +132,23 @@ impl Bar {
         made
     }
 
-    /// What `corrected` adds at each knot: Q·gap, and ∫R|w| up to there by the trapezoidal rule.
-    fn normal_law(&self, history: &[Instant], knots: &[Knot], reading: Reconstruction) -> Vec<f64> {
-        let pressing = self.pressing(history);
+    /// What `corrected` adds at each half-step instant: Q·gap, and ∫R|w| up to there by the trapezoidal rule.
+    fn normal_law(&self, history: &[Instant], motions: &[Motion], reconstruction: Reconstruction) -> Vec<f64> {
+        let smoothed = self.smoothed_reactions(history);
         // Linear in time over each step.
         let at = |force: &dyn Fn(usize) -> f64, k: usize| 0.5 * (force(k / 2) + force(k.div_ceil(2)));
-        let push = |k: usize| at(&|n| pressing[n], k);
+        let push = |k: usize| at(&|n| smoothed[n], k);
         // The reaction as it was does the work, whatever goes on of it.
         let stop = |k: usize| at(&|n| history[n].reaction.max(0.0), k);
         let mut work = 0.0;
         let mut made = Vec::new();
-        for (k, (u, v)) in knots.iter().enumerate() {
-            if reading != Reconstruction::Corrected {
+        for (k, (u, v)) in motions.iter().enumerate() {
+            if reconstruction != Reconstruction::Corrected {
                 made.push(0.0);
                 continue;
             }
             if k > 0 {
-                work += 0.25 * self.step() * (stop(k - 1) * knots[k - 1].1[0].abs() + stop(k) * v[0].abs());
+                work += 0.25 * self.step() * (stop(k - 1) * motions[k - 1].1[0].abs() + stop(k) * v[0].abs());
             }
             made.push(push(k) * (self.gap + u[0]).max(0.0) + work);
         }
@@ -182,31 +182,31 @@ impl Bar {
         velocity
     }
 
-    /// u_CA and u̇_CA at all knots; displacement is the exact integral.
-    fn kinematic(&self, history: &[Instant]) -> Vec<Knot> {
+    /// u_CA and u̇_CA at all half-step instants; displacement is the exact integral.
+    fn kinematic(&self, history: &[Instant]) -> Vec<Motion> {
         let contact = self.contact_velocity(history);
-        let mut knots: Vec<Knot> = vec![(vec![0.0; self.elements + 1], history[0].velocity.clone())];
+        let mut motions: Vec<Motion> = vec![(vec![0.0; self.elements + 1], history[0].velocity.clone())];
         for (k, &end) in contact.iter().enumerate().skip(1) {
             let n = k.div_ceil(2);
             let mut velocity = if k % 2 == 1 { history[n].half.clone() } else { history[n].velocity.clone() };
             velocity[0] = end;
-            let (u, v) = &knots[k - 1];
+            let (u, v) = &motions[k - 1];
             let u = (0..u.len()).map(|i| u[i] + 0.25 * self.step() * (v[i] + velocity[i])).collect();
-            knots.push((u, velocity));
+            motions.push((u, velocity));
         }
-        knots
+        motions
     }
 
     /// What `corrected` presses with: of a reaction R, the part ma that stops node 0 goes on with weights 1 − s/τ until
     /// τ = m/(ρcS) = h/2c later.
-    fn pressing(&self, history: &[Instant]) -> Vec<f64> {
+    fn smoothed_reactions(&self, history: &[Instant]) -> Vec<f64> {
         let (dt, tau) = (self.step(), 0.5 * self.element() / (self.young / self.density).sqrt());
         let weights: Vec<f64> = (0..).map(|j| 1.0 - j as f64 * dt / tau).take_while(|w| *w > 0.0).collect();
         let all: f64 = weights.iter().sum();
         let mut made = vec![0.0; history.len()];
         for (k, now) in history.iter().enumerate().filter(|(_, now)| now.reaction > 0.0) {
-            let stopping = self.mass(0) * (now.free[0] + now.reaction / self.mass(0));
-            let share = (stopping / now.reaction).clamp(0.0, 1.0);
+            let braking = self.mass(0) * (now.free[0] + now.reaction / self.mass(0));
+            let share = (braking / now.reaction).clamp(0.0, 1.0);
             made[k] += (1.0 - share) * now.reaction;
             for (made, weight) in made[k..].iter_mut().zip(&weights) {
                 *made += share * now.reaction * weight / all;
@@ -216,16 +216,16 @@ impl Bar {
     }
 
     /// Q at the two ends of the step from t_n to t_{n+1}, method.md §4.
-    fn contact_force(&self, history: &[Instant], n: usize, reading: Reconstruction) -> [f64; 2] {
+    fn contact_force(&self, history: &[Instant], n: usize, reconstruction: Reconstruction) -> [f64; 2] {
         let touches = |k: usize| history[k].touching;
         let pushes = |k: usize| history[k].reaction.max(0.0);
-        let pressing = self.pressing(history);
+        let smoothed = self.smoothed_reactions(history);
         // [45]–[48]: from one step after the first touch to one before the last.
         let keeps = |k: usize| k > 0 && touches(k - 1) && touches(k) && (k == self.steps || touches(k + 1));
-        [n, n + 1].map(|k| match reading {
+        [n, n + 1].map(|k| match reconstruction {
             Reconstruction::Published if keeps(k) => pushes(k),
             Reconstruction::Consistent if touches(n) && touches(n + 1) => pushes(k),
-            Reconstruction::Corrected => pressing[k],
+            Reconstruction::Corrected => smoothed[k],
             _ => 0.0,
         })
     }
@@ -244,7 +244,7 @@ impl Bar {
         let gained = gamma(state.gained[e], state.gained[e + 1]);
         let force = state.force;
         let left = if e == 0 { -state.push } else { 0.5 * (force[e - 1] + force[e]) };
-        let (u, v) = state.knot;
+        let (u, v) = state.motion;
         let own = self.young * self.section * (u[e + 1] - u[e]) / h;
         let (mut error, mut sum) = (0.0, 0.0);
         // Three Gauss points: exact to degree 5, the squares have 4.
@@ -263,26 +263,26 @@ impl Bar {
     }
 
     /// The whole estimate.
-    pub(crate) fn estimate(&self, reading: Reconstruction, choice: Acceleration, every: usize) -> HandEstimate {
+    pub(crate) fn estimate(&self, reconstruction: Reconstruction, choice: Acceleration, every: usize) -> HandEstimate {
         let (n, dt) = (self.elements, self.step());
         let history = self.simulate();
-        let knots = self.kinematic(&history);
-        let sources = self.sources(&history, reading);
-        let normal_law = self.normal_law(&history, &knots, reading);
+        let motions = self.kinematic(&history);
+        let sources = self.sources(&history, reconstruction);
+        let normal_law = self.normal_law(&history, &motions, reconstruction);
         let mut gained = vec![0.0; n + 1];
         let mut totals = Totals::new(n);
         let mut opened = vec![[0.0; 2]; n];
         for k in 0..self.steps {
             let ((from_force, from_free), (to_force, to_free)) = (&sources[k], &sources[k + 1]);
-            let [start_push, end_push] = self.contact_force(&history, k, reading);
+            let [start_push, end_push] = self.contact_force(&history, k, reconstruction);
             let (mut start, mut end) = (from_free.clone(), to_free.clone());
             start[0] += start_push / self.mass(0);
             end[0] += end_push / self.mass(0);
-            let elements = |knot: usize, acceleration: &[f64], gained: &[f64], force: &[f64], push: f64| {
-                let state = State { acceleration, gained, force, push, knot: &knots[knot] };
+            let elements = |instant: usize, acceleration: &[f64], gained: &[f64], force: &[f64], push: f64| {
+                let state = State { acceleration, gained, force, push, motion: &motions[instant] };
                 let mut all: Vec<_> = (0..n).map(|e| self.measure(e, &state, choice)).collect();
                 // The contact part belongs to the element at the plane, and to d as well.
-                all[0].iter_mut().for_each(|x| *x += normal_law[knot]);
+                all[0].iter_mut().for_each(|x| *x += normal_law[instant]);
                 all
             };
             if k % every == 0 {
@@ -301,7 +301,7 @@ impl Bar {
                 totals.add((k + 1 - first) as f64 * dt, &opened, middle.as_deref(), &closed);
             }
         }
-        let admissible = knots.iter().all(|(u, _)| self.gap + u[0] >= -1e-13 * self.length);
+        let admissible = motions.iter().all(|(u, _)| self.gap + u[0] >= -1e-13 * self.length);
         totals.finish(self.steps as f64 * dt, admissible)
     }
 }
@@ -317,7 +317,7 @@ struct State<'a> {
     gained: &'a [f64],
     force: &'a [f64],
     push: f64,
-    knot: &'a Knot,
+    motion: &'a Motion,
 }
 
 /// Largest values and trapezoidal integrals of η and d.

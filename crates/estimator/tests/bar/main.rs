@@ -57,14 +57,14 @@ fn estimate(bar: &Bar, options: Options) -> Estimate<1> {
     percute_estimator::run(&problem(bar), &grid(bar), options, &Request::default(), &mut Unobserved).unwrap().1
 }
 
-/// Estimates with the readings in [`READINGS`], and the true error \[60\].
+/// Estimates with the reconstructions in [`RECONSTRUCTIONS`], and the true error \[60\].
 fn effectivity(bar: &Bar) -> ([Estimate<1>; 3], TrueError) {
     let (problem, times) = (problem(bar), grid(bar));
     let estimator = |reconstruction| {
         let options = Options { reconstruction, ..Options::default() };
         Estimator::new(&problem, &times, options).unwrap()
     };
-    let [corrected, consistent, published] = READINGS.map(estimator);
+    let [corrected, consistent, published] = RECONSTRUCTIONS.map(estimator);
     let mut sink = (Recorder::new(&problem, &times), (corrected, (consistent, published)));
     simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
     let (recorder, (corrected, (consistent, published))) = sink;
@@ -74,7 +74,7 @@ fn effectivity(bar: &Bar) -> ([Estimate<1>; 3], TrueError) {
     ([corrected, consistent, published].map(|e| e.finish().unwrap()), error)
 }
 
-const READINGS: [Reconstruction; 3] =
+const RECONSTRUCTIONS: [Reconstruction; 3] =
     [Reconstruction::Corrected, Reconstruction::Consistent, Reconstruction::Published];
 
 #[test]
@@ -128,9 +128,11 @@ fn effectivities_against_the_exact_solution() {
                 bar.steps = (fraction + 2.0 * elements as f64 / courant).ceil() as usize;
                 let (estimates, exact) = effectivity(&bar);
                 let ranges = [(0.844, 1.585), (0.24, 2.1), (0.24, 3.2)];
-                for (estimate, (reading, (least, most))) in estimates.iter().zip(READINGS.iter().zip(ranges)) {
+                for (estimate, (reconstruction, (least, most))) in
+                    estimates.iter().zip(RECONSTRUCTIONS.iter().zip(ranges))
+                {
                     for ratio in [estimate.error.sup / exact.sup, estimate.error.mean / exact.mean] {
-                        let told = format!("{elements}, {courant}, {fraction}, {reading}: {ratio}");
+                        let told = format!("{elements}, {courant}, {fraction}, {reconstruction}: {ratio}");
                         // Ranges of two digits are rounded, and 0.75 is not on the grid of the others.
                         assert!(ratio > 0.98 * least && ratio < most + 0.05, "{told}");
                     }
@@ -148,8 +150,8 @@ fn short_steps() {
     for (elements, courant, fraction) in [(10, 0.05, 2.3), (10, 0.2, 2.9), (40, 0.1, 2.5), (20, 0.4, 2.1)] {
         let mut bar = bar(elements, courant, fraction);
         bar.steps = (fraction + 2.0 * elements as f64 / courant).ceil() as usize;
-        let ([whole, ..], exact) = effectivity(&bar);
-        let (sup, mean) = (whole.error.sup / exact.sup, whole.error.mean / exact.mean);
+        let ([corrected, ..], exact) = effectivity(&bar);
+        let (sup, mean) = (corrected.error.sup / exact.sup, corrected.error.mean / exact.mean);
         // The ends of the ranges have three digits.
         assert!((0.858..1.149).contains(&sup) && (0.883..1.034).contains(&mean), "{elements}, {courant}: {sup} {mean}");
     }

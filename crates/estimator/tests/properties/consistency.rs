@@ -99,9 +99,12 @@ fn consistent_is_sharper_on_the_flat_block() {
         let (problem, times) = table_block(nx, ny, count);
         let history = history(&problem, &times);
         let made = |reconstruction| estimate(&problem, &history, Options { reconstruction, ..Options::default() });
-        let (sharp, paper) = (made(Reconstruction::Consistent), made(Reconstruction::Published));
-        assert!(sharp.error.sup <= paper.error.sup && sharp.error.mean <= paper.error.mean, "{nx} × {ny}");
-        let kept = [&sharp, &paper].map(|e| e.kept_impulse.unwrap());
+        let (consistent, published) = (made(Reconstruction::Consistent), made(Reconstruction::Published));
+        assert!(
+            consistent.error.sup <= published.error.sup && consistent.error.mean <= published.error.mean,
+            "{nx} × {ny}"
+        );
+        let kept = [&consistent, &published].map(|e| e.kept_impulse.unwrap());
         assert!(kept[1] <= kept[0], "{nx} × {ny}: {kept:?}");
         // Above 1 by what the cone cuts off: the pulling densities of B⁻¹R, some 10 % of the largest.
         assert!(kept.iter().all(|k| *k > 0.0 && *k <= 1.1), "{nx} × {ny}: {kept:?}");

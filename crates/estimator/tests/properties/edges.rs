@@ -114,10 +114,10 @@ fn an_early_end() {
     for long in [steps(&problem, 0.9, 40), swinging(&problem, 40, 2.0)] {
         for count in [1, 2, 3, 5, 11, 30] {
             let [long, short] = grids(&long, count);
-            let whole = history(&problem, &long);
+            let complete = history(&problem, &long);
             for options in all_choices() {
-                let early = estimate(&problem, &beginning(&whole, &long, count + 1), options);
-                let shorter = estimate(&problem, &beginning(&whole, &short, count + 1), options);
+                let early = estimate(&problem, &beginning(&complete, &long, count + 1), options);
+                let shorter = estimate(&problem, &beginning(&complete, &short, count + 1), options);
                 assert_eq!(early, shorter, "{count} steps, {options:?}");
                 assert_admissible(&format!("{count} steps"), &early);
             }
@@ -136,10 +136,10 @@ fn an_early_end_of_a_driven_body() {
     let long = steps(&problem, 0.9, 40);
     for count in [5, 11, 30] {
         let [long, short] = grids(&long, count);
-        let whole = history(&problem, &long);
+        let complete = history(&problem, &long);
         for options in all_choices() {
-            let early = estimate(&problem, &beginning(&whole, &long, count + 1), options);
-            let shorter = estimate(&problem, &beginning(&whole, &short, count + 1), options);
+            let early = estimate(&problem, &beginning(&complete, &long, count + 1), options);
+            let shorter = estimate(&problem, &beginning(&complete, &short, count + 1), options);
             assert_admissible(&format!("{count} steps"), &early);
             let before = |e: &Estimate<2>| {
                 let start = long.instants()[count - 1];
@@ -160,6 +160,6 @@ fn a_run_that_is_stopped() {
     let (simulation, stopped) = run(&problem, &times, Options::default(), &Request::default(), &mut stop).unwrap();
     assert!(simulation.interrupted);
     assert_eq!((stopped.steps, stopped.end), (17, times.instants()[17]));
-    let whole = history(&problem, &times);
-    assert_eq!(stopped, estimate(&problem, &beginning(&whole, &times, 18), Options::default()));
+    let complete = history(&problem, &times);
+    assert_eq!(stopped, estimate(&problem, &beginning(&complete, &times, 18), Options::default()));
 }

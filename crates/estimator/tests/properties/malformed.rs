@@ -204,8 +204,8 @@ fn steps_too_long_for_the_auxiliary_solution() {
     let instants: Vec<f64> = times.instants().iter().copied().step_by(3).collect();
     let longest = instants[1];
     let thinned = TimeGrid::from_instants(instants).unwrap();
-    for reading in [Reconstruction::Corrected, Reconstruction::Consistent] {
-        let options = Options { reconstruction: reading, ..Options::default() };
+    for reconstruction in [Reconstruction::Corrected, Reconstruction::Consistent] {
+        let options = Options { reconstruction, ..Options::default() };
         let mut estimator = Estimator::new(&problem, &thinned, options).unwrap();
         let mut refused = None;
         for n in 0..=thinned.step_count() {
@@ -219,7 +219,7 @@ fn steps_too_long_for_the_auxiliary_solution() {
         let told = refused.as_ref().map(ToString::to_string).unwrap_or_default();
         match refused {
             Some(EstimateError::AuxiliarySolution { longest_step, step, .. }) => {
-                assert_eq!(reading, Reconstruction::Corrected);
+                assert_eq!(reconstruction, Reconstruction::Corrected);
                 // The shortest waves grow by some 20 in each step, their energy by 400: soon a million times what there is.
                 assert!(step < 20, "told at step {step}");
                 assert!(
@@ -227,7 +227,7 @@ fn steps_too_long_for_the_auxiliary_solution() {
                     "{told}"
                 );
             }
-            other => assert!(other.is_none() && reading == Reconstruction::Consistent, "{other:?}"),
+            other => assert!(other.is_none() && reconstruction == Reconstruction::Consistent, "{other:?}"),
         }
         // What was right before can still be summed up.
         assert!(estimator.finish().is_ok());

@@ -250,10 +250,10 @@ fn more_maps_than_memory_are_refused() {
 }
 
 /// The first steps of a history.
-fn beginning(whole: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
+fn beginning(complete: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
     let mut history = History::new(times);
     for n in 0..count {
-        percute_core::history::StepSink::push(&mut history, &whole.step(n).unwrap()).unwrap();
+        percute_core::history::StepSink::push(&mut history, &complete.step(n).unwrap()).unwrap();
     }
     history
 }
@@ -263,11 +263,11 @@ fn beginning(whole: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
 #[test]
 fn an_early_end_has_the_maps_so_far() {
     let (problem, times) = impact();
-    let whole = history(&problem, &times);
+    let complete = history(&problem, &times);
     let options = Options { every: 4, threads: Some(1), ..Options::default() };
     let steps = |e: &Estimate<2>| e.maps.iter().map(|m| m.step).collect::<Vec<_>>();
     for (count, last) in [(30, 28), (29, 28), (28, 24)] {
-        let early = beginning(&whole, &times, count);
+        let early = beginning(&complete, &times, count);
         let estimate = estimate_with_maps(&problem, &early, options, &all_steps(&times, 4));
         assert_eq!(steps(&estimate), (0..=last).step_by(4).collect::<Vec<_>>());
         assert!(estimate.maps.iter().all(|map| fields(map).compatible_stress.len() == map.kinetic.len()));

@@ -187,14 +187,14 @@ fn the_drift_of_the_phase_is_seen() {
             estimate.error.mean / distance(&motion, exact).1
         };
         let kh = MODE.wave_number() * MODE.length / elements as f64;
-        let (whole, sharp) = (of(Reconstruction::Corrected), of(Reconstruction::Consistent));
-        let told = format!("{elements}, {courant}: {whole} and {sharp}");
+        let (corrected, consistent) = (of(Reconstruction::Corrected), of(Reconstruction::Consistent));
+        let told = format!("{elements}, {courant}: {corrected} and {consistent}");
         // The auxiliary solution's own phase error, of relative order (kh)², is what is left of the drift.
-        assert!((whole - 1.0).abs() < 0.6 * kh * kh, "{told}");
+        assert!((corrected - 1.0).abs() < 0.6 * kh * kh, "{told}");
         // Its plateau over the true error, as above.
         let drift = kh * kh * (1.0 - courant * courant) * 2.0 * PI * PERIODS / 24.0;
         let plateau = kh / 24.0_f64.sqrt();
         let lost = plateau / (plateau * plateau + drift * drift / 3.0).sqrt();
-        assert!((sharp - lost).abs() < 0.6 * kh * kh, "{told}, {lost}");
+        assert!((consistent - lost).abs() < 0.6 * kh * kh, "{told}, {lost}");
     }
 }

@@ -9,7 +9,7 @@ use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Options, Reconstruction, Request};
 
-/// Estimates with every reading and option over 40 steps; e_sup (J^½) is at most 1e-12 of the root
+/// Estimates with every reconstruction and option over 40 steps; e_sup (J^½) is at most 1e-12 of the root
 /// of an energy (J) of the motion: rounding of 1e-16, times the some hundred operations on a field
 /// and the cancellation of neighbouring values in strains.
 #[track_caller]

@@ -11,12 +11,12 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
 
-/// A node at rest on its plane is stopped by rounding only: not worth a walk through the steps to come.
+/// The share of a reaction at a node at rest that is rounding: not worth a record for the steps to come.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// What is still to come at each node of the contact surface.
 #[derive(Clone, Debug)]
-pub(crate) struct ImpulseSmoothing<const D: usize> {
+pub(super) struct ImpulseSmoothing<const D: usize> {
     /// τ (s).
     time: Vec<f64>,
     pending: Vec<VecDeque<Pending<D>>>,
@@ -32,7 +32,7 @@ struct Pending<const D: usize> {
 }
 
 impl<const D: usize> ImpulseSmoothing<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         let (mesh, nodes) = (problem.mesh(), problem.surface().nodes());
         // ρcℓ.
         let mut impedance = vec![0.0; nodes.len()];
@@ -47,7 +47,7 @@ impl<const D: usize> ImpulseSmoothing<D> {
 
     /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but for
     /// what is to come after the last step; nothing depends on how long later steps are.
-    pub(crate) fn advance<const N: usize>(
+    pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
@@ -62,11 +62,11 @@ impl<const D: usize> ImpulseSmoothing<D> {
         for (k, (contact, force)) in problem.surface().nodes().iter().zip(&mut forces).enumerate() {
             let plane = &problem.obstacles()[contact.obstacle];
             let (pending, time) = (&mut self.pending[k], self.time[k]);
-            let (pressing, _) = plane.split(force);
-            if pressing > 0.0 && step < time {
+            let (normal, _) = plane.split(force);
+            if normal > 0.0 && step < time {
                 let i = contact.node.index();
-                let stopping = problem.mass()[i] * plane.split(&acceleration[i]).0;
-                let share = (stopping / pressing).min(1.0);
+                let inertia = problem.mass()[i] * plane.split(&acceleration[i]).0;
+                let share = (inertia / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
@@ -118,10 +118,10 @@ mod tests {
     /// Forces of some steps, from reactions at the end of the bar and the accelerations of its node.
     fn forces(times: &TimeGrid, steps: &[(f64, f64)]) -> Vec<f64> {
         let problem = bar();
-        let mut stopping = ImpulseSmoothing::new(&problem);
+        let mut smoothing = ImpulseSmoothing::new(&problem);
         let one = |(n, &(reaction, acceleration)): (usize, &(f64, f64))| {
             let all = [[acceleration], [0.0], [0.0]];
-            stopping.advance(&problem, times, n, &[[reaction]], &all)[0][0]
+            smoothing.advance(&problem, times, n, &[[reaction]], &all)[0][0]
         };
         steps.iter().enumerate().map(one).collect()
     }

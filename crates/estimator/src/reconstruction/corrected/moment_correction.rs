@@ -21,12 +21,12 @@ struct Group<const D: usize> {
     normal: [f64; D],
     tangent: [f64; D],
     friction: f64,
-    nodes: Vec<Place>,
+    nodes: Vec<CorrectedNode>,
 }
 
 /// A node of the contact surface.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct CorrectedNode {
     /// Position in the contact surface.
     at: usize,
     /// Centroid of its shape function along the plane (m).
@@ -63,7 +63,7 @@ impl<const D: usize> MomentCorrection<D> {
             let group = &mut groups[found].1;
             let point = problem.mesh().points()[contact.node.index()];
             let arm: [f64; D] = std::array::from_fn(|c| point[c] - centroid[c]);
-            group.nodes.push(Place {
+            group.nodes.push(CorrectedNode {
                 at,
                 centroid: along(centroid, &group.tangent),
                 lever: [along(&arm, &group.tangent), along(&arm, &group.normal)],
@@ -74,7 +74,7 @@ impl<const D: usize> MomentCorrection<D> {
     }
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have the
-    /// moment of the reactions, or come as near as pressing forces can.
+    /// moment of the reactions, or come as near as compressive forces can.
     pub(super) fn apply(&self, reaction: &mut [[f64; D]]) {
         self.groups.iter().for_each(|group| group.apply(reaction));
     }
@@ -99,16 +99,16 @@ impl<const D: usize> Group<D> {
 
     /// α + β s, nowhere negative, with Σ factor N = ΣN and Σ factor N s = Σ N s + `missing` over those that are not 0.
     fn factors(&self, normal: &[f64], missing: f64) -> Vec<f64> {
-        let whole: f64 = normal.iter().sum();
+        let total: f64 = normal.iter().sum();
         let first: f64 = self.nodes.iter().zip(normal).map(|(node, n)| node.centroid * n).sum();
         // About the middle of the force, which has to move by this way.
-        let (middle, way) = (first / whole, missing / whole);
+        let (middle, way) = (first / total, missing / total);
         let place = |k: usize| self.nodes[k].centroid - middle;
         let mut pressed: Vec<usize> = (0..normal.len()).filter(|&k| normal[k] > 0.0).collect();
         loop {
-            let sum = |power: i32| pressed.iter().map(|&k| normal[k] * place(k).powi(power)).sum::<f64>() / whole;
+            let sum = |power: i32| pressed.iter().map(|&k| normal[k] * place(k).powi(power)).sum::<f64>() / total;
             let (weight, mean) = (sum(0), sum(1) / sum(0));
-            let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / whole;
+            let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / total;
             let extent = pressed.iter().map(|&k| (place(k) - mean).powi(2)).fold(0.0, f64::max);
             // One node alone, or all but what is rounding beside it, has no lever.
             let slope = if pressed.len() > 1 && spread > NOTHING * extent { (way - mean) / spread } else { 0.0 };
@@ -132,9 +132,9 @@ impl<const D: usize> Group<D> {
             if node.guided { 0.0 } else { room.max(0.0) }
         });
         let rooms: Vec<f64> = rooms.collect();
-        let whole: f64 = rooms.iter().sum();
-        if whole > 0.0 {
-            let part = (lacking / whole).clamp(-1.0, 1.0);
+        let room: f64 = rooms.iter().sum();
+        if room > 0.0 {
+            let part = (lacking / room).clamp(-1.0, 1.0);
             shared.iter_mut().zip(&rooms).for_each(|(t, room)| *t += part * room);
         }
         shared

@@ -82,9 +82,9 @@ fn resultant_and_moment_are_those_of_the_reactions() {
             let first = |at: usize| problem.surface().nodes()[at].node.index() < 4;
             (0..10).filter(|&at| !first(at)).for_each(|at| reaction[at] = [0.0; 2]);
         }
-        let mut tilted = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut tilted);
-        assert!(admissible(&problem, &tilted), "{seed}: {tilted:?}");
+        let mut corrected = reaction.clone();
+        MomentCorrection::new(&problem).apply(&mut corrected);
+        assert!(admissible(&problem, &corrected), "{seed}: {corrected:?}");
         let (given, found) = (balance(&problem, &reaction), balance(&problem, &made(&problem, &reaction)));
         for (given, found) in given.iter().zip(&found) {
             // Rounding of sums of five terms of up to 1.5·12.
@@ -93,11 +93,11 @@ fn resultant_and_moment_are_those_of_the_reactions() {
     }
 }
 
-/// The same reactions in another frame are tilted alike, with friction that is nothing but rounding, too.
+/// The same reactions in another frame are corrected alike, with friction that is nothing but rounding, too.
 #[test]
 fn no_frame_is_special() {
     let numbers = [[3.0, 0.1], [1.0, -1e-17], [2.0, 0.8], [0.0, 0.0], [1.5, 1e-17]];
-    let tilted = |angle: f64| -> Vec<[f64; 2]> {
+    let corrected = |angle: f64| -> Vec<[f64; 2]> {
         let problem = blocks(angle);
         let mut forces: Vec<[f64; 2]> = problem
             .surface()
@@ -116,10 +116,10 @@ fn no_frame_is_special() {
         all.sort_by_key(|(node, _)| *node);
         all.into_iter().map(|(_, f)| f).collect()
     };
-    let flat = tilted(0.0);
-    assert!((flat[0][0] - 3.0).abs() > 0.1, "nothing was tilted: {flat:?}");
+    let flat = corrected(0.0);
+    assert!((flat[0][0] - 3.0).abs() > 0.1, "nothing was corrected: {flat:?}");
     for angle in [0.5, 2.0, 4.0] {
-        for (a, b) in flat.iter().zip(&tilted(angle)) {
+        for (a, b) in flat.iter().zip(&corrected(angle)) {
             // Rounding of coordinates of 12 over edges of 0.5.
             assert!((0..2).all(|c| (a[c] - b[c]).abs() < 1e-13), "{angle}: {b:?} for {a:?}");
         }
@@ -134,12 +134,12 @@ fn what_cannot_be_had_is_had_in_part() {
     let mut reaction = vec![[0.0, 0.0]; 10];
     let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
     (reaction[at(0)], reaction[at(2)]) = ([0.3, 1.0], [0.0, 0.1]);
-    let mut tilted = reaction.clone();
-    MomentCorrection::new(&problem).apply(&mut tilted);
-    assert!(admissible(&problem, &tilted));
+    let mut corrected = reaction.clone();
+    MomentCorrection::new(&problem).apply(&mut corrected);
+    assert!(admissible(&problem, &corrected));
     // All on the first node, friction too.
-    assert!((0..2).all(|c| (tilted[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{tilted:?}");
-    assert_eq!(tilted[at(2)], [0.0; 2]);
+    assert!((0..2).all(|c| (corrected[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{corrected:?}");
+    assert_eq!(corrected[at(2)], [0.0; 2]);
     let [found, other] = balance(&problem, &made(&problem, &reaction));
     let [given, _] = balance(&problem, &reaction);
     assert_eq!(other, [0.0; 3]);
@@ -155,8 +155,8 @@ fn a_node_alone_is_left_as_it_is() {
     for k in 0..10 {
         let mut reaction = vec![[0.0; 2]; 10];
         reaction[k] = in_frame(&problem, 2.0, 0.3);
-        let mut tilted = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut tilted);
-        assert_eq!(tilted, reaction);
+        let mut corrected = reaction.clone();
+        MomentCorrection::new(&problem).apply(&mut corrected);
+        assert_eq!(corrected, reaction);
     }
 }
