@@ -1,8 +1,8 @@
 """Compare the results of two builds of the command on all cases in examples/.
 
-    python tools/compare_builds.py OLD NEW [--tolerance 1e-12] [--only block,bar]
+    python tools/compare_builds.py OLD NEW [--tolerance 1e-12] [--only block,bar] [--old-examples FOLDER]
 
-OLD and NEW are binaries. Each case is simulated once by each build; its history is then estimated with every reconstruction. All numbers
+OLD and NEW are binaries. FOLDER holds the same cases in the case language of OLD, where that differs. Each case is simulated once by each build; its history is then estimated with every reconstruction. All numbers
 of the JSON reports and all arrays of the history and estimate files are compared. The scale of a difference is the largest magnitude of
 the array, or of the number. Numbers that depend on the clock are left out. Needs numpy and h5py.
 """
@@ -28,6 +28,7 @@ NAMES = {
 # Keys of reports that have another name in a later build.
 RENAMED = {
     "mended_elements": "reoriented_elements",
+    "rendezvous": "onset",
     "penetration_at_knots": "penetration_at_instants",
     "penetration_between_knots": "penetration_between_instants",
 }
@@ -70,7 +71,8 @@ def arrays(file: Path) -> dict[str, np.ndarray]:
 
     def visit(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
-            found[name] = np.asarray(item[()], dtype=float)
+            folder, _, last = name.rpartition("/")
+            found[f"{folder}/{RENAMED.get(last, last)}"] = np.asarray(item[()], dtype=float)
 
     with h5py.File(file) as opened:
         opened.visititems(visit)
@@ -108,13 +110,14 @@ class Difference:
             self.failures += 1
 
 
-def compare(case: Path, builds: tuple[Path, Path], folder: Path, tolerance: float) -> Difference:
+def compare(cases: tuple[Path, Path], builds: tuple[Path, Path], folder: Path, tolerance: float) -> Difference:
     """Run a case by both builds; compare."""
+    case = cases[1]
     difference = Difference()
     files: list[Path] = []
     for at, binary in enumerate(builds):
         file = folder / f"{case.stem}-{at}.vtkhdf"
-        subprocess.run([str(binary), "simulate", case.name, "--history", str(file), "--quiet"], cwd=case.parent, check=True,
+        subprocess.run([str(binary), "simulate", cases[at].name, "--history", str(file), "--quiet"], cwd=cases[at].parent, check=True,
                        capture_output=True)
         files.append(file)
     old, new = map(arrays, files)
@@ -157,6 +160,7 @@ def main() -> int:
     parser.add_argument("new", type=Path)
     parser.add_argument("--tolerance", type=float, default=1e-12)
     parser.add_argument("--only", default="")
+    parser.add_argument("--old-examples", type=Path)
     options = parser.parse_args()
     wanted = set(filter(None, options.only.split(",")))
     failures = 0
@@ -164,7 +168,9 @@ def main() -> int:
         for case in sorted(path for folder in CASES for path in (ROOT / folder).glob("*.toml")):
             if wanted and case.stem not in wanted:
                 continue
-            difference = compare(case, (options.old.resolve(), options.new.resolve()), Path(folder), options.tolerance)
+            old_case = next(options.old_examples.resolve().rglob(case.name)) if options.old_examples else case
+            builds = (options.old.resolve(), options.new.resolve())
+            difference = compare((old_case, case), builds, Path(folder), options.tolerance)
             failures += difference.failures
             print(f"{case.stem:<20} largest {difference.largest:.1e}   {difference.place}", flush=True)
     print("agree" if failures == 0 else f"{failures} differences")
