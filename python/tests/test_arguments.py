@@ -240,7 +240,7 @@ def test_the_most_elements_are_those_of_the_generators() -> None:
 def test_a_message_tells_value_and_way_out(calls: Calls) -> None:
     table: list[tuple[Callable[..., object], dict[str, Any], str]] = [
         (calls.estimate, {"threads": 2000}, "`threads` is 2000; it must be a whole number from 1 to 1024"),
-        (calls.estimate, {"fields": True}, "`fields` needs `instants`: say at how many instants"),
+        (calls.estimate, {"fields": True}, "`fields` needs `instants`: give the number of instants"),
         (calls.simulate, {"progress": 3}, "`progress` is 3; it must be True, False or a function"),
         (calls.simulate, {"store": b"x"}, "`store` is b'x'; it must be the name of a file"),
         (calls.rectangle, {"nx": LONG}, "`nx` is of the type int; it must be a whole number from 1 to"),
