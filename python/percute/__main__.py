@@ -8,6 +8,10 @@ from percute._percute import command
 
 def main() -> int:
     """Run the command with the arguments of this process and return its exit code."""
+    if sys.argv[1:2] == ["reproduce"]:
+        from percute.verification.command import main as reproduce
+
+        return reproduce(sys.argv[2:])
     # Ctrl-C is the command's own: Python would answer only once the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["percute", *sys.argv[1:]])

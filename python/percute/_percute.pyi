@@ -27,7 +27,6 @@ __all__ = [
     "is_estimate",
     "meaning",
     "open_history",
-    "reproduce",
     "simulate",
     "simulate_case",
     "true_error_of_bar_impact",
@@ -245,14 +244,6 @@ def simulate_case(
 ) -> HistoryData: ...
 def is_estimate(path: str | PathLike[str]) -> bool: ...
 def open_history(path: str | PathLike[str]) -> HistoryData: ...
-def reproduce(
-    folder: str | PathLike[str],
-    names: Sequence[str],
-    small: bool,
-    overwrite: bool,
-    threads: int | None,
-    progress: _Tell,
-) -> Path: ...
 def errors_against_history(histories: Sequence[HistoryData], reference: HistoryData) -> list[_TrueError]: ...
 def errors_against_simulation(
     histories: Sequence[HistoryData], problem: ProblemData, times: _Times, progress: _Tell

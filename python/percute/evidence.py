@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from percute import _percute
 from percute.checks import flag, text, wrong
 from percute.checks import path as file_name
 from percute.estimation import pace
@@ -17,7 +16,7 @@ __all__ = ["reproduce"]
 
 def reproduce(
     folder: str | os.PathLike[str],
-    parts: Iterable[str] | None = None,
+    studies: Iterable[str] | None = None,
     *,
     small: bool = False,
     overwrite: bool = False,
@@ -26,20 +25,22 @@ def reproduce(
 ) -> Path:
     """Compute the paper's tables and figures, exact solutions and effectivity indices again, like ``percute reproduce``.
 
+    Figures need matplotlib (the extra ``plot``).
+
     Parameters
     ----------
     folder : str or path
         The folder for the page, the figures and the numbers; it is made unless it is there.
-    parts : iterable of str, optional
-        Names of the parts, such as ``["table1"]``; all of them by default. ``percute reproduce --list`` prints them.
+    studies : iterable of str, optional
+        Names of the studies, such as ``["table1"]``; all of them by default. ``percute reproduce --list`` prints them.
     small : bool, default: False
         Whether only some rows of each table are computed, in seconds instead of minutes; those rows are the same.
     overwrite : bool, default: False
         Whether files in a folder that is not empty are replaced.
     threads : int, optional
-        As for `estimate`.
+        How many runs are computed at once, at most 1024; one for each core by default. No number depends on it.
     progress : bool or callable, optional
-        As for `simulate`; the stage is the name of the part, and counted in thousandths.
+        As for `simulate`; the stage is the name of the study, and runs are counted.
 
     Returns
     -------
@@ -49,18 +50,24 @@ def reproduce(
     Raises
     ------
     InputError
-        There is no part of a name.
+        There is no study of a name.
+    PercuteError
+        There is no matplotlib.
     ExistingFileError, StorageError
         The folder is not empty, or cannot be written.
     KeyboardInterrupt
-        The parts that were done are in the folder, with a page of their own.
+        The finished studies are in the folder, with a page of their own.
     """
-    name = file_name("folder", folder)
-    if isinstance(parts, str) or not (parts is None or isinstance(parts, Iterable)):
-        raise wrong("parts", parts, 'names of parts, such as ["table1"], or None for all')
-    names = [] if parts is None else [text(f"parts[{i}]", part) for i, part in enumerate(parts)]
-    if parts is not None and not names:
-        raise wrong("parts", parts, 'names of parts, such as ["table1"], or None for all')
+    from percute.verification.parallel import Resolution
+    from percute.verification.studies import chosen, run
+
+    place = Path(os.path.abspath(file_name("folder", folder)))
+    allowed = 'names of studies, such as ["table1"], or None for all'
+    if isinstance(studies, str) or not (studies is None or isinstance(studies, Iterable)):
+        raise wrong("studies", studies, allowed)
+    names = [] if studies is None else [text(f"studies[{i}]", study) for i, study in enumerate(studies)]
+    if studies is not None and not names:
+        raise wrong("studies", studies, allowed)
     few, replace, (threads, _) = flag("small", small), flag("overwrite", overwrite), pace(threads, None)
     with shown(progress) as tell:
-        return _percute.reproduce(os.path.abspath(name), names, few, replace, threads, tell)
+        return run(place, chosen(names), Resolution(few, threads, tell=tell), replace)

@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, UnknownName};
 use percute_workflow::case::Instants;
 use percute_workflow::message::hint;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -34,7 +35,7 @@ pub enum Command {
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
-    /// Compute the evidence again: the paper's tables and figures, exact solutions, effectivity indices
+    /// Compute the evidence again (with the Python package): the paper's tables and figures, exact solutions, effectivity indices
     Reproduce(ReproduceArguments),
 }
 
@@ -141,27 +142,11 @@ pub struct RecoverArguments {
 
 /// Arguments of `percute reproduce`.
 #[derive(Clone, Debug, Args)]
+#[command(disable_help_flag = true)]
 pub struct ReproduceArguments {
-    /// Names of the parts, as printed by --list [default: all]
-    pub parts: Vec<String>,
-    /// The folder for page, figures and numbers
-    #[arg(long, value_name = "FOLDER", default_value = "percute-evidence")]
-    pub output: PathBuf,
-    /// Print the names of the parts and end
-    #[arg(long)]
-    pub list: bool,
-    /// Compute a few rows of each part only, in seconds; the numbers are the same
-    #[arg(long)]
-    pub small: bool,
-    /// Replace existing files
-    #[arg(long, visible_alias = "overwrite")]
-    pub force: bool,
-    /// Number of threads [default: one for each core]; the result does not depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    pub threads: Option<usize>,
-    /// No progress on standard error
-    #[arg(long)]
-    pub quiet: bool,
+    /// Its arguments, which the Python package reads
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub all: Vec<OsString>,
 }
 
 /// What an estimate file holds.

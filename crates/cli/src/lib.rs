@@ -11,7 +11,6 @@ mod exit;
 pub mod picture;
 mod process;
 mod progress;
-pub mod reproduce;
 
 pub use command::{Console, command_line};
 pub use exit::{BAD_INPUT, DONE, FAILED, INTERRUPTED};

@@ -13,18 +13,9 @@ pub(crate) struct Watch<'a> {
 impl<'a> Watch<'a> {
     /// Watches, with a bar on standard error if `visible`.
     pub(crate) fn new(visible: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
-        Self::styled(visible, interrupted, "{msg} {bar:32} step {pos} of {len}, {eta} left")
-    }
-
-    /// Watches stages that are counted in fractions instead of steps.
-    pub(crate) fn parts(visible: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
-        Self::styled(visible, interrupted, "{msg} {bar:32} {percent} %, {eta} left")
-    }
-
-    fn styled(visible: bool, interrupted: &'a dyn Fn() -> bool, template: &str) -> Self {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template(template) {
+        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:32} step {pos} of {len}, {eta} left") {
             bar.set_style(style);
         }
         Self { bar, interrupted }

@@ -1,6 +1,5 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
-use percute::reproduce::ReproduceError;
 use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
@@ -192,18 +191,6 @@ pub(crate) fn output(py: Python<'_>, error: &Failure) -> PyErr {
         }
         Failure::Unwritable { .. } => exception(py, "StorageError", &error.to_string()),
         other => input(py, &other.to_string()),
-    }
-}
-
-/// The evidence.
-pub(crate) fn reproduce(py: Python<'_>, error: &ReproduceError) -> PyErr {
-    match error {
-        ReproduceError::UnknownPart { .. } => input(py, &format!("`parts`: {error}")),
-        ReproduceError::NotEmpty { .. } => {
-            exception(py, "ExistingFileError", &format!("`folder`: {error} with overwrite=True"))
-        }
-        ReproduceError::Unwritable { .. } => exception(py, "StorageError", &format!("`folder`: {error}")),
-        other => percute_error(py, &other.to_string()),
     }
 }
 

@@ -12,7 +12,6 @@ mod history;
 mod mesh;
 mod problem;
 mod reference;
-mod reproduce;
 mod restore;
 mod run;
 mod simulate;
@@ -43,8 +42,6 @@ mod _percute {
     use super::problem::ProblemData;
     #[pymodule_export]
     use super::reference::{errors_against_history, errors_against_simulation};
-    #[pymodule_export]
-    use super::reproduce::reproduce;
     #[pymodule_export]
     use super::simulate::{open_history, plausibility_warnings, simulate, simulate_case};
     #[pymodule_export]

@@ -143,7 +143,7 @@ def _draw(results: Sequence[tuple[Case, list[Found | None]]]) -> figures.Drawing
     return figures.lines(panels, x, y, log="xy", columns=2, band=(0.9, 1.5), xticks=(1, 2, 4), yticks=ticks)
 
 
-def _sliding_block() -> tuple[pc.Problem, dict[str, float]]:
+def _sliding_block() -> tuple[pc.Problem, dict[str, Any]]:
     """Give the block that slides down a plane tilted by 30°, and its instants; its weight presses it at the start."""
     width, height, young, density, gravity = 0.4, 0.2, 2e7, 1000.0, 9.81
     along, across = density * gravity * math.sin(math.pi / 6), density * gravity * math.cos(math.pi / 6)

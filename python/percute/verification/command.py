@@ -38,6 +38,11 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _said(error: PercuteError) -> str:
+    """Give the message of an error in the words of the command."""
+    return str(error).replace("`folder`: ", "--output: ").replace("`studies`: ", "").replace("overwrite=True", "--force")
+
+
 def main(arguments: Sequence[str]) -> int:
     """Run the command with these arguments, without its name, and return its exit code."""
     given = _parser().parse_args(arguments)
@@ -60,10 +65,10 @@ def main(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         code = INTERRUPTED
     except ExistingFileError as error:
-        print(f"error: --output: {error} with --force", file=sys.stderr)
+        print(f"error: {_said(error)}", file=sys.stderr)
         return BAD_INPUT
     except PercuteError as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {_said(error)}", file=sys.stderr)
         return BAD_INPUT if isinstance(error, InputError) and not done else FAILED
     if not done:
         print("interrupted: no study is done", file=sys.stderr)

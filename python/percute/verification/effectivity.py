@@ -59,9 +59,8 @@ def compute(section: Section, resolution: Resolution) -> None:
     section.add(_references(results), _runs(results))
 
 
-def _on_mesh(values: Callable[[Found], tuple[float, float] | None], found: Sequence[Found | None]) -> list[float | None]:
+def _on_mesh(pairs: Sequence[tuple[float, float] | None]) -> list[float | None]:
     """Give both measures on each mesh."""
-    pairs = [None if each is None else values(each) for each in found]
     return [None if pair is None else pair[m] for m in range(2) for pair in pairs]
 
 
@@ -78,7 +77,7 @@ def _effectivities(results: Iterable[Result]) -> Table:
     table = Table("effectivity", caption, columns, on_page=False)
     for case, found in results:
         for r, name in enumerate(NAMES):
-            table.add(case.kind, case.name, name, *_on_mesh(lambda each, r=r: each.effectivity(r), found))
+            table.add(case.kind, case.name, name, *_on_mesh([None if each is None else each.effectivity(r) for each in found]))
     return table
 
 
@@ -160,7 +159,7 @@ def _references(results: Iterable[Result]) -> Table:
     for case, found in results:
         coarsest = next(each.elements >> (2 * mesh) for mesh, each in enumerate(found) if each is not None)
         for k, level in enumerate(case.references):
-            table.add(case.name, coarsest << (2 * level), *_on_mesh(lambda each, k=k: each.exact[k], found))
+            table.add(case.name, coarsest << (2 * level), *_on_mesh([None if each is None else each.exact[k] for each in found]))
     return table
 
 

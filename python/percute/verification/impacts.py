@@ -156,8 +156,8 @@ class Case:
         for refinements in self.references:
             fine = self.problem(refinements)
             errors = pc.true_errors(histories, fine, **_steps_past(max(ends), STEP, fine), progress=stop)
-            for each, error in zip(there, errors, strict=True):
-                each.exact.append((error.sup, error.mean))
+            for each, true in zip(there, errors, strict=True):
+                each.exact.append((true.sup, true.mean))
         return found + [None] * (MESHES - self.meshes)
 
     def finest(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> Found:
@@ -165,7 +165,7 @@ class Case:
         return [found for found in self.run(choices, stop) if found is not None][-1]
 
 
-def _steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, float]:
+def _steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, Any]:
     """Give steps of exactly a part of Δt_c that reach an instant."""
     step = ratio * problem.critical_time_step
     return {"end": math.ceil(reach / step) * step, "step": step}

@@ -222,7 +222,8 @@ def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, 
     """Give each section with its items as text, and its tables that are left to files; figures and tables are numbered."""
     tables = drawings = 0
     for section in sections:
-        pieces, left = [], []
+        pieces: list[str] = []
+        left: list[str] = []
         for item in section.items:
             if isinstance(item, Table):
                 tables += 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import percute as pc
@@ -74,7 +74,7 @@ def add(section: Section, resolution: Resolution) -> None:
     )
 
 
-def _summary(table: Table, subjects: list[Subject]) -> Table:
+def _summary(table: Table, subjects: Sequence[Subject]) -> Table:
     columns = [Column("body"), Column("contact force"), *(Column(end, digits=3) for end in ENDS)]
     summary = Table("effectivity-steps-range", f"The range of the effectivity index over Δt/Δt_c from {RATIOS[-1]} to {RATIOS[0]}.", columns)
     for subject in subjects:
@@ -84,7 +84,7 @@ def _summary(table: Table, subjects: list[Subject]) -> Table:
     return summary
 
 
-def _draw(table: Table, subjects: list[Subject]) -> figures.Drawing:
+def _draw(table: Table, subjects: Sequence[Subject]) -> figures.Drawing:
     def curve(subject: Subject, k: int, attempt: str, measure: str) -> figures.Curve:
         of = {"body": _name(subject), "contact force": attempt}
         values, dashed = table.where(f"highest, {measure}", of), measure == "mean"

@@ -56,7 +56,7 @@ def chosen(names: Sequence[str]) -> list[Study]:
         if name not in known:
             close = get_close_matches(name, known, 1)
             hint = f"; did you mean `{close[0]}`?" if close else ""
-            raise InputError(f'there is no study "{name}"; the studies are {", ".join(known)}{hint}')
+            raise InputError(f'`studies`: there is no study "{name}"; the studies are {", ".join(known)}{hint}')
     return [study for study in STUDIES if not names or study.key in names]
 
 
@@ -64,13 +64,13 @@ def prepare(folder: Path, overwrite: bool) -> None:
     """Make the folder, or see that it may be used."""
     for place in (folder, folder / "figures", folder / "tables"):
         if place.exists() and not place.is_dir():
-            raise StorageError(f"cannot write {place}: it is not a folder")
+            raise StorageError(f"`folder`: cannot write {place}: it is not a folder")
     if not folder.parent.is_dir():
-        raise StorageError(f"cannot write {folder}: there is no folder {folder.parent}; create it first, or give another name")
+        raise StorageError(f"`folder`: cannot write {folder}: there is no folder {folder.parent}; create it first, or give another name")
     try:
         folder.mkdir(exist_ok=True)
         if any(folder.iterdir()) and not overwrite:
-            raise ExistingFileError(f"the folder {folder} is not empty; give another name, or allow its files to be replaced")
+            raise ExistingFileError(f"`folder`: the folder {folder} is not empty; give another name, or overwrite=True")
         for name in PAGES:
             kept = (folder / name).exists()
             (folder / name).open("a").close()

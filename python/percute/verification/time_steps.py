@@ -104,7 +104,7 @@ def _sweep(section: Section, resolution: Resolution) -> None:
 
 def _draw_over_time(table: Table, drawn: Sequence[float]) -> figures.Drawing:
     def curve(name: str, k: int, ratio: float) -> figures.Curve:
-        of = {"contact force": name, "Δt/Δt_c": ratio}
+        of: dict[str, str | float] = {"contact force": name, "Δt/Δt_c": ratio}
         colour = figures.ordered(1.0 - k / (len(DRAWN) - 1))
         return figures.Curve(f"Δt/Δt_c = {ratio:g}", table.where("t − t_impact", of), table.where("√η", of), colour)
 

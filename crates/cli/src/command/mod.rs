@@ -48,7 +48,7 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
-            Command::Reproduce(arguments) => reproduce::command(&arguments, console),
+            Command::Reproduce(_) => Ok(reproduce::command(console)),
         },
         Err(error) => return clap_says(&error, console),
     };

@@ -13,5 +13,4 @@ mod interrupt;
 mod mesh_file;
 mod mistakes;
 mod picture;
-mod reproduce;
 mod run;

@@ -1,0 +1,88 @@
+"""The cases of the studies, and true errors against finer simulations."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import percute as pc
+import pytest
+from conftest import bar, block
+from percute.verification.impacts import MESHES, READINGS, Case, cases
+
+
+def area(mesh: pc.Mesh) -> float:
+    a, b, c = (mesh.points[mesh.cells[:, i]] for i in range(3))
+    return float(0.5 * np.sum((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]))
+
+
+def test_bodies_have_their_areas() -> None:
+    """Each rounded corner lacks (1 − π/4) r² and, as its arc is four chords of 22.5°, r²(π/4 − 2 sin 22.5°) more."""
+    corner = 0.015**2 * (1.0 - 2.0 * math.sin(math.radians(22.5)))
+    disc = 12.0 * 0.025**2 * math.sin(math.radians(15.0))
+    exact = {"block": 0.002, "unstructured block": 0.002, "rounded block": 0.002 - 2.0 * corner, "disc": disc}
+    for body, wanted in exact.items():
+        for refinements in (0, 2):
+            # The files hold 16 digits; rounding of a sum of a few thousand terms.
+            assert area(Case(body).mesh(refinements)) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_names_are_unique_and_the_small_cases_among_all() -> None:
+    full = {case.name: case for case in cases()}
+    assert len(full) == len(cases())
+    for small in cases(small=True):
+        case = full[small.name]
+        assert case.references[: len(small.references)] == small.references and case.meshes >= small.meshes
+        assert replace(small, meshes=case.meshes, references=case.references) == case
+
+
+def test_the_known_case_has_the_known_effectivities() -> None:
+    """e_sup/e_ref and e_mean/e_ref of a computation independent of this program, against 160×128 cells."""
+    found = cases(small=True)[0].run(READINGS)
+    assert found[2:] == [None] * (MESHES - 2)
+    known = {1: [(1.50, 1.51), (1.26, 1.26)], 2: [(1.80, 1.83), (1.78, 1.65)]}
+    for reading, meshes in known.items():
+        for each, wanted in zip(found, meshes, strict=False):
+            assert each is not None
+            # Rounded to 0.01; critical steps of both programs, good to 1e-3, move the instants of impact.
+            assert each.effectivity(reading) == pytest.approx(wanted, rel=0.03)
+
+
+def test_refined_meshes_are_nested() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=2, ny=2)
+    fine = mesh.refined(2)
+    assert len(fine.cells) == 16 * len(mesh.cells) and np.array_equal(fine.points[: len(mesh.points)], mesh.points)
+    assert area(fine) == pytest.approx(area(mesh), rel=1e-14)
+    line = pc.Mesh.bar(1.0, elements=3).refined()
+    assert len(line.cells) == 6 and sorted(line.points[:, 0]) == pytest.approx([i / 6 for i in range(7)])
+    assert len(mesh.refined(0).cells) == len(mesh.cells)
+    with pytest.raises(pc.InputError, match="`times`"):
+        mesh.refined(-1)
+
+
+def test_errors_against_finer_histories(block_history: pc.History) -> None:
+    fine = block(16, 12)
+    reference = pc.simulate(fine, end=14e-6, courant=0.9)
+    error = block_history.error(reference)
+    assert len(error.time) == len(block_history) and error.sup == pytest.approx(math.sqrt(max(error.total)))
+    assert np.allclose(error.total, error.kinetic + error.elastic, rtol=1e-14)
+    (streamed,) = pc.true_errors([block_history], fine, end=14e-6, courant=0.9)
+    assert (streamed.sup, streamed.mean) == (error.sup, error.mean)
+    estimate = pc.estimate(block_history)
+    index = estimate.effectivity(error)
+    assert (index.sup, index.mean) == (estimate.sup / error.sup, estimate.mean / error.mean)
+    assert block_history.error(block_history).sup < 1e-6 * error.sup
+
+
+def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_history: pc.History) -> None:
+    with pytest.raises(pc.InputError, match="reference ends at"):
+        block_history.error(pc.simulate(block(16, 12), end=5e-6, courant=0.9))
+    with pytest.raises(pc.InputError, match="does not lie in one element"):
+        block_history.error(pc.simulate(block(9, 7), end=13e-6, courant=0.9))
+    with pytest.raises(pc.InputError, match="of a bar"):
+        block_history.error(bar_history)
+    with pytest.raises(pc.InputError, match="`reference` is"):
+        block_history.error(3)  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match="`error` is"):
+        pc.estimate(bar_history).effectivity(1.0)  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match="`histories`"):
+        pc.true_errors(bar_history, bar(80), end=50e-6, courant=0.9)  # type: ignore[arg-type]
