@@ -1,4 +1,4 @@
-//! The impact of an elastic body on rigid planes with Coulomb friction, and its explicit
+//! The impact of an elastic body on rigid obstacles with Coulomb friction, and its explicit
 //! finite-element solution.
 //!
 //! A [`problem::Problem`] is stated with a builder, which checks it; [`dynamics::simulate`] runs
@@ -8,7 +8,7 @@
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur
 //! en relation de comportement pour les problèmes d'impact*. All units are SI.
 
-pub mod contact_results;
+pub mod contact;
 pub mod dynamics;
 pub mod history;
 pub mod ids;
@@ -16,7 +16,6 @@ pub mod load;
 pub mod material;
 pub mod mesh;
 pub mod observer;
-pub mod obstacle;
 pub mod problem;
 mod ratio;
 pub mod simplex;

@@ -5,12 +5,12 @@
 #![allow(missing_docs, clippy::expect_used)]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Dynamics, critical_time_step, simulate};
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimator, Options, Reconstruction};
@@ -29,7 +29,7 @@ fn block(nx: usize, ny: usize, gap: f64) -> TriangleProblem {
     Problem::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).expect("a valid material"))
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
-        .obstacle(Plane::new([0.0, -gap], [0.0, 1.0], 0.2, None).expect("a valid plane"))
+        .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.2, None).expect("a valid plane"))
         .build()
         .expect("a valid problem")
 }

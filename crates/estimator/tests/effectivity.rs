@@ -6,11 +6,11 @@
 mod common;
 
 use common::{MESHES, assert_close, block};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -127,7 +127,7 @@ impl Impact {
         };
         let (sin, cos) = self.tilt.to_radians().sin_cos();
         let lowest = mesh.points().iter().map(|p| p[0] * sin + p[1] * cos).fold(f64::INFINITY, f64::min) - self.gap;
-        let plane = Plane::new([sin * lowest, cos * lowest], [sin, cos], self.friction, None).unwrap();
+        let plane = Obstacle::plane([sin * lowest, cos * lowest], [sin, cos], self.friction, None).unwrap();
         let law = if self.plane_strain { Elastic::plane_strain } else { Elastic::plane_stress };
         Problem::builder(mesh)
             .material(law(70e9, 0.3, 2700.0, 1.0).unwrap())

@@ -6,7 +6,7 @@ use crate::restore::restore;
 use crate::run::{Run, Stoppable};
 use crate::{bridge, contact, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
-use percute_core::contact_results::{ContactRecorder, ContactResults};
+use percute_core::contact::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;

@@ -4,11 +4,11 @@ use crate::any::AnyProblem;
 use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Traction};
 use percute_core::material::{Elastic, Hypothesis};
 use percute_core::mesh::Mesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, InputError, Problem};
 use percute_core::simplex::ByDimension;
 use percute_core::{each_dimension, map_dimension};
@@ -32,7 +32,7 @@ type Field<'py> = Option<PyReadonlyArray2<'py, f64>>;
 struct Stated<const D: usize> {
     groups: Vec<Option<String>>,
     materials: Vec<Elastic>,
-    obstacles: Vec<Plane<D>>,
+    obstacles: Vec<Obstacle<D>>,
     supports: Vec<Support<D>>,
     tractions: Vec<Traction<D>>,
     body_forces: Vec<BodyForce<D>>,

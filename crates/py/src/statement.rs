@@ -1,9 +1,9 @@
 //! From the value classes of `percute.statement` to the statement of a problem, and back.
 
 use crate::errors;
+use percute_core::contact::{Obstacle, ObstacleError};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::{Elastic, Hypothesis, MaterialError};
-use percute_core::obstacle::{Plane, PlaneError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -74,13 +74,13 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
 }
 
 /// One plane.
-pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Plane<D>> {
+pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Obstacle<D>> {
     let py = given.py();
     let point = vector(py, &format!("{name}.point"), &attribute::<Vec<f64>>(given, "point")?)?;
     let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?)?;
-    let made = Plane::new(point, normal, attribute(given, "friction")?, attribute(given, "group")?);
+    let made = Obstacle::plane(point, normal, attribute(given, "friction")?, attribute(given, "group")?);
     // The message begins with the name of the value.
-    made.map_err(|error: PlaneError| errors::input(py, &format!("`{name}`: {error}")))
+    made.map_err(|error: ObstacleError| errors::input(py, &format!("`{name}`: {error}")))
 }
 
 /// One support: `velocity` has a column for each component, in their order.
@@ -178,11 +178,14 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
 }
 
 /// What the value class of a plane takes.
-pub(crate) fn plane_arguments<'py, const D: usize>(py: Python<'py>, plane: &Plane<D>) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn plane_arguments<'py, const D: usize>(
+    py: Python<'py>,
+    plane: &Obstacle<D>,
+) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
-    arguments.set_item("point", tuple(py, plane.point())?)?;
-    arguments.set_item("normal", tuple(py, plane.direction())?)?;
-    arguments.set_item("friction", plane.friction())?;
+    arguments.set_item("point", tuple(py, plane.shape().point())?)?;
+    arguments.set_item("normal", tuple(py, plane.shape().direction())?)?;
+    arguments.set_item("friction", plane.law().friction())?;
     arguments.set_item("group", plane.group())?;
     Ok(arguments)
 }

@@ -1,7 +1,7 @@
 //! Why something could not be done.
 
 use crate::case::{CaseError, NotRepresentable};
-use percute_core::contact_results::ContactMemoryError;
+use percute_core::contact::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
 use percute_estimator::{EstimateError, RunError};

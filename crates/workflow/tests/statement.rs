@@ -3,12 +3,12 @@
 // A test that cannot go on fails.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use percute_core::contact::Obstacle;
 use percute_core::each_dimension;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
@@ -134,7 +134,7 @@ fn anything<const D: usize, const N: usize>(
     let loaded = names.iter().skip(if support.is_some() { 2 } else { 1 });
     let (length, friction) = (size(random), if D == 1 { 0.0 } else { random.between(0.0, 2.0) });
     // So far away that no displacement of half a metre matters.
-    let plane = Plane::new(down.map(|x| 10.0 * x), down.map(|x| -length * x), friction, Some(names[0].clone()));
+    let plane = Obstacle::plane(down.map(|x| 10.0 * x), down.map(|x| -length * x), friction, Some(names[0].clone()));
     let mut builder = Problem::builder(mesh.clone())
         .obstacle(plane.unwrap())
         .initial_velocity(Initial::Nodal(velocity))
@@ -219,7 +219,7 @@ fn zeros_keep_their_sign() {
     let problem = Problem::builder(TriangleMesh::rectangle(1.0, 1.0, 2, 1).unwrap())
         .material(Elastic::plane_stress(1.0, -0.0, 1.0, 1.0).unwrap())
         .support(support)
-        .obstacle(Plane::new([-0.0, -1.0], [-0.0, 3.0], -0.0, None).unwrap());
+        .obstacle(Obstacle::plane([-0.0, -1.0], [-0.0, 3.0], -0.0, None).unwrap());
     same(&problem.build().unwrap(), &Options::default());
 }
 

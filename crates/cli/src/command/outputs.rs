@@ -2,7 +2,7 @@
 
 use super::Console;
 use crate::picture::check_path;
-use percute_core::contact_results::ContactRecorder;
+use percute_core::contact::ContactRecorder;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;

@@ -5,7 +5,7 @@ use super::outputs::taken;
 use crate::args::{PrintArguments, WorkArguments};
 use crate::exit::{DONE, INTERRUPTED};
 use crate::picture::{self, Drawn};
-use percute_core::contact_results::ContactResults;
+use percute_core::contact::ContactResults;
 use percute_core::problem::Problem;
 use percute_estimator::{Estimate, Options};
 use percute_io::estimate_file::EstimateContents;

@@ -60,7 +60,7 @@ fn draw_curve(
     let steps: Vec<(f64, f64)> = pieces.iter().flat_map(|&(a, b, v)| [(a, v), (b, v)]).collect();
     let curve = LineSeries::new(steps, line.stroke_width(2 * UNITS as u32));
     chart.draw_series(curve).map_err(DrawError::from_library)?;
-    let planes = problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.normal()[0]);
+    let planes = problem.obstacles().iter().map(|plane| -plane.gap(&[0.0]) * plane.flat_frame().normal()[0]);
     let planes = planes.filter(|x| shown.contains(x));
     let lines = planes.map(|x| PathElement::new(vec![(x, 0.0), (x, top)], INK.stroke_width(2 * UNITS as u32)));
     chart.draw_series(lines).map_err(DrawError::from_library)?;

@@ -3,8 +3,8 @@
 use super::DrawError;
 use super::canvas::{AXIS_BELOW, AXIS_LEFT, Chart, HEAD, INK, MARGIN, UNITS, colour, draw_axes, largest, picture, px};
 use super::frame::Frame;
+use percute_core::contact::Obstacle;
 use percute_core::ids::ElementId;
-use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
 use percute_workflow::report::Report;
 use plotters::backend::SVGBackend;
@@ -82,9 +82,9 @@ fn draw_elements(
 }
 
 /// A plane as a line, hatched on the side where the body cannot go.
-fn draw_plane(chart: &mut Chart<'_, '_>, frame: &Frame, plane: &Plane<2>) -> Result<(), DrawError> {
+fn draw_plane(chart: &mut Chart<'_, '_>, frame: &Frame, plane: &Obstacle<2>) -> Result<(), DrawError> {
     let centre = [0, 1].map(|c| 0.5 * (frame.low[c] + frame.high[c]));
-    let (normal, gap) = (plane.normal(), plane.gap(&centre));
+    let (normal, gap) = (*plane.flat_frame().normal(), plane.gap(&centre));
     let foot = [0, 1].map(|c| centre[c] - gap * normal[c]);
     let along = [normal[1], -normal[0]];
     let Some((from, to)) = frame.clip(foot, along) else { return Ok(()) };

@@ -1,8 +1,9 @@
 //! Balance of energy and impulse.
 
 use super::Dynamics;
+use crate::contact::{dissipation, dot};
 use crate::ids::NodeId;
-use crate::obstacle::dot;
+
 use crate::problem::PrescribedComponent;
 use crate::ratio;
 
@@ -203,9 +204,9 @@ impl<const D: usize> BalanceKeeper<D> {
             |i| now.reaction[i],
             |i, mean, path| {
                 if !first {
-                    let plane = &problem.obstacles()[nodes[i].obstacle];
+                    let frame = problem.surface().frame(i, &now.displacement[nodes[i].node.index()]);
                     b.work_of_contact += dot(&mean, &path);
-                    b.friction -= dot(&plane.split(&mean).1, &path);
+                    b.friction += dissipation(&frame, &mean, &path);
                 }
             },
         );

@@ -41,11 +41,11 @@ pub enum SimulationError {
     StartsTooNear {
         /// The node.
         node: usize,
-        /// Which plane, from 0.
+        /// Which obstacle, from 0.
         obstacle: usize,
         /// Its gap (m).
         gap: f64,
-        /// Its speed towards the plane (m/s).
+        /// Its speed towards the obstacle (m/s).
         speed: f64,
         /// The first step (s).
         step: f64,
@@ -82,7 +82,7 @@ pub struct Simulation {
 /// The observer is asked after each step; if it breaks, the run ends cleanly there.
 ///
 /// # Errors
-/// [`SimulationError`]: an unstable run, a start too near to a plane, a sink that fails.
+/// [`SimulationError`]: an unstable run, a start too near to an obstacle, a sink that fails.
 pub fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
@@ -167,15 +167,14 @@ fn refuse_a_start_too_near<const D: usize, const N: usize>(
         if contact.touching[at] || !contact.touching_next[at] {
             continue;
         }
-        let i = node.node.index();
-        let gap = problem.surface().gap(at, &problem.initial_displacement()[i], problem.obstacles());
-        let speed = -problem.obstacles()[node.obstacle].split(&problem.initial_velocity()[i]).0;
+        let (gap, normal) = problem.start_of_contact(at);
+        let speed = -normal;
         let smallest_gap = 0.25 * speed * step;
         if gap < smallest_gap {
             let largest_step = 4.0 * gap / speed;
             let obstacle = node.obstacle;
             return Err(SimulationError::StartsTooNear {
-                node: i,
+                node: node.node.index(),
                 obstacle,
                 gap,
                 speed,

@@ -1,9 +1,9 @@
-//! Contact reactions of one step (§5.3).
+//! Reactions and touching status along the steps.
 
 use super::Dynamics;
-use crate::obstacle::dot;
+use crate::contact::{Constraint, Prediction, solve, violated};
 
-/// What contact did at one step.
+/// Contact at one step.
 #[derive(Clone, Debug)]
 pub(super) struct Contact<const D: usize> {
     /// R_n on the nodes of the contact surface (N), global axes.
@@ -12,19 +12,21 @@ pub(super) struct Contact<const D: usize> {
     pub(super) touching: Vec<bool>,
     /// Touching status at t_{n+1}.
     pub(super) touching_next: Vec<bool>,
+    constraints: Vec<Constraint<D>>,
 }
 
 impl<const D: usize> Contact<D> {
     pub(super) fn new(count: usize) -> Self {
-        Self { reaction: vec![[0.0; D]; count], touching: vec![false; count], touching_next: vec![false; count] }
+        Self {
+            reaction: vec![[0.0; D]; count],
+            touching: vec![false; count],
+            touching_next: vec![false; count],
+            constraints: Vec::new(),
+        }
     }
 
-    /// Reactions at t_n that keep candidate nodes out of the planes at t_{n+1}; they are added to
+    /// Reactions at t_n that keep candidate nodes out of the obstacles at t_{n+1}; they are added to
     /// `force`. `velocity` is v_{n−½} (v₀ at the start).
-    ///
-    /// With a lumped mass no node's reaction moves another node, so that the fixed point of
-    /// Tresca problems is reached in one pass. Coupled nodes (a consistent mass, deformable
-    /// obstacles) would repeat this pass until the tangential forces settle.
     pub(super) fn react<const N: usize>(
         &mut self,
         dynamics: &Dynamics<'_, D, N>,
@@ -34,48 +36,34 @@ impl<const D: usize> Contact<D> {
         force: &mut [[f64; D]],
     ) {
         let problem = dynamics.problem;
-        let (dt, h) = (dynamics.times.step(n), dynamics.times.velocity_step(n));
-        let tolerance = problem.contact_tolerance();
+        let steps = [dynamics.times.step(n), dynamics.times.velocity_step(n)];
+        let prediction = Prediction {
+            displacement,
+            velocity,
+            force,
+            mass: problem.mass(),
+            inverse_mass: &dynamics.inverse_mass,
+            steps,
+            tolerance: problem.contact_tolerance(),
+        };
+        violated(problem.surface(), &prediction, &mut self.constraints);
         std::mem::swap(&mut self.touching, &mut self.touching_next);
-        for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            let node = contact.node.index();
-            self.reaction[at] = [0.0; D];
-            self.touching_next[at] = false;
-            if !contact.free {
-                continue;
-            }
-            let plane = &problem.obstacles()[contact.obstacle];
-            let (mass, inverse_mass) = (problem.mass()[node], dynamics.inverse_mass[node]);
-            let mut predicted = velocity[node];
-            (0..D).for_each(|c| predicted[c] += h * inverse_mass * force[node][c]);
-            let (normal, tangential) = plane.split(&predicted);
-            let gap = problem.surface().gap(at, &displacement[node], problem.obstacles()) + dt * normal;
-            if gap >= -tolerance {
-                continue;
-            }
-            // Normal: end exactly on the plane. Tangential: stop, as far as Coulomb's cone allows.
-            let normal_force = -mass * gap / (dt * h);
-            let stop = mass / h;
-            let wanted = stop * dot(&tangential, &tangential).sqrt();
-            // Where the support takes the tangential reaction, there is no friction.
-            let limit = if contact.guided { 0.0 } else { plane.friction() * normal_force };
-            let scale = if wanted > limit { stop * limit / wanted } else { stop };
-            for c in 0..D {
-                self.reaction[at][c] = normal_force * plane.normal()[c] - scale * tangential[c];
-                force[node][c] += self.reaction[at][c];
-            }
-            self.touching_next[at] = true;
-        }
+        self.touching_next.fill(false);
+        self.reaction.fill([0.0; D]);
+        solve(&self.constraints, steps, |constraint, reaction| {
+            let node = problem.surface().nodes()[constraint.at].node.index();
+            (0..D).for_each(|c| force[node][c] += reaction[c]);
+            self.reaction[constraint.at] = reaction;
+            self.touching_next[constraint.at] = true;
+        });
     }
 
-    /// Touching at t_0: a node on its plane, without normal velocity, whose multiplier at t_0 is
+    /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is
     /// active.
     pub(super) fn settle_start<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>) {
         let problem = dynamics.problem;
-        for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            let node = contact.node.index();
-            let gap = problem.surface().gap(at, &problem.initial_displacement()[node], problem.obstacles());
-            let (normal, _) = problem.obstacles()[contact.obstacle].split(&problem.initial_velocity()[node]);
+        for at in 0..self.touching.len() {
+            let (gap, normal) = problem.start_of_contact(at);
             self.touching[at] = self.touching_next[at]
                 && gap <= problem.contact_tolerance()
                 && normal.abs() <= problem.speed_tolerance();

@@ -2,12 +2,12 @@
 
 use super::boundary::{self, Supports};
 use super::error::axis;
-use super::{Cause, ContactSurface, InputError, Problem};
+use super::{Cause, InputError, Problem, candidates};
+use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId};
 use crate::load::{BodyForce, Support, Traction};
 use crate::material::Elastic;
 use crate::mesh::Mesh;
-use crate::obstacle::Plane;
 
 /// An initial field.
 #[derive(Clone, Debug)]
@@ -45,7 +45,7 @@ pub struct Builder<const D: usize, const N: usize> {
     stated: Statement<D>,
     displacement: Initial<D>,
     velocity: Initial<D>,
-    obstacles: Vec<Plane<D>>,
+    obstacles: Vec<Obstacle<D>>,
 }
 
 impl<const D: usize, const N: usize> Builder<D, N> {
@@ -108,10 +108,10 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self
     }
 
-    /// Adds a plane.
+    /// Adds an obstacle.
     #[must_use]
-    pub fn obstacle(mut self, plane: Plane<D>) -> Self {
-        self.obstacles.push(plane);
+    pub fn obstacle(mut self, obstacle: Obstacle<D>) -> Self {
+        self.obstacles.push(obstacle);
         self
     }
 
@@ -161,10 +161,10 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let mut fixed = vec![[false; D]; mesh.node_count()];
         prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
         let mut surface = ContactSurface::default();
-        for (index, plane) in self.obstacles.iter().enumerate() {
-            in_front(mesh, plane, &initial_displacement)
+        for (index, obstacle) in self.obstacles.into_iter().enumerate() {
+            in_front(mesh, &obstacle, &initial_displacement)
                 .map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
-            surface.add(mesh, index, plane, |f| held[f.index()], |node| fixed[node.index()], area)?;
+            candidates::add(&mut surface, mesh, obstacle, |f| held[f.index()], |node| fixed[node.index()], area)?;
         }
 
         let problem = Problem {
@@ -180,7 +180,6 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             traction_tables: self.stated.tractions.iter().map(|t| t.value.clone()).collect(),
             body_loads,
             element_body_loads,
-            obstacles: self.obstacles,
             surface,
             stated: self.stated,
             mesh: self.mesh,
@@ -234,21 +233,21 @@ fn waves(materials: &[Elastic]) -> Result<(), InputError> {
     Ok(())
 }
 
-/// A plane that has the whole body behind it has its normal reversed.
+/// An obstacle that has the whole body behind it has its normal reversed.
 fn in_front<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    plane: &Plane<D>,
+    obstacle: &Obstacle<D>,
     displacement: &[[f64; D]],
 ) -> Result<(), Cause> {
-    let gap = |(x, u): (&[f64; D], &[f64; D])| plane.gap(&std::array::from_fn(|c| x[c] + u[c]));
+    let gap = |(x, u): (&[f64; D], &[f64; D])| obstacle.gap(&std::array::from_fn(|c| x[c] + u[c]));
     let gaps: Vec<f64> = mesh.points().iter().zip(displacement).map(gap).collect();
     let node = (0..gaps.len()).fold(0, |deepest, i| if gaps[i] < gaps[deepest] { i } else { deepest });
-    // As for contact: rounding must not put a body that rests on the plane behind it.
+    // As for contact: rounding must not put a body that rests on the obstacle behind it.
     let tolerance = 1e-12 * mesh.size();
     if gaps.iter().any(|gap| *gap > tolerance) || gaps[node] >= -tolerance {
         return Ok(());
     }
-    let reversed = plane.direction().iter().map(|n| -n).collect();
+    let reversed = obstacle.shape().direction().iter().map(|n| -n).collect();
     Err(Cause::Behind { node, depth: -gaps[node], reversed })
 }
 
@@ -286,25 +285,22 @@ fn check_start_of_supports<const D: usize, const N: usize>(problem: &Problem<D, 
     Ok(())
 }
 
-/// At t = 0 no candidate node may lie behind its plane, nor on it with an inward velocity.
+/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity.
 fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
     let tolerance = problem.contact_tolerance();
     let nodes = problem.surface.nodes();
-    let gap =
-        |at: usize| problem.surface.gap(at, &problem.initial_displacement[nodes[at].node.index()], &problem.obstacles);
+    let gap = |at: usize| problem.start_of_contact(at).0;
     let deeper = |a: usize, b: usize| if gap(b) < gap(a) { b } else { a };
     if let Some(at) = (0..nodes.len()).reduce(deeper).filter(|&at| gap(at) < -tolerance) {
         let (obstacle, depth) = (nodes[at].obstacle, -gap(at));
-        let plane = &problem.obstacles[obstacle];
-        let clear = plane.point().iter().zip(plane.normal()).map(|(x, n)| x - depth * n).collect();
+        let clear = problem.obstacles()[obstacle].point_behind(depth).to_vec();
         let cause = Cause::Penetrates { node: nodes[at].node.index(), depth, clear };
         return Err(cause.at("obstacle", Some(obstacle), "point"));
     }
     for (at, contact) in nodes.iter().enumerate() {
-        let node = contact.node.index();
-        let (normal, _) = problem.obstacles[contact.obstacle].split(&problem.initial_velocity[node]);
-        if gap(at) <= tolerance && normal < -problem.speed_tolerance() && contact.free {
-            let cause = Cause::StrikesAtStart { node, gap: gap(at), speed: -normal };
+        let (gap, normal) = problem.start_of_contact(at);
+        if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
+            let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
             return Err(cause.at("obstacle", Some(contact.obstacle), "point"));
         }
     }

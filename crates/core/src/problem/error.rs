@@ -1,9 +1,9 @@
 //! What can be wrong with a problem, where it is, and what to do.
 
 use super::plausibility::short;
+use crate::contact::ObstacleError;
 use crate::load::TableError;
 use crate::material::MaterialError;
-use crate::obstacle::PlaneError;
 use crate::simplex::Shape;
 use std::fmt;
 use thiserror::Error;
@@ -49,9 +49,9 @@ pub enum Cause {
     /// A material out of range.
     #[error(transparent)]
     Material(#[from] MaterialError),
-    /// A plane that is none.
+    /// An obstacle that was refused.
     #[error(transparent)]
-    Plane(#[from] PlaneError),
+    Obstacle(#[from] ObstacleError),
     /// A table out of order.
     #[error(transparent)]
     Table(#[from] TableError),

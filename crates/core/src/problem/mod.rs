@@ -2,22 +2,21 @@
 
 mod boundary;
 mod builder;
+mod candidates;
 mod error;
 mod plausibility;
-mod surface;
 
 pub use builder::{Builder, Initial, Statement};
 pub(crate) use error::facet;
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub(crate) use plausibility::short;
 pub use plausibility::{PlausibilityWarning, plausibility_warnings};
-pub use surface::{ContactFacet, ContactNode, ContactSurface};
 
+use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::Elastic;
 use crate::mesh::Mesh;
-use crate::obstacle::Plane;
 
 /// One component of a node's motion that is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +49,7 @@ pub struct BodyLoad<const D: usize> {
     pub nodal_volume: Vec<(NodeId, f64)>,
 }
 
-/// An elastic body that may strike rigid planes: everything the simulation and the estimate need
-/// to know, checked.
+/// An elastic body that may strike rigid obstacles, with its supports and loads, checked.
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize, const N: usize> {
     mesh: Mesh<D, N>,
@@ -68,7 +66,6 @@ pub struct Problem<const D: usize, const N: usize> {
     traction_tables: Vec<Table<D>>,
     body_loads: Vec<BodyLoad<D>>,
     element_body_loads: Vec<Vec<u16>>,
-    obstacles: Vec<Plane<D>>,
     surface: ContactSurface<D>,
 }
 
@@ -198,26 +195,40 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         !self.facet_loads.is_empty() || !self.body_loads.is_empty()
     }
 
-    /// The planes.
+    /// The obstacles.
     #[must_use]
-    pub fn obstacles(&self) -> &[Plane<D>] {
-        &self.obstacles
+    pub fn obstacles(&self) -> &[Obstacle<D>] {
+        self.surface.obstacles()
     }
 
-    /// The part of the boundary that may touch a plane.
+    /// The part of the boundary that may touch an obstacle.
     #[must_use]
     pub fn surface(&self) -> &ContactSurface<D> {
         &self.surface
     }
 
-    /// The smallest gap at the start of the nodes that may touch a plane (m), eq. \[3\].
+    /// Gap (m), eq. \[3\], and normal velocity (m/s) of a node of the contact surface at the start.
+    #[must_use]
+    pub fn start_of_contact(&self, at: usize) -> (f64, f64) {
+        let node = self.surface.nodes()[at].node.index();
+        let displacement = &self.initial_displacement[node];
+        let normal = self.surface.frame(at, displacement).split(&self.initial_velocity[node]).0;
+        (self.surface.gap(at, displacement), normal)
+    }
+
+    /// The candidate node of an obstacle with the smallest gap at the start, as its position in the surface, and that
+    /// gap (m). None without candidates.
+    #[must_use]
+    pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
+        let nodes = self.surface.nodes().iter().enumerate();
+        let candidates = nodes.filter(|(_, c)| c.obstacle == obstacle && c.free);
+        candidates.map(|(at, _)| (at, self.start_of_contact(at).0)).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The smallest gap of the candidate nodes of an obstacle at the start (m), eq. \[3\].
     #[must_use]
     pub fn initial_gap(&self, obstacle: usize) -> f64 {
-        let candidates = self.surface.nodes().iter().enumerate().filter(|(_, c)| c.obstacle == obstacle && c.free);
-        let gap = |(at, c): (usize, &ContactNode)| {
-            self.surface.gap(at, &self.initial_displacement()[c.node.index()], self.obstacles())
-        };
-        candidates.map(gap).fold(f64::INFINITY, f64::min)
+        self.nearest(obstacle).map_or(f64::INFINITY, |(_, gap)| gap)
     }
 
     /// Volume of an element with section or thickness (m³).
@@ -234,14 +245,14 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     }
 
     /// Distances below this count as touching (m): 1e-12 of the body's size, so that landing
-    /// exactly on a plane does not hang on rounding.
+    /// exactly on an obstacle does not depend on rounding.
     #[must_use]
     pub fn contact_tolerance(&self) -> f64 {
         1e-12 * self.mesh.size()
     }
 
     /// Normal speeds below this count as zero at the start (m/s): 1e-12 of the largest speed, so that
-    /// sliding along a tilted plane does not hang on rounding.
+    /// sliding along a tilted plane does not depend on rounding.
     #[must_use]
     pub fn speed_tolerance(&self) -> f64 {
         1e-12 * self.initial_velocity.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()))

@@ -1,9 +1,9 @@
 //! Each [`Cause`] from a bad problem, at its place.
 
+use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, TriangleProblem};
 
 /// A unit square of two triangles, 0-1-2 below the diagonal and 0-2-3 above it, with its sides, an
@@ -42,8 +42,8 @@ fn traction(group: &str, value: [f64; 2]) -> Traction<2> {
     Traction { group: group.to_string(), value: Table::constant(value), profile: Profile::UNIFORM }
 }
 
-fn floor(height: f64, group: Option<&str>) -> Plane<2> {
-    Plane::new([0.0, height], [0.0, 2.0], 0.1, group.map(String::from)).unwrap()
+fn floor(height: f64, group: Option<&str>) -> Obstacle<2> {
+    Obstacle::plane([0.0, height], [0.0, 2.0], 0.1, group.map(String::from)).unwrap()
 }
 
 fn known() -> Vec<String> {
@@ -65,8 +65,8 @@ fn parts_that_were_refused_before() {
     let error = Cause::from(material.clone()).at("material", Some(0), "young");
     assert_eq!(error.to_string(), format!("material 1, `young`: {material}"));
     assert!(matches!(error.cause, Cause::Material(m) if m.name == "young" && m.value == -1.0));
-    let plane = Plane::new([0.0, 0.0], [0.0, 0.0], 0.0, None).unwrap_err();
-    assert!(matches!(Cause::from(plane.clone()), Cause::Plane(p) if p == plane));
+    let plane = Obstacle::plane([0.0, 0.0], [0.0, 0.0], 0.0, None).unwrap_err();
+    assert!(matches!(Cause::from(plane.clone()), Cause::Obstacle(p) if p == plane));
     let table = Table::new(vec![0.0, 0.0], vec![[1.0], [2.0]]).unwrap_err();
     assert!(matches!(Cause::from(table), Cause::Table(TableError::Order { index: 1, time }) if time == 0.0));
 }
@@ -210,7 +210,7 @@ fn planes_that_nothing_faces() {
 /// Bottom and left share node 0.
 #[test]
 fn nodes_between_two_planes() {
-    let wall = Plane::new([-1.0, 0.0], [1.0, 0.0], 0.0, None).unwrap();
+    let wall = Obstacle::plane([-1.0, 0.0], [1.0, 0.0], 0.0, None).unwrap();
     let corner = solid().obstacle(floor(-1.0, None)).obstacle(wall);
     assert_eq!(refused(corner), (place("obstacle", Some(1), "group"), Cause::TwoPlanes { node: 0, first: 1 }));
 }
@@ -226,7 +226,7 @@ fn starts_behind_or_into_the_plane() {
     let pushed = solid().obstacle(floor(-0.5, None)).initial_displacement(Initial::Uniform([0.0, -0.75]));
     assert_eq!(refused(pushed).1, Cause::Penetrates { node: 0, depth: 0.25, clear: vec![0.0, -0.75] });
     // All of it behind: the normal is the wrong way round. Where it rests on the plane it is not behind.
-    let reversed = |height| solid().obstacle(Plane::new([0.0, height], [0.0, -1.0], 0.0, None).unwrap());
+    let reversed = |height| solid().obstacle(Obstacle::plane([0.0, height], [0.0, -1.0], 0.0, None).unwrap());
     let behind = Cause::Behind { node: 2, depth: 1.5, reversed: vec![-0.0, 1.0] };
     assert_eq!(refused(reversed(-0.5)), (place("obstacle", Some(0), "normal"), behind));
     assert!(matches!(refused(reversed(0.0)).1, Cause::Behind { depth: 1.0, .. }));

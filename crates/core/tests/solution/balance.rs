@@ -1,9 +1,9 @@
 //! Energy and momentum: identities of the scheme that hold to rounding.
 
 use crate::run::{Run, aluminium, fixed, gravity, run};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Balance, critical_time_step};
 use percute_core::load::{Profile, Table, Traction};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Builder, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
@@ -13,7 +13,7 @@ fn falling_block() -> Builder<2, 3> {
     TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 2).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([40.0, -30.0]))
-        .obstacle(Plane::new([0.0, -1e-5], [0.02, 1.0], 0.3, Some("bottom".to_string())).unwrap())
+        .obstacle(Obstacle::plane([0.0, -1e-5], [0.02, 1.0], 0.3, Some("bottom".to_string())).unwrap())
         .body_force(gravity(2700.0, [1e6, -3e6]))
 }
 
@@ -157,10 +157,10 @@ fn friction_dissipates() {
         let velocity = run.half_velocity(n);
         let (now, next) = (run.history.step(n).unwrap().reaction, run.history.step(n + 1).unwrap().reaction);
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
-            let tangential = plane.split(&velocity[node]).1;
+            let tangential = plane.flat_frame().split(&velocity[node]).1;
             let power = |r: &[f64; 2]| -(r[0] * tangential[0] + r[1] * tangential[1]);
             // The reaction of t_n makes v_{n+½} and opposes it, up to rounding of u differences.
-            let rounding = 1e-9 * 50.0 * plane.split(&now[at]).0;
+            let rounding = 1e-9 * 50.0 * plane.flat_frame().split(&now[at]).0;
             assert!(power(&now[at]) >= -rounding, "step {n}, node {node}: {}", power(&now[at]));
             friction += 0.5 * run.step(n) * (power(&now[at]) + power(&next[at]));
         }

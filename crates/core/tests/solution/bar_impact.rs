@@ -1,9 +1,9 @@
 //! The impact of a uniform bar, for which the exact solution is known (§7.1).
 
 use crate::run::{Run, mean_rate, run};
+use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
@@ -17,7 +17,7 @@ fn problem(bar: &BarImpact, elements: usize) -> BarProblem {
     BarProblem::builder(BarMesh::uniform_bar(bar.length, elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
-        .obstacle(Plane::new([-bar.gap], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

@@ -1,12 +1,12 @@
 //! The contact law at every step (eq. \[2\]): no penetration, Coulomb's cone, complementarity.
 
 use crate::run::{Run, aluminium, gravity, run, swinging_steps};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{disc, random_rectangle, rotated};
@@ -21,7 +21,7 @@ const GAP: f64 = 2.7e-4;
 
 fn thrown(mesh: TriangleMesh, velocity: [f64; 2], friction: f64, group: Option<&str>) -> TriangleProblem {
     let lowest = mesh.points().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
-    let plane = Plane::new([0.0, lowest - GAP], [0.0, 1.0], friction, group.map(String::from)).unwrap();
+    let plane = Obstacle::plane([0.0, lowest - GAP], [0.0, 1.0], friction, group.map(String::from)).unwrap();
     TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform(velocity))
@@ -52,17 +52,20 @@ fn check_law(run: &Run<'_, 2, 3>, what: &str) -> usize {
         let next = run.history.step((n + 1).min(run.last())).unwrap();
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
             let at_place = format!("{what}, step {n}, node {node}");
-            let gap = problem.surface().gap(at, &step.displacement[node], problem.obstacles());
+            let gap = problem.surface().gap(at, &step.displacement[node]);
             assert!(gap >= -depth, "{at_place}: {gap} m behind the plane");
-            let (normal, tangential) = plane.split(&step.reaction[at]);
+            let (normal, tangential) = plane.flat_frame().split(&step.reaction[at]);
             let friction = tangential[0].hypot(tangential[1]);
             assert!(normal >= 0.0, "{at_place}: the plane pulls with {normal} N");
             // Rounding of the projection.
-            assert!(friction <= plane.friction() * normal + 1e-12 * normal, "{at_place}: {friction} N of friction");
+            assert!(
+                friction <= plane.law().friction() * normal + 1e-12 * normal,
+                "{at_place}: {friction} N of friction"
+            );
             if n == run.last() {
                 continue;
             }
-            let lands = problem.surface().gap(at, &next.displacement[node], problem.obstacles());
+            let lands = problem.surface().gap(at, &next.displacement[node]);
             assert_eq!(next.touching[at], normal > 0.0, "{at_place}: touching at {lands} m with {normal} N");
             if normal > 0.0 {
                 reactions += 1;
@@ -102,7 +105,7 @@ fn two_planes_share_the_nodes_by_groups() {
     let groups =
         [("floor".to_string(), side("bottom", &|_| true)), ("wall".to_string(), side("left", &|p| p[1] > 0.0))];
     let mesh = TriangleMesh::new(points.clone(), &cells, &groups.into(), &Default::default()).unwrap();
-    let plane = |point, normal, group: &str| Plane::new(point, normal, 0.1, Some(group.to_string())).unwrap();
+    let plane = |point, normal, group: &str| Obstacle::plane(point, normal, 0.1, Some(group.to_string())).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([-100.0, -100.0]))
@@ -116,9 +119,9 @@ fn two_planes_share_the_nodes_by_groups() {
     for n in 0..=run.last() {
         let step = run.history.step(n).unwrap();
         for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            let gap = problem.surface().gap(at, &step.displacement[contact.node.index()], problem.obstacles());
+            let gap = problem.surface().gap(at, &step.displacement[contact.node.index()]);
             assert!(gap >= -depth, "step {n}, node {}: {gap}", contact.node);
-            impulse[contact.obstacle] += problem.obstacles()[contact.obstacle].split(&step.reaction[at]).0;
+            impulse[contact.obstacle] += problem.obstacles()[contact.obstacle].flat_frame().split(&step.reaction[at]).0;
         }
     }
     assert!(impulse[0] > 0.0 && impulse[1] > 0.0, "{impulse:?}");
@@ -208,7 +211,7 @@ fn a_body_at_rest_on_the_plane_touches_from_the_start() {
     for (pull, touches) in [(-1e4, true), (0.0, false), (1e4, false)] {
         let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
             .material(aluminium())
-            .obstacle(Plane::new([0.0, 0.0], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())
+            .obstacle(Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())
             .body_force(gravity(2700.0, [0.0, pull]))
             .build()
             .unwrap();
@@ -229,7 +232,7 @@ fn a_block_may_start_sliding_on_a_slope() {
         let problem = TriangleProblem::builder(rotated(&random_rectangle(0.05, 0.04, 5, 2).unwrap(), angle).unwrap())
             .material(aluminium())
             .initial_velocity(Initial::Uniform([30.0 * cos, 30.0 * sin]))
-            .obstacle(Plane::new([0.0, 0.0], [-sin, cos], 0.2, Some("bottom".to_string())).unwrap())
+            .obstacle(Obstacle::plane([0.0, 0.0], [-sin, cos], 0.2, Some("bottom".to_string())).unwrap())
             .body_force(gravity(2700.0, [1e4 * sin, -1e4 * cos]))
             .build();
         let problem = match problem {
@@ -264,7 +267,7 @@ fn held_nodes_get_no_reaction() {
             components: [false, true],
             velocity: Some(Table::constant([0.0, -100.0])),
         })
-        .obstacle(Plane::new([0.0, -GAP], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
+        .obstacle(Obstacle::plane([0.0, -GAP], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
         .build()
         .unwrap();
     let run = run(&problem, &steps(&problem, 60));

@@ -1,12 +1,12 @@
 //! Contact results against exact solutions, the contact law and the balances.
 
 use crate::run::{Run, aluminium, fixed, run, swinging_steps};
-use percute_core::contact_results::{ContactRecorder, ContactResults, ContactSteps, Status};
+use percute_core::contact::Obstacle;
+use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Status};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
@@ -33,7 +33,7 @@ fn thrown(mesh: TriangleMesh, velocity: [f64; 2], friction: f64) -> TriangleProb
     TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform(velocity))
-        .obstacle(Plane::new([0.0, lowest - GAP], [0.0, 1.0], friction, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, lowest - GAP], [0.0, 1.0], friction, None).unwrap())
         .build()
         .unwrap()
 }
@@ -53,7 +53,7 @@ fn the_exact_bar_is_pressed_by_rho_c_v_for_two_transits() {
     let problem = BarProblem::builder(BarMesh::uniform_bar(exact.length, ELEMENTS).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
-        .obstacle(Plane::new([-exact.gap], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap();
     let (count, release) = (53, 3 + 2 * ELEMENTS);
@@ -125,8 +125,8 @@ fn check_status(run: &Run<'_, 2, 3>, what: &str) -> [usize; 3] {
         let (next, velocity) = (run.history.step(n + 1).unwrap(), run.half_velocity(n));
         for (at, &node) in nodes.iter().enumerate() {
             let (row, place) = (n * nodes.len() + at, format!("{what}, step {n}, node {node}"));
-            let (normal, force) = plane.split(&steps.force[row]);
-            let along = plane.split(&velocity[node]).1[0];
+            let (normal, force) = plane.flat_frame().split(&steps.force[row]);
+            let along = plane.flat_frame().split(&velocity[node]).1[0];
             assert_eq!(steps.status[row] != Status::Free, next.touching[at], "{place}");
             seen[steps.status[row] as usize] += 1;
             let sliding = steps.sliding_velocity[row];
@@ -134,7 +134,7 @@ fn check_status(run: &Run<'_, 2, 3>, what: &str) -> [usize; 3] {
                 Status::Free => assert!(normal == 0.0 && sliding == [0.0; 2], "{place}"),
                 Status::Stick => assert!(along.abs() < STILL && sliding[0].abs() < STILL, "{place}: {along} m/s"),
                 Status::Slip => {
-                    let limit = plane.friction() * normal;
+                    let limit = plane.law().friction() * normal;
                     assert!((force[0].abs() - limit).abs() <= 1e-12 * normal, "{place}: {force:?} N of {limit}");
                     assert!(force[0] * along <= 0.0 && (sliding[0] - along).abs() < STILL, "{place}: {along} m/s");
                 }
@@ -191,7 +191,7 @@ fn a_block_that_cannot_slide_sticks() {
 #[test]
 fn the_parts_add_up() {
     let mesh = TriangleMesh::rectangle(0.05, 0.04, 6, 5).unwrap();
-    let plane = |point, normal, group: &str| Plane::new(point, normal, 0.2, Some(group.to_string())).unwrap();
+    let plane = |point, normal, group: &str| Obstacle::plane(point, normal, 0.2, Some(group.to_string())).unwrap();
     let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 0.5).unwrap();
     // Its lower half flies at the floor, its upper one at the ceiling.
     let velocity = mesh.points().iter().map(|p| [30.0, 100.0 * (p[1] - 0.02) / 0.02]).collect();
@@ -262,7 +262,7 @@ fn half_a_body_has_half_the_results() {
         TriangleProblem::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Uniform([0.0, -100.0]))
-            .obstacle(Plane::new([0.0, -3e-4], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
+            .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())
     };
     let half = builder(block(0.02, 4)).support(fixed("left", [true, false])).build().unwrap();
     // The same cells cut along the same diagonals, mirrored.

@@ -1,10 +1,10 @@
 //! What must not depend on axes, mirrors or numbers, on meshes drawn at random.
 
 use crate::run::{Run, aluminium, fixed, run};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::mesh::TriangleMesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
@@ -41,7 +41,7 @@ impl Throw {
         TriangleProblem::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Uniform(map(self.velocity)))
-            .obstacle(Plane::new(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap())
+            .obstacle(Obstacle::plane(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap())
             .traction(Traction { group: "top".to_string(), value: pull, profile: Profile::UNIFORM })
             .build()
             .unwrap()
@@ -123,7 +123,7 @@ proptest! {
             TriangleProblem::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Uniform(throw.velocity.map(|v| factor * v)))
-                .obstacle(Plane::new([0.0, -throw.gap * factor], [0.0, 1.0], friction, bottom).unwrap())
+                .obstacle(Obstacle::plane([0.0, -throw.gap * factor], [0.0, 1.0], friction, bottom).unwrap())
                 .build()
                 .unwrap()
         };

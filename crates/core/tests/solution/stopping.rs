@@ -1,12 +1,12 @@
 //! Runs that end before their time: unstable, too near at the start, interrupted, not taken.
 
 use crate::run::{aluminium, run};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::{Discard, History, SinkError, Step, StepSink};
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::{Progress, Unobserved};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, random_rectangle};
@@ -47,7 +47,7 @@ fn near_bar(gap: f64) -> BarProblem {
     BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-400.0]))
-        .obstacle(Plane::new([-gap], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-gap], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

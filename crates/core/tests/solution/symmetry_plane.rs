@@ -2,10 +2,10 @@
 //! obstacle touches it like any other.
 
 use crate::run::{aluminium, run};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
@@ -34,7 +34,7 @@ fn dropped(mesh: TriangleMesh, guide: bool) -> TriangleProblem {
     let builder = TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
-        .obstacle(Plane::new([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap());
+        .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap());
     let left = Support { group: "left".to_string(), components: [true, false], velocity: None };
     if guide { builder.support(left) } else { builder }.build().unwrap()
 }
@@ -67,7 +67,7 @@ fn a_node_held_along_the_normal_is_no_candidate() {
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
         .support(held)
-        .obstacle(Plane::new([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap())
         .build()
         .unwrap();
     assert_eq!(problem.surface().nodes().iter().filter(|c| !c.free).count(), 1);

@@ -1,13 +1,13 @@
 //! Steps of different lengths.
 
 use crate::run::{aluminium, difference, largest, mean_rate, on_rollers, run, swinging_steps};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::Discard;
 use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_exact::{BarImpact, BlockMode, Wave};
@@ -88,7 +88,7 @@ fn a_bar_stays_on_the_plane_and_rebounds() {
     let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 200).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
-        .obstacle(Plane::new([-exact.gap], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap();
     let end = 1.5 * exact.release_time();
@@ -136,7 +136,7 @@ fn equal_steps_one_by_one_are_a_uniform_grid() {
     let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 5, 3).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([50.0, -100.0]))
-        .obstacle(Plane::new([0.0, -3.3e-5], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -3.3e-5], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap();
     let dt = 0.8 * critical_time_step(&problem);

@@ -15,8 +15,8 @@ mod window;
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
+use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
-use percute_core::obstacle::Plane;
 
 /// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,8 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     }
 
     /// Puts the solution of P_CA in the place of the normal components at local node `i`.
-    pub(crate) fn set_normal(&mut self, i: usize, plane: &Plane<D>, track: &ContactTrack, instant: usize) {
-        settle(&mut self.displacement[i], &mut self.velocity[i], plane, track, instant);
+    pub(crate) fn set_normal(&mut self, i: usize, frame: &Frame<D>, track: &ContactTrack, instant: usize) {
+        settle(&mut self.displacement[i], &mut self.velocity[i], frame, track, instant);
     }
 
     #[inline]
@@ -56,7 +56,7 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
 pub(crate) fn settle<const D: usize>(
     displacement: &mut [f64; D],
     velocity: &mut [f64; D],
-    plane: &Plane<D>,
+    frame: &Frame<D>,
     track: &ContactTrack,
     instant: usize,
 ) {
@@ -65,10 +65,10 @@ pub(crate) fn settle<const D: usize>(
         return;
     }
     let (speed, gap) = track.at(instant);
-    let (_, tangential) = plane.split(displacement);
-    let (_, sliding) = plane.split(velocity);
+    let (_, tangential) = frame.split(displacement);
+    let (_, sliding) = frame.split(velocity);
     for c in 0..D {
-        displacement[c] = tangential[c] + (gap - track.undeformed_gap()) * plane.normal()[c];
-        velocity[c] = sliding[c] + speed * plane.normal()[c];
+        displacement[c] = tangential[c] + (gap - track.undeformed_gap()) * frame.normal()[c];
+        velocity[c] = sliding[c] + speed * frame.normal()[c];
     }
 }

@@ -2,12 +2,12 @@
 
 use super::prepare::Preparation;
 use crate::options::{Options, ReconstructionChoice};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
@@ -24,7 +24,7 @@ fn thrown(velocity: [f64; 2], friction: f64, rollers: &[&str]) -> (TriangleProbl
     let mut builder = Problem::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform(velocity))
-        .obstacle(Plane::new([0.0, -6e-4], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap());
+        .obstacle(Obstacle::plane([0.0, -6e-4], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap());
     for group in rollers {
         builder = builder.support(Support { group: group.to_string(), components: [true, false], velocity: None });
     }

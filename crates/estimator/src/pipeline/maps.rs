@@ -100,8 +100,8 @@ impl<const D: usize> Maps<D> {
         for map in &mut self.made {
             let Some(fields) = &mut map.fields else { continue };
             for (contact, track) in problem.surface().nodes().iter().zip(tracks) {
-                let (i, plane) = (contact.node.index(), &problem.obstacles()[contact.obstacle]);
-                settle(&mut fields.displacement[i], &mut fields.velocity[i], plane, track, 2 * map.step);
+                let (i, frame) = (contact.node.index(), problem.obstacles()[contact.obstacle].flat_frame());
+                settle(&mut fields.displacement[i], &mut fields.velocity[i], &frame, track, 2 * map.step);
             }
             let displacement = &fields.displacement;
             let compatible = |(e, element): (usize, &Element<D, N>)| {

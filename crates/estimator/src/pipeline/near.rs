@@ -163,8 +163,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let problem = context.shared.problem;
         for (i, node) in self.contact.iter().enumerate() {
             if let Some(node) = *node {
-                let plane = &problem.obstacles()[problem.surface().nodes()[node].obstacle];
-                at.velocities.motion.set_normal(i, plane, &context.tracks[node], at.instant);
+                let frame = problem.obstacles()[problem.surface().nodes()[node].obstacle].flat_frame();
+                at.velocities.motion.set_normal(i, &frame, &context.tracks[node], at.instant);
             }
         }
     }
@@ -245,11 +245,11 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             let contact = &problem.surface().nodes()[at];
             let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
             if touching[i] && contact.free {
-                let normal = problem.obstacles()[contact.obstacle].split(velocity).0.abs();
+                let normal = problem.obstacles()[contact.obstacle].flat_frame().split(velocity).0.abs();
                 let residual = if normal == 0.0 { 0.0 } else { normal / speed(velocity) };
                 self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);
             }
-            let gap = problem.surface().gap(at, displacement, problem.obstacles());
+            let gap = problem.surface().gap(at, displacement);
             let depth = worse(0.0, -gap / problem.mesh().size());
             self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
         }

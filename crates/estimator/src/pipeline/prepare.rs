@@ -128,8 +128,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
         for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
             let node = contact.node.index();
-            let gap = problem.surface().gap(at, &step.displacement[node], problem.obstacles());
-            let speed = problem.obstacles()[contact.obstacle].split(&problem.initial_velocity()[node]).0;
+            let gap = problem.surface().gap(at, &step.displacement[node]);
+            let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&problem.initial_velocity()[node]).0;
             if gap > tolerance || speed.abs() > problem.speed_tolerance() {
                 return Err(EstimateError::StartsTouching { node, gap, speed });
             }
@@ -221,10 +221,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let tolerance = self.problem.contact_tolerance();
         let size = self.problem.mesh().size();
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
-            let (i, plane) = (contact.node.index(), &self.problem.obstacles()[contact.obstacle]);
-            let normal = |motion: &NodalMotion<D>| plane.split(&motion.velocity()[i]).0;
+            let (i, frame) = (contact.node.index(), self.problem.obstacles()[contact.obstacle].flat_frame());
+            let normal = |motion: &NodalMotion<D>| frame.split(&motion.velocity()[i]).0;
             let Some(mid) = mid else {
-                let gap = self.problem.surface().gap(at, &now.displacement()[i], self.problem.obstacles());
+                let gap = self.problem.surface().gap(at, &now.displacement()[i]);
                 let start = (gap, normal(now));
                 let track = ContactTrack::new(contact.undeformed_gap, size, contact.free, start, step.touching[at]);
                 self.tracks.push(track);

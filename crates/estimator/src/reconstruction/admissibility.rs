@@ -20,12 +20,12 @@ pub(crate) fn check<const D: usize, const N: usize>(
             continue;
         }
         for (facet, density) in problem.surface().facets().iter().zip(densities.iter()) {
-            let plane = &problem.obstacles()[facet.obstacle];
+            let obstacle = &problem.obstacles()[facet.obstacle];
             let touches = facet.nodes.iter().all(|&k| steps.now.touching[k] && steps.next.touching[k]);
             for f in density {
                 let scale = size(f).max(1e-12 * largest);
-                let (normal, tangential) = plane.split(f);
-                let outside = worse(size(&tangential) - plane.friction() * normal, -normal);
+                let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), f);
+                let outside = worse(tangential, normal);
                 residuals.cone = worse(residuals.cone, outside / scale);
                 let off = if touches || off_contact { 0.0 } else { size(f) / scale };
                 residuals.force_off_contact = worse(residuals.force_off_contact, off);

@@ -1,7 +1,7 @@
 //! The misfit of the contact law on a facet, for densities and velocities that are linear along it.
 
-use percute_core::obstacle::Plane;
-use percute_core::problem::{ContactFacet, Problem};
+use percute_core::contact::{ContactFacet, Frame};
+use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
 /// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
@@ -21,21 +21,20 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
     if density.iter().flatten().all(|f| *f == 0.0) {
         return 0.0;
     }
-    let plane = &problem.obstacles()[facet.obstacle];
-    let tangent = tangent(plane);
-    let (normal, tangential) = (density.map(|f| plane.split(&f).0), density.map(|f| along(&f, &tangent)));
+    let obstacle = &problem.obstacles()[facet.obstacle];
+    let (law, frame) = (obstacle.law(), obstacle.flat_frame());
+    let tangent = tangent(&frame);
+    let (normal, tangential) = (density.map(|f| frame.split(&f).0), density.map(|f| along(&f, &tangent)));
     let sliding = velocity.map(|v| along(&v, &tangent));
-    let power = |weights: &[f64; D]| {
-        let w = along(weights, &sliding);
-        plane.friction() * along(weights, &normal) * w.abs() + w * along(weights, &tangential)
-    };
+    let power =
+        |weights: &[f64; D]| law.misfit(along(weights, &normal), along(weights, &tangential), along(weights, &sliding));
     facet.area * simplex.facet_mean(&sliding, &power)
 }
 
 /// Along a plane in 2D: its normal turned back by a quarter.
-pub(super) fn tangent<const D: usize>(plane: &Plane<D>) -> [f64; D] {
+pub(super) fn tangent<const D: usize>(frame: &Frame<D>) -> [f64; D] {
     let mut tangent = [0.0; D];
-    (tangent[0], tangent[1]) = (plane.normal()[1], -plane.normal()[0]);
+    (tangent[0], tangent[1]) = (frame.normal()[1], -frame.normal()[0]);
     tangent
 }
 

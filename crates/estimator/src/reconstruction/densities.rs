@@ -46,8 +46,8 @@ pub(crate) fn driving_forces<const D: usize, const N: usize>(
 ) -> Vec<[f64; D]> {
     let mut forces = nodal_forces(problem, densities);
     for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
-        let plane = &problem.obstacles()[contact.obstacle];
-        *force = plane.normal().map(|n| n * plane.split(force).0);
+        let frame = problem.obstacles()[contact.obstacle].flat_frame();
+        *force = frame.normal().map(|n| n * frame.split(force).0);
     }
     forces
 }

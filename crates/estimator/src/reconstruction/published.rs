@@ -1,7 +1,8 @@
 //! The densities of the paper, eq. \[45\]–\[50\].
 
 use super::{Densities, Reconstruction, StepDensities, SurfaceStep, SurfaceSteps};
-use percute_core::problem::{ContactFacet, Problem};
+use percute_core::contact::ContactFacet;
+use percute_core::problem::Problem;
 
 /// Edges that meet at more than 45° are no neighbours: their normals' cosine is below this.
 const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;

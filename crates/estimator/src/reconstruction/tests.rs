@@ -3,16 +3,16 @@
 use super::*;
 use crate::options::ReconstructionChoice::{self, Consistent, Corrected, Published};
 use crate::residual::Residuals;
+use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::TriangleProblem;
 
 /// Four edges along the bottom of a block, μ = 0.2.
 fn problem() -> TriangleProblem {
     Problem::builder(TriangleMesh::rectangle(0.04, 0.02, 4, 2).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
-        .obstacle(Plane::new([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
 }
@@ -210,7 +210,7 @@ fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
     let mesh = TriangleMesh::new(points, &[[0, 1, 3], [1, 2, 3]], &Default::default(), &Default::default()).unwrap();
     let problem = Problem::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
-        .obstacle(Plane::new([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap();
     let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();

@@ -94,9 +94,9 @@ fn add_element(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::BarMesh;
-    use percute_core::obstacle::Plane;
     use percute_core::problem::{Initial, Problem};
 
     /// c = 3 m/s, t_c = 0.5 s, ρScv₀ = 1.2 N.
@@ -106,7 +106,7 @@ mod tests {
         Problem::builder(BarMesh::uniform_bar(6.0, 3).unwrap())
             .material(Elastic::bar(18.0, 2.0, section).unwrap())
             .initial_velocity(Initial::Uniform([-2.0]))
-            .obstacle(Plane::new([-1.0], [1.0], 0.0, None).unwrap())
+            .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())
             .build()
             .unwrap()
     }

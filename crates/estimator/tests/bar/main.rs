@@ -9,11 +9,11 @@ mod hand;
 mod strip;
 
 use hand::Bar;
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::simulate;
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Recorder, TrueError, bar_impact_error};
@@ -43,7 +43,7 @@ fn problem(bar: &Bar) -> BarProblem {
     Problem::builder(BarMesh::uniform_bar(bar.length, bar.elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
-        .obstacle(Plane::new([-bar.gap], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

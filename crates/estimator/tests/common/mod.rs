@@ -2,10 +2,10 @@
 
 #![allow(dead_code)]
 
+use percute_core::contact::Obstacle;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_exact::BarMode;
 
@@ -15,7 +15,7 @@ pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
     Problem::builder(TriangleMesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
-        .obstacle(Plane::new([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
 }

@@ -1,10 +1,10 @@
 //! Bodies and what acts on them.
 
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, Mesh, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Builder, Initial, Problem, TriangleProblem};
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
@@ -16,15 +16,15 @@ pub(crate) fn aluminium() -> Elastic {
 }
 
 /// The plane with the normal turned by `tilt` (rad) from e_y, `gap` (m) from the nearest node.
-pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f64, group: Option<&str>) -> Plane<2> {
+pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f64, group: Option<&str>) -> Obstacle<2> {
     let normal = [-tilt.sin(), tilt.cos()];
     let height = |p: &[f64; 2]| p[0] * normal[0] + p[1] * normal[1];
     let lowest = mesh.points().iter().map(height).fold(f64::INFINITY, f64::min);
-    Plane::new(normal.map(|n| (lowest - gap) * n), normal, friction, group.map(String::from)).unwrap()
+    Obstacle::plane(normal.map(|n| (lowest - gap) * n), normal, friction, group.map(String::from)).unwrap()
 }
 
 /// A body of aluminium with a velocity and a plane.
-pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Plane<2>) -> Builder<2, 3> {
+pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Obstacle<2>) -> Builder<2, 3> {
     TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn bouncing_bar(mesh: BarMesh) -> BarProblem {
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .body_force(gravity([-2e6]))
-        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

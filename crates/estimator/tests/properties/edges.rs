@@ -2,11 +2,11 @@
 
 use crate::bodies::{gravity, plane_below, steps, swinging, thrown};
 use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
+use percute_core::contact::Obstacle;
 use percute_core::history::{History, StepSink};
 use percute_core::load::{Support, Table};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Progress;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Reconstruction, Request, run};
@@ -87,7 +87,7 @@ fn a_single_element() {
     let problem = Problem::builder(mesh)
         .material(percute_core::material::Elastic::bar(70e9, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([-10.0]))
-        .obstacle(Plane::new([-2e-4], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-2e-4], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap();
     assert!(check("bar of one element", &problem, &steps(&problem, 0.7, 30)) > 0);

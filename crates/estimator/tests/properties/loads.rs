@@ -2,10 +2,10 @@
 
 use crate::bodies::{aluminium, fixed, gravity, in_two_groups, plane_below, steps, swinging, thrown};
 use crate::estimating::{check, history};
+use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, ElementGroups, TriangleMesh};
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_testkit::random_rectangle;
 
@@ -100,7 +100,7 @@ fn a_corner_on_a_roller_touches() {
 /// Thrown to and fro between two planes that are not quite parallel.
 #[test]
 fn two_planes() {
-    let plane = |point, normal, mu, group: &str| Plane::new(point, normal, mu, Some(group.to_string())).unwrap();
+    let plane = |point, normal, mu, group: &str| Obstacle::plane(point, normal, mu, Some(group.to_string())).unwrap();
     let problem = Problem::builder(block(8))
         .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([50.0, -250.0]))
@@ -154,7 +154,7 @@ fn uneven_bars() {
             .material_of("first", Elastic::bar(70e9, 2700.0, 0.02).unwrap())
             .material_of("second", Elastic::bar(210e9, 7800.0, 0.005).unwrap())
             .initial_velocity(Initial::Uniform([-30.0]))
-            .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap());
+            .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap());
         let moved =
             Support { group: "end".to_string(), components: [true], velocity: Some(table([-30.0, 20.0, -5.0])) };
         let load = Traction { group: "end".to_string(), value: table([0.0, -4e8, 1e8]), profile: Profile::UNIFORM };

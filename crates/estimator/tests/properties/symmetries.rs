@@ -6,10 +6,10 @@
 
 use crate::bodies::{aluminium, steps};
 use crate::estimating::{all_choices, estimate, history, reactions};
+use percute_core::contact::Obstacle;
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
@@ -54,7 +54,7 @@ impl Throw {
         let builder = Problem::builder(self.mesh.clone())
             .material(self.material)
             .initial_velocity(Initial::Uniform(map(self.velocity)))
-            .obstacle(Plane::new(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap());
+            .obstacle(Obstacle::plane(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap());
         if !self.driven {
             let traction = Traction { group: "top".to_string(), value, profile: Profile::UNIFORM };
             return builder.traction(traction).build().unwrap();

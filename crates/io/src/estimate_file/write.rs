@@ -8,7 +8,7 @@ use crate::mesh::{in_space, write_grid, write_groups};
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
-use percute_core::contact_results::{ContactResults, ContactSteps};
+use percute_core::contact::{ContactResults, ContactSteps};
 use percute_core::problem::Problem;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
 use std::io;

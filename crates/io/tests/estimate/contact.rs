@@ -1,13 +1,13 @@
 //! Contact results in estimate files.
 
 use crate::{block, estimated, stored, with_contact, written};
-use percute_core::contact_results::{ContactRecorder, ContactResults, Status};
+use percute_core::contact::Obstacle;
+use percute_core::contact::{ContactRecorder, ContactResults, Status};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_io::estimate_file::{AnyContact, contact, open};
@@ -34,7 +34,7 @@ fn bar() -> BarProblem {
     Problem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
-        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

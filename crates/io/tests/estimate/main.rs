@@ -3,12 +3,12 @@
 // What helpers unwrap makes a test fail too; the general allowance covers test functions only.
 #![allow(clippy::unwrap_used)]
 
-use percute_core::contact_results::ContactResults;
+use percute_core::contact::ContactResults;
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Request, run};
@@ -25,7 +25,7 @@ fn block() -> TriangleProblem {
     Problem::builder(TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
-        .obstacle(Plane::new([0.0, -2e-4], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -2e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
 }
@@ -123,7 +123,7 @@ fn without_maps_and_fields() {
     let bar = Problem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
-        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap();
     for count in [0, 3] {

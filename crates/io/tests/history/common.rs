@@ -1,11 +1,11 @@
 //! Problems, runs and files that the tests share.
 
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::{History, StepSink, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_io::history::{AnyHistoryFile, HistoryFile, Plan, open};
@@ -33,7 +33,7 @@ pub(crate) fn plane_problem(mesh: TriangleMesh, initial: Option<Vec<[f64; 2]>>) 
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_displacement(Initial::Nodal(initial.unwrap_or(vec![[0.0; 2]; nodes])))
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
-        .obstacle(Plane::new([0.0, lowest - gap], [0.0, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, lowest - gap], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
 }
@@ -46,7 +46,7 @@ pub(crate) fn bar(elements: usize) -> BarProblem {
     Problem::builder(BarMesh::uniform_bar(0.1, elements).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
-        .obstacle(Plane::new([-1e-5], [1.0], 0.0, None).unwrap())
+        .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
 }

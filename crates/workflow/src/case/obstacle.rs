@@ -2,14 +2,14 @@
 
 use super::source::CaseError;
 use super::table::Table;
-use percute_core::obstacle::{Plane, PlaneError};
+use percute_core::contact::{Obstacle, ObstacleError};
 
 /// Reads all planes.
-pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<Plane<D>>, CaseError> {
+pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<Obstacle<D>>, CaseError> {
     root.tables("obstacle")?.iter().map(one).collect()
 }
 
-fn one<const D: usize>(table: &Table<'_>) -> Result<Plane<D>, CaseError> {
+fn one<const D: usize>(table: &Table<'_>) -> Result<Obstacle<D>, CaseError> {
     table.only(&["point", "normal", "friction", "group"])?;
     let point = table.require("point", "a point of the plane in m")?.vector("m")?;
     let normal = table.require("normal", "a vector from the plane to the body")?.vector("")?;
@@ -19,11 +19,11 @@ fn one<const D: usize>(table: &Table<'_>) -> Result<Plane<D>, CaseError> {
         None => table.require("friction", "the coefficient of friction, 0 or more")?.number("")?,
     };
     let group = table.get("group").map(|value| value.text("the name of a group of edges")).transpose()?;
-    Plane::new(point, normal, friction, group.map(str::to_string)).map_err(|error| {
+    Obstacle::plane(point, normal, friction, group.map(str::to_string)).map_err(|error| {
         let key = match error {
-            PlaneError::Normal { .. } => "normal",
-            PlaneError::Point { .. } => "point",
-            PlaneError::Friction { .. } | PlaneError::FrictionInOneDimension { .. } => "friction",
+            ObstacleError::Normal { .. } => "normal",
+            ObstacleError::Point { .. } => "point",
+            ObstacleError::Friction { .. } | ObstacleError::FrictionInOneDimension { .. } => "friction",
         };
         table.get(key).map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
     })

@@ -6,10 +6,10 @@ use super::source::{CaseError, Source};
 use super::table::Table;
 use super::text::{Writer, list, quoted, vector};
 use super::{AXES, estimate, parsed, problem};
+use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
 use percute_core::material::{Elastic, Hypothesis};
 use percute_core::mesh::Mesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem};
 use percute_estimator::Options;
 use thiserror::Error;
@@ -59,7 +59,7 @@ pub fn statement<const D: usize, const N: usize>(
     for (i, (group, law)) in stated.materials.iter().enumerate() {
         material::<D>(&mut text, i, group.as_deref(), law)?;
     }
-    problem.obstacles().iter().for_each(|plane| obstacle(&mut text, plane));
+    problem.obstacles().iter().for_each(|one| obstacle(&mut text, one));
     stated.supports.iter().for_each(|one| support(&mut text, one));
     stated.tractions.iter().for_each(|one| traction(&mut text, one));
     stated.body_forces.iter().for_each(|one| body_force(&mut text, one));
@@ -125,13 +125,13 @@ fn material<const D: usize>(
     Ok(())
 }
 
-fn obstacle<const D: usize>(text: &mut Writer, plane: &Plane<D>) {
+fn obstacle<const D: usize>(text: &mut Writer, obstacle: &Obstacle<D>) {
     text.table("[[obstacle]]");
-    text.key("point", vector(plane.point()));
+    text.key("point", vector(obstacle.shape().point()));
     // As it was given: a unit normal made unit again may differ in the last bit.
-    text.key("normal", vector(plane.direction()));
-    text.number("friction", plane.friction());
-    text.group(plane.group());
+    text.key("normal", vector(obstacle.shape().direction()));
+    text.number("friction", obstacle.law().friction());
+    text.group(obstacle.group());
 }
 
 fn support<const D: usize>(text: &mut Writer, support: &Support<D>) {

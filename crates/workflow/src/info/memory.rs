@@ -2,7 +2,7 @@
 
 use crate::case::CaseOf;
 use crate::message::bytes;
-use percute_core::contact_results::{ContactSteps, Resultant};
+use percute_core::contact::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::mesh::Facet;

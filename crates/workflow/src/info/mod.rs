@@ -215,8 +215,7 @@ impl HistoryInfo {
         lines.push(("body", body(&self.problem)));
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| format!("{steps} steps"));
-        let ended =
-            if self.complete { "complete" } else { "INCOMPLETE (running, or killed)" };
+        let ended = if self.complete { "complete" } else { "INCOMPLETE (running, or killed)" };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));

@@ -39,16 +39,17 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
 
 /// The planes, in their order.
 pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
-    let told = |(obstacle, plane): (usize, &percute_core::obstacle::Plane<D>)| {
-        let mine = problem.surface().nodes().iter().filter(|node| node.obstacle == obstacle && node.free);
-        let speeds = mine.clone().map(|contact| -plane.split(&problem.initial_velocity()[contact.node.index()]).0);
+    let told = |obstacle: usize| {
+        let surface = problem.surface().nodes().iter().enumerate();
+        let mine = surface.filter(|(_, node)| node.obstacle == obstacle && node.free);
+        let speeds = mine.clone().map(|(at, _)| -problem.start_of_contact(at).1);
         PlaneInfo {
             gap: problem.initial_gap(obstacle),
             contact_nodes: mine.count(),
             approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
         }
     };
-    problem.obstacles().iter().enumerate().map(told).collect()
+    (0..problem.obstacles().len()).map(told).collect()
 }
 
 impl MaterialInfo {

@@ -5,7 +5,7 @@ use super::{
     ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
     ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement, meaning,
 };
-use percute_core::contact_results::ContactResults;
+use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
@@ -101,11 +101,11 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
     let (problem, mesh) = (subject.problem, subject.problem.mesh());
     let extreme =
         |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
-    let obstacle = |plane: &percute_core::obstacle::Plane<D>| ObstacleSummary {
-        point: plane.point().to_vec(),
-        normal: plane.normal().to_vec(),
-        friction: plane.friction(),
-        group: plane.group().map(str::to_string),
+    let obstacle = |obstacle: &percute_core::contact::Obstacle<D>| ObstacleSummary {
+        point: obstacle.shape().point().to_vec(),
+        normal: obstacle.flat_frame().normal().to_vec(),
+        friction: obstacle.law().friction(),
+        group: obstacle.group().map(str::to_string),
     };
     ProblemSummary {
         dimension: D,

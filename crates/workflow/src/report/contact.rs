@@ -1,7 +1,7 @@
 //! What contact did, for the report: resultants at every step, and what each node went through, but not all nodes at
 //! all steps, which may be millions.
 
-use percute_core::contact_results::{ContactResults, NodeSummary, Resultant};
+use percute_core::contact::{ContactResults, NodeSummary, Resultant};
 use serde::Serialize;
 
 /// What contact did.

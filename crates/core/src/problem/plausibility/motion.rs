@@ -1,7 +1,7 @@
 //! A body that cannot touch before the end, does not move at all, or moves faster than waves.
 
 use super::{PlausibilityWarning, at, plausibility_warning, short};
-use crate::obstacle::dot;
+use crate::contact::dot;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -120,14 +120,16 @@ struct Approach {
 /// where it goes.
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
     let flight = flight(problem)?;
-    let approach = |(obstacle, plane): (usize, &crate::obstacle::Plane<D>)| {
-        let gap = problem.initial_gap(obstacle).max(0.0);
-        let (speed, push) = (-dot(&flight.velocity, plane.normal()), -dot(&flight.acceleration, plane.normal()));
-        // What rounding leaves of a gap is none.
+    let approach = |obstacle: usize| {
+        let (at, gap) = problem.nearest(obstacle)?;
+        let node = problem.surface().nodes()[at].node.index();
+        let frame = problem.surface().frame(at, &problem.initial_displacement()[node]);
+        let (speed, push) = (-dot(&flight.velocity, frame.normal()), -dot(&flight.acceleration, frame.normal()));
+        // A gap within rounding is closed.
         let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
-        Approach { obstacle, gap, speed, time: closing_time(gap, speed, push) }
+        Some(Approach { obstacle, gap, speed, time: closing_time(gap, speed, push) })
     };
-    let first = problem.obstacles().iter().enumerate().map(approach).min_by(|a, b| a.time.total_cmp(&b.time))?;
+    let first = (0..problem.obstacles().len()).filter_map(approach).min_by(|a, b| a.time.total_cmp(&b.time))?;
     if first.time > times.end() { never(&first, times.end()) } else { far(&first, problem.mesh().size()) }
 }
 

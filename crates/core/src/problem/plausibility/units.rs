@@ -45,7 +45,13 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let lightest = problem.materials().iter().map(|material| material.density()).fold(f64::INFINITY, f64::min);
     let forces = problem.statement().body_forces.iter().enumerate();
     all.extend(forces.filter_map(|(index, force)| weight(force, lightest, index)));
-    all.extend(problem.obstacles().iter().enumerate().filter_map(|(index, plane)| friction(plane.friction(), index)));
+    all.extend(
+        problem
+            .obstacles()
+            .iter()
+            .enumerate()
+            .filter_map(|(index, obstacle)| friction(obstacle.law().friction(), index)),
+    );
     all
 }
 

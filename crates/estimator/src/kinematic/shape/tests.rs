@@ -4,12 +4,12 @@ use super::*;
 use crate::kinematic::window::Path;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, disc, random_rectangle};
@@ -142,7 +142,7 @@ fn chattering(mesh: &TriangleMesh, speed: f64, g: f64, lean: f64) -> TrianglePro
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([1.0, -speed]))
         .body_force(BodyForce { group: None, value: Table::constant([0.0, -g]) })
-        .obstacle(Plane::new([0.0, lowest - 1e-4], [lean, 1.0], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, lowest - 1e-4], [lean, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
 }

@@ -60,12 +60,12 @@ impl<const D: usize> ImpulseSmoothing<D> {
         let length = if n == 0 { times.velocity_step(0) } else { step };
         let mut forces = reaction.to_vec();
         for (k, (contact, force)) in problem.surface().nodes().iter().zip(&mut forces).enumerate() {
-            let plane = &problem.obstacles()[contact.obstacle];
+            let frame = problem.obstacles()[contact.obstacle].flat_frame();
             let (pending, time) = (&mut self.pending[k], self.time[k]);
-            let (normal, _) = plane.split(force);
+            let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
                 let i = contact.node.index();
-                let inertia = problem.mass()[i] * plane.split(&acceleration[i]).0;
+                let inertia = problem.mass()[i] * frame.split(&acceleration[i]).0;
                 let share = (inertia / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
@@ -101,16 +101,16 @@ fn part(weight: f64, fall: f64, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::BarMesh;
-    use percute_core::obstacle::Plane;
     use percute_core::problem::BarProblem;
 
     /// h = ½, c = 2, ρS = 3: m = ¾ at the end of the bar, ρcS = 6, so that τ = ⅛.
     fn bar() -> BarProblem {
         Problem::builder(BarMesh::uniform_bar(1.0, 2).unwrap())
             .material(Elastic::bar(12.0, 3.0, 1.0).unwrap())
-            .obstacle(Plane::new([-1.0], [1.0], 0.0, None).unwrap())
+            .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())
             .build()
             .unwrap()
     }

@@ -8,6 +8,7 @@
 //! its sum lacks then is shared out where the cone has room, of which there is always enough.
 
 use crate::reconstruction::contact_law::{along, tangent};
+use percute_core::contact::Coulomb;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -20,7 +21,7 @@ const NOTHING: f64 = 1e-24;
 struct Group<const D: usize> {
     normal: [f64; D],
     tangent: [f64; D],
-    friction: f64,
+    law: Coulomb,
     nodes: Vec<CorrectedNode>,
 }
 
@@ -55,9 +56,10 @@ impl<const D: usize> MomentCorrection<D> {
         for (at, (contact, centroid)) in surface.nodes().iter().zip(&centroids).enumerate() {
             let key = (part[contact.node.index()], contact.obstacle);
             let found = groups.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
-                let plane = &problem.obstacles()[contact.obstacle];
-                let (normal, tangent) = (*plane.normal(), tangent(plane));
-                groups.push((key, Group { normal, tangent, friction: plane.friction(), nodes: Vec::new() }));
+                let obstacle = &problem.obstacles()[contact.obstacle];
+                let frame = obstacle.flat_frame();
+                let (normal, tangent) = (*frame.normal(), tangent(&frame));
+                groups.push((key, Group { normal, tangent, law: obstacle.law(), nodes: Vec::new() }));
                 groups.len() - 1
             });
             let group = &mut groups[found].1;
@@ -128,7 +130,7 @@ impl<const D: usize> Group<D> {
         let mut shared: Vec<f64> = tangential.iter().zip(factors).map(|(t, factor)| t * factor).collect();
         let lacking = tangential.iter().sum::<f64>() - shared.iter().sum::<f64>();
         let rooms = self.nodes.iter().zip(normal).zip(&shared).map(|((node, n), t)| {
-            let room = self.friction * n - lacking.signum() * t;
+            let room = self.law.limit(*n) - lacking.signum() * t;
             if node.guided { 0.0 } else { room.max(0.0) }
         });
         let rooms: Vec<f64> = rooms.collect();

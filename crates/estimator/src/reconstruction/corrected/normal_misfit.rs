@@ -10,7 +10,8 @@
 use crate::kinematic::ContactTrack;
 use crate::reconstruction::Densities;
 use crate::reconstruction::contact_law::along;
-use percute_core::problem::{ContactFacet, Problem};
+use percute_core::contact::ContactFacet;
+use percute_core::problem::Problem;
 use percute_core::simplex::Simplex;
 use percute_core::time::TimeGrid;
 
@@ -43,8 +44,8 @@ impl<const D: usize> OffContact<D> {
         sudden: &[Densities<D>; 2],
     ) -> Self {
         let one = |(f, facet): (usize, &ContactFacet<D>)| {
-            let plane = &problem.obstacles()[facet.obstacle];
-            let normal = |densities: &Densities<D>| densities[f].map(|force| plane.split(&force).0);
+            let frame = problem.obstacles()[facet.obstacle].flat_frame();
+            let normal = |densities: &Densities<D>| densities[f].map(|force| frame.split(&force).0);
             [0, 1].map(|end| Pressure { acting: normal(acting[end]), sudden: normal(&sudden[end]) })
         };
         Self(problem.surface().facets().iter().enumerate().map(one).collect())

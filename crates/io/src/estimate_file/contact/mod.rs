@@ -10,7 +10,7 @@ pub use read::{AnyContact, contact};
 use crate::error::FileCause;
 use crate::write::{group, numbers, unit};
 use hdf5::Group;
-use percute_core::contact_results::{ContactResults, ContactSteps, Resultant};
+use percute_core::contact::{ContactResults, ContactSteps, Resultant};
 
 /// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.
 pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {

@@ -4,7 +4,7 @@ use crate::error::{FileCause, FileError};
 use crate::estimate_file::open::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
-use percute_core::contact_results::{ContactResults, ContactSteps, NodeSummary, Place, Resultant, Status};
+use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant, Status};
 use percute_core::ids::NodeId;
 use percute_core::simplex::ByDimension;
 use std::path::Path;
@@ -62,13 +62,13 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<Place<D>>, FileCause> {
+    fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<ContactPoint<D>>, FileCause> {
         let obstacle = self.part.data("obstacle")?;
         obstacle.expect(&[node.len()], "one for each contact node")?;
         let obstacle = obstacle.indices(obstacles, "obstacles")?;
         let (point, normal) = (self.vectors("point", &[node.len()])?, self.vectors("normal", &[node.len()])?);
         let area = self.all("area", &[node.len()])?;
-        let place = |k: usize| Place {
+        let place = |k: usize| ContactPoint {
             node: NodeId::new(node[k]),
             obstacle: obstacle[k],
             point: point[k],

@@ -2,9 +2,9 @@ use super::MomentCorrection;
 use crate::options::Ablation;
 use crate::reconstruction::corrected::Corrected;
 use crate::reconstruction::nodal_forces;
+use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
-use percute_core::obstacle::Plane;
 use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::Random;
@@ -24,7 +24,7 @@ fn blocks(angle: f64) -> TriangleProblem {
         }
     }
     let mesh = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
-    let plane = Plane::new(turn([0.0, -1e-3]), turn([0.0, 1.0]), 0.4, None).unwrap();
+    let plane = Obstacle::plane(turn([0.0, -1e-3]), turn([0.0, 1.0]), 0.4, None).unwrap();
     Problem::builder(mesh).material(Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap()).obstacle(plane).build().unwrap()
 }
 
@@ -57,13 +57,13 @@ fn reactions(problem: &TriangleProblem, random: &mut Random, range: f64, part: f
 
 /// A force with a normal part and one along the plane.
 fn in_frame(problem: &TriangleProblem, n: f64, t: f64) -> [f64; 2] {
-    let normal = problem.obstacles()[0].normal();
+    let normal = *problem.obstacles()[0].flat_frame().normal();
     [n * normal[0] + t * normal[1], n * normal[1] - t * normal[0]]
 }
 
 /// Whether forces press and their friction is within the cone, to the last bits.
 fn admissible(problem: &TriangleProblem, forces: &[[f64; 2]]) -> bool {
-    let normal = problem.obstacles()[0].normal();
+    let normal = *problem.obstacles()[0].flat_frame().normal();
     forces.iter().all(|f| {
         let (n, t) = (f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]);
         n >= 0.0 && t.abs() <= 0.4 * n + 1e-14
@@ -109,7 +109,7 @@ fn no_frame_is_special() {
             })
             .collect();
         MomentCorrection::new(&problem).apply(&mut forces);
-        let normal = *problem.obstacles()[0].normal();
+        let normal = *problem.obstacles()[0].flat_frame().normal();
         let own = |f: &[f64; 2]| [f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]];
         let mut all: Vec<(usize, [f64; 2])> =
             problem.surface().nodes().iter().map(|c| c.node.index()).zip(forces.iter().map(own)).collect();

@@ -1,10 +1,10 @@
-//! Takes steps and keeps what contact does.
+//! Contact results of the steps of a run or a history.
 
 use super::resultant::{Share, Sum};
-use super::status::Law;
-use super::{ContactResults, ContactSteps, NodeSummary, Place, Status};
+use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
+use crate::contact::coulomb::{Coulomb, Status, dissipation};
+use crate::contact::frame::Frame;
 use crate::history::{SinkError, Step, StepCheck, StepSink};
-use crate::obstacle::dot;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 use thiserror::Error;
@@ -28,14 +28,14 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     check: StepCheck,
-    laws: Vec<Law>,
-    now: Vec<State<D>>,
+    laws: Vec<TangentialLaw>,
+    now: Vec<NodeState<D>>,
     results: ContactResults<D>,
 }
 
 /// What is known of a node at the last instant taken.
 #[derive(Clone, Copy, Debug)]
-struct State<const D: usize> {
+struct NodeState<const D: usize> {
     displacement: [f64; D],
     force: [f64; D],
     status: Status,
@@ -45,8 +45,8 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     /// Before the first step. Resultants and summaries are kept.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
-        let nodes = places(problem);
-        let start = State { displacement: [0.0; D], force: [0.0; D], status: Status::Free };
+        let nodes = points(problem);
+        let start = NodeState { displacement: [0.0; D], force: [0.0; D], status: Status::Free };
         let results = ContactResults {
             instants: Vec::new(),
             summary: vec![NodeSummary::new(); nodes.len()],
@@ -55,7 +55,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             steps: None,
             nodes,
         };
-        let (laws, now) = (Law::of_surface(problem), vec![start; results.nodes.len()]);
+        let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         Self { problem, times, check: StepCheck::default(), laws, now, results }
     }
 
@@ -79,24 +79,24 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         self.results
     }
 
-    /// Takes one node on; gives its share of the resultants.
+    /// Records one node; returns its share of the resultants.
     fn node(&mut self, at: usize, step: &Step<'_, D>) -> Share<D> {
-        let Place { node, obstacle, area, point, .. } = self.results.nodes[at];
-        let plane = &self.problem.obstacles()[obstacle];
+        let ContactPoint { node, area, point, .. } = self.results.nodes[at];
         let (displacement, force) = (step.displacement[node.index()], step.reaction[at]);
-        let status = self.laws[at].status(plane, &force);
-        let normal_force = plane.split(&force).0;
+        let frame = self.problem.surface().frame(at, &displacement);
+        let status = self.laws[at].status(&frame, &force);
+        let normal_force = frame.split(&force).0;
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
-        let before = std::mem::replace(&mut self.now[at], State { displacement, force, status });
+        let before = std::mem::replace(&mut self.now[at], NodeState { displacement, force, status });
         if step.index > 0 {
             let dt = self.times.step(step.index - 1);
             let path = std::array::from_fn(|c| displacement[c] - before.displacement[c]);
             let mean = std::array::from_fn(|c| 0.5 * (before.force[c] + force[c]));
-            summary.friction_energy -= dot(&plane.split(&mean).1, &path);
+            summary.friction_energy += dissipation(&frame, &mean, &path);
             summary.over(dt, [&before.force, &force], [before.status, status]);
-            sliding = plane.split(&path).1.map(|way| way / dt);
+            sliding = frame.split(&path).1.map(|way| way / dt);
         }
         let friction_energy = summary.friction_energy;
         if let Some(steps) = &mut self.results.steps {
@@ -107,7 +107,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
                 steps.sliding_velocity[row] = slides(before.status);
             }
             steps.force.push(force);
-            steps.gap.push(self.problem.surface().gap(at, &displacement, self.problem.obstacles()));
+            steps.gap.push(self.problem.surface().gap(at, &displacement));
             steps.sliding_velocity.push(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);
@@ -139,13 +139,61 @@ impl<const D: usize, const N: usize> StepSink<D> for ContactRecorder<'_, D, N> {
 }
 
 /// The nodes of the contact surface with their shares of the candidate facets.
-fn places<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Place<D>> {
-    let place = |(c, area): (&crate::problem::ContactNode, f64)| Place {
-        node: c.node,
-        obstacle: c.obstacle,
-        point: problem.mesh().points()[c.node.index()],
-        normal: *problem.obstacles()[c.obstacle].normal(),
-        area,
+fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<ContactPoint<D>> {
+    let surface = problem.surface();
+    let point = |(at, area): (usize, f64)| {
+        let (node, obstacle, point) = (surface.nodes()[at].node, surface.nodes()[at].obstacle, *surface.point(at));
+        let normal = *surface.obstacles()[obstacle].frame_at(&point).normal();
+        ContactPoint { node, obstacle, point, normal, area }
     };
-    problem.surface().nodes().iter().zip(problem.surface().tributary_areas()).map(place).collect()
+    surface.tributary_areas().into_iter().enumerate().map(point).collect()
+}
+
+/// The law of the tangential motion of one node.
+#[derive(Clone, Copy, Debug)]
+enum TangentialLaw {
+    /// Friction alone.
+    Friction(Coulomb),
+    /// A support holds the node along the obstacle, as on a plane of symmetry.
+    Held,
+    /// A support moves the node along the obstacle.
+    Moved,
+}
+
+impl TangentialLaw {
+    /// One for each node of the contact surface.
+    fn of_surface<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
+        let law = |contact: &crate::contact::ContactNode| {
+            if !contact.guided {
+                return Self::Friction(problem.obstacles()[contact.obstacle].law());
+            }
+            let moved = problem.prescribed().iter().any(|p| p.node == contact.node && p.motion.is_some());
+            if moved { Self::Moved } else { Self::Held }
+        };
+        problem.surface().nodes().iter().map(law).collect()
+    }
+
+    /// The status under a reaction (N).
+    fn status<const D: usize>(self, frame: &Frame<D>, reaction: &[f64; D]) -> Status {
+        match self {
+            Self::Friction(law) => law.status(frame, reaction),
+            _ if frame.split(reaction).0 <= 0.0 => Status::Free,
+            Self::Held => Status::Stick,
+            Self::Moved => Status::Slip,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Obstacle;
+
+    #[test]
+    fn supports_decide_the_status_of_guided_nodes() {
+        let frame = Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.5, None).unwrap().flat_frame();
+        assert_eq!(TangentialLaw::Held.status(&frame, &[0.0, 1.0]), Status::Stick);
+        assert_eq!(TangentialLaw::Moved.status(&frame, &[0.0, 1.0]), Status::Slip);
+        assert_eq!(TangentialLaw::Held.status(&frame, &[0.0, 0.0]), Status::Free);
+    }
 }

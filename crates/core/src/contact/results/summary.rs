@@ -1,17 +1,17 @@
-//! What one node went through.
+//! Summary of one node.
 
-use super::Status;
+use crate::contact::coulomb::Status;
 
-/// What a node of the contact surface went through up to the last instant.
+/// The contact of one node up to the last instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeSummary<const D: usize> {
     /// The first t_n at which it touches (s).
     pub first_touch: Option<f64>,
-    /// How long it was not free (s).
+    /// Time during which it was not free (s).
     pub time_in_contact: f64,
     /// Largest normal force (N).
     pub peak_normal_force: f64,
-    /// When it was largest (s); none without force.
+    /// Instant of that force (s); none without force.
     pub time_of_peak: Option<f64>,
     /// Largest pressure (Pa): of the normal component of the density, eq. \[45\].
     pub peak_pressure: f64,
@@ -34,7 +34,7 @@ impl<const D: usize> NodeSummary<D> {
         }
     }
 
-    /// Takes in what is so at an instant.
+    /// Adds an instant.
     pub(super) fn at(&mut self, time: f64, touching: bool, normal_force: f64, area: f64) {
         if touching && self.first_touch.is_none() {
             self.first_touch = Some(time);
@@ -46,8 +46,8 @@ impl<const D: usize> NodeSummary<D> {
         }
     }
 
-    /// Takes in a step of `dt` seconds, given what is so at both its ends: all integrals are trapezoids, as the scheme has
-    /// the impulse.
+    /// Adds a step of `dt` seconds with the forces and status at both ends. All integrals are trapezoids, like the impulse
+    /// of the scheme.
     pub(super) fn over(&mut self, dt: f64, forces: [&[f64; D]; 2], status: [Status; 2]) {
         (0..D).for_each(|c| self.impulse[c] += 0.5 * dt * (forces[0][c] + forces[1][c]));
         let ends = status.iter().filter(|s| **s != Status::Free).count();

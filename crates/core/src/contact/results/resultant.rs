@@ -1,8 +1,8 @@
 //! Sums over the nodes of one obstacle, or of all.
 
-use super::Status;
+use crate::contact::coulomb::Status;
 
-/// What the nodes of one obstacle, or of all, do together at t_n.
+/// Sums over the nodes of one obstacle, or of all, at t_n.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resultant<const D: usize> {
     /// ΣR_n (N), global axes.
@@ -13,9 +13,9 @@ pub struct Resultant<const D: usize> {
     pub impulse: [f64; D],
     /// Area of contact (m²): the shares of the nodes that are not free.
     pub area: f64,
-    /// How many nodes are not free.
+    /// Number of nodes that are not free.
     pub in_contact: usize,
-    /// How many of these slip.
+    /// Number of these that slip.
     pub slipping: usize,
     /// Energy dissipated by friction up to t_n (J).
     pub friction_energy: f64,
@@ -33,7 +33,7 @@ pub(super) struct Share<const D: usize> {
     pub(super) place: [f64; D],
 }
 
-/// Adds shares up.
+/// Sums of shares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sum<const D: usize> {
     resultant: Resultant<D>,

@@ -1,49 +1,48 @@
-//! What contact did: force, gap, sliding and friction at each node of the contact surface, and their resultants.
+//! Contact results: force, gap, sliding and friction at each node of the contact surface, and their resultants.
 //!
-//! Which instant what belongs to follows from the scheme. The reaction R_n makes a_n and so the velocity of
-//! the half step *after* t_n, that ends on the plane at t_{n+1}. Force, density, status and sliding velocity at t_n are
-//! therefore those of R_n and of that half step: a node is not free at t_n exactly if it touches at t_{n+1}. Its gap
-//! and its place are those of u_n; at the t_n before it touches first there is a force, and still a gap.
+//! The scheme decides the instant of each quantity. The reaction R_n makes a_n, and so the velocity of
+//! the half step *after* t_n, which ends on the obstacle at t_{n+1}. Force, density, status and sliding velocity at t_n
+//! are therefore those of R_n and of that half step: a node is not free at t_n exactly if it touches at t_{n+1}. Gap
+//! and place are those of u_n. At the t_n before the first touch there is a force, and still a gap.
 
 mod recorder;
 mod resultant;
-mod status;
 mod summary;
 
 pub use recorder::{ContactMemoryError, ContactRecorder};
 pub use resultant::Resultant;
-pub use status::Status;
 pub use summary::NodeSummary;
 
+use super::coulomb::Status;
 use crate::ids::NodeId;
 
-/// What contact did over a run or a history, as far as it went.
+/// Contact results of a run or a history, up to its last step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactResults<const D: usize> {
     /// t_n (s).
     pub instants: Vec<f64>,
     /// The nodes of the contact surface, in its order.
-    pub nodes: Vec<Place<D>>,
-    /// What each of them went through.
+    pub nodes: Vec<ContactPoint<D>>,
+    /// One summary for each of them.
     pub summary: Vec<NodeSummary<D>>,
     /// Resultants of all obstacles at each instant.
     pub total: Vec<Resultant<D>>,
     /// Resultants of each obstacle at each instant.
     pub obstacles: Vec<Vec<Resultant<D>>>,
-    /// All nodes at all instants, if that was wanted.
+    /// All nodes at all instants, if requested.
     pub steps: Option<ContactSteps<D>>,
 }
 
 /// A node of the contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place<const D: usize> {
+pub struct ContactPoint<const D: usize> {
     /// The node.
     pub node: NodeId,
-    /// The plane that it may touch.
+    /// The obstacle that it may touch.
     pub obstacle: usize,
     /// Its place in the undeformed mesh (m).
     pub point: [f64; D],
-    /// Outward unit normal of the plane.
+    /// Unit normal there, from the obstacle to the body.
     pub normal: [f64; D],
     /// ℓ_k: its share of the candidate facets, with thickness or section (m²), eq. \[45\].
     pub area: f64,
@@ -52,14 +51,14 @@ pub struct Place<const D: usize> {
 /// All contact nodes at all instants, node by node and instant after instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactSteps<const D: usize> {
-    /// R_n (N), global axes. Over [`Place::area`] it is the density (Pa), eq. \[45\].
+    /// R_n (N), global axes. Over [`ContactPoint::area`] it is the density (Pa), eq. \[45\].
     pub force: Vec<[f64; D]>,
     /// Gap at t_n (m), eq. \[3\].
     pub gap: Vec<f64>,
     /// Tangential velocity of the half step after t_n (m/s), global axes, at the last instant of the one before; 0 at a
     /// free node.
     pub sliding_velocity: Vec<[f64; D]>,
-    /// What the node does under R_n.
+    /// Status under R_n.
     pub status: Vec<Status>,
     /// Energy dissipated by friction up to t_n (J).
     pub friction_energy: Vec<f64>,
@@ -69,7 +68,7 @@ impl<const D: usize> ContactSteps<D> {
     /// Bytes of one node at one instant.
     pub const BYTES: usize = 2 * size_of::<[f64; D]>() + 2 * size_of::<f64>() + size_of::<Status>();
 
-    /// Makes room for so many rows.
+    /// Reserves memory for this many rows.
     fn reserve(&mut self, rows: usize) -> Result<(), std::collections::TryReserveError> {
         self.force.try_reserve_exact(rows)?;
         self.gap.try_reserve_exact(rows)?;
@@ -80,7 +79,7 @@ impl<const D: usize> ContactSteps<D> {
 }
 
 impl<const D: usize> ContactResults<D> {
-    /// Where the normal forces of all nodes together are largest: which instant. None without any force.
+    /// The instant at which the sum of all normal forces is largest. None without any force.
     #[must_use]
     pub fn peak(&self) -> Option<usize> {
         let forces = self.total.iter().map(|r| r.normal_force).enumerate();
@@ -89,7 +88,7 @@ impl<const D: usize> ContactResults<D> {
         (peak.1 > 0.0).then_some(peak.0)
     }
 
-    /// Which node, as its position in the surface, has the largest pressure of all. None without any force.
+    /// The node with the largest pressure, as its position in the surface. None without any force.
     #[must_use]
     pub fn most_pressed(&self) -> Option<usize> {
         let pressures = self.summary.iter().map(|s| s.peak_pressure).enumerate();

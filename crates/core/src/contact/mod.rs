@@ -1,0 +1,26 @@
+//! Contact with obstacles: geometry, Coulomb's law, the constraints of a step, and results.
+//!
+//! An [`Obstacle`] gives the gap of a point and the [`Frame`] at it. All other code uses these two only. [`Coulomb`] is
+//! the one place that knows the cone of friction.
+
+mod constraint;
+mod coulomb;
+mod frame;
+mod obstacle;
+mod plane;
+mod results;
+mod solve;
+mod surface;
+
+pub(crate) use constraint::{Constraint, Prediction, violated};
+pub(crate) use coulomb::dissipation;
+pub use coulomb::{Coulomb, Status};
+pub use frame::Frame;
+pub(crate) use frame::dot;
+pub use obstacle::{Obstacle, ObstacleError};
+pub use plane::Plane;
+pub use results::{
+    ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, NodeSummary, Resultant,
+};
+pub(crate) use solve::solve;
+pub use surface::{ContactFacet, ContactNode, ContactSurface};

@@ -1,0 +1,147 @@
+//! Rigid obstacles with friction.
+
+use super::coulomb::Coulomb;
+use super::frame::{Frame, dot};
+use super::plane::Plane;
+use thiserror::Error;
+
+/// The reason why an obstacle was refused.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ObstacleError {
+    /// Zero or not finite.
+    #[error("`normal` is {normal:?}; it must be finite and not zero, and point from the plane to the body")]
+    Normal {
+        /// The normal given.
+        normal: Vec<f64>,
+    },
+    /// Not finite.
+    #[error("`point` is {point:?}; its coordinates (m) must be finite")]
+    Point {
+        /// The point given.
+        point: Vec<f64>,
+    },
+    /// Negative or not finite.
+    #[error("`friction` is {friction}; the coefficient must be zero or positive")]
+    Friction {
+        /// The coefficient given.
+        friction: f64,
+    },
+    /// Friction in 1D.
+    #[error("`friction` is {friction}; a bar has no tangential direction; leave it out or give 0")]
+    FrictionInOneDimension {
+        /// The coefficient given.
+        friction: f64,
+    },
+}
+
+/// A rigid obstacle that the body may touch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle<const D: usize> {
+    shape: Plane<D>,
+    law: Coulomb,
+    group: Option<String>,
+}
+
+impl<const D: usize> Obstacle<D> {
+    /// A plane through `point` (m) with its outward `normal` (of any length; it points to the
+    /// body) and a coefficient of friction μ ≥ 0. With a `group`, only its facets may touch.
+    ///
+    /// # Errors
+    /// A zero normal, values that are not finite, negative friction, friction in 1D.
+    pub fn plane(
+        point: [f64; D],
+        normal: [f64; D],
+        friction: f64,
+        group: Option<String>,
+    ) -> Result<Self, ObstacleError> {
+        let shape = Plane::new(point, normal).ok_or_else(|| ObstacleError::Normal { normal: normal.to_vec() })?;
+        if point.iter().any(|x| !x.is_finite()) {
+            return Err(ObstacleError::Point { point: point.to_vec() });
+        }
+        if !friction.is_finite() || friction < 0.0 {
+            return Err(ObstacleError::Friction { friction });
+        }
+        if D == 1 && friction != 0.0 {
+            return Err(ObstacleError::FrictionInOneDimension { friction });
+        }
+        Ok(Self { shape, law: Coulomb::new(friction), group })
+    }
+
+    /// The shape as it was stated, for files and pictures.
+    #[must_use]
+    pub fn shape(&self) -> &Plane<D> {
+        &self.shape
+    }
+
+    /// The stated point (m), moved against the normal by a depth.
+    pub(crate) fn point_behind(&self, depth: f64) -> [f64; D] {
+        let (point, normal) = (self.shape.point(), self.shape.frame());
+        std::array::from_fn(|c| point[c] - depth * normal.normal()[c])
+    }
+
+    /// The law of contact on it.
+    #[inline]
+    #[must_use]
+    pub fn law(&self) -> Coulomb {
+        self.law
+    }
+
+    /// Projects a force on a flat obstacle into the cone, eq. \[49\], \[50\].
+    #[inline]
+    #[must_use]
+    pub fn project_into_cone(&self, force: &[f64; D]) -> [f64; D] {
+        self.law.project(&self.flat_frame(), force)
+    }
+
+    /// The group of facets that may touch, if it was named.
+    #[must_use]
+    pub fn group(&self) -> Option<&str> {
+        self.group.as_deref()
+    }
+
+    /// Signed distance of a point (m), positive outside, eq. \[3\].
+    #[inline]
+    #[must_use]
+    pub fn gap(&self, x: &[f64; D]) -> f64 {
+        self.shape.gap(x)
+    }
+
+    /// The gap (m) after a displacement from a point with this gap. A distant obstacle leaves no rounding in it.
+    #[inline]
+    pub(super) fn gap_after(&self, gap: f64, displacement: &[f64; D]) -> f64 {
+        gap + dot(displacement, self.shape.frame().normal())
+    }
+
+    /// The frame at a point.
+    #[inline]
+    #[must_use]
+    pub fn frame_at(&self, _x: &[f64; D]) -> Frame<D> {
+        self.flat_frame()
+    }
+
+    /// The frame of a flat obstacle, which is the same everywhere.
+    #[inline]
+    #[must_use]
+    pub fn flat_frame(&self) -> Frame<D> {
+        self.shape.frame()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_planes_are_refused() {
+        assert!(matches!(Obstacle::plane([0.0], [0.0], 0.0, None), Err(ObstacleError::Normal { .. })));
+        assert!(matches!(Obstacle::plane([f64::NAN], [1.0], 0.0, None), Err(ObstacleError::Point { .. })));
+        assert!(matches!(Obstacle::plane([0.0, 0.0], [1.0, 0.0], -0.1, None), Err(ObstacleError::Friction { .. })));
+        assert!(matches!(Obstacle::plane([0.0], [1.0], 0.1, None), Err(ObstacleError::FrictionInOneDimension { .. })));
+    }
+
+    #[test]
+    fn the_gap_of_a_plane_is_the_distance() {
+        let plane = Obstacle::plane([0.0, 0.0], [0.0, 2.0], 0.5, None).unwrap();
+        assert_eq!(plane.gap(&[7.0, -0.25]), -0.25);
+    }
+}

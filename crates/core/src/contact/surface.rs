@@ -1,0 +1,122 @@
+//! The candidate facets and nodes of contact, with their obstacles.
+
+use super::coulomb::Coulomb;
+use super::frame::Frame;
+use super::obstacle::Obstacle;
+use crate::ids::{FacetId, NodeId};
+
+/// A node of the candidate facets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactNode {
+    /// The node.
+    pub node: NodeId,
+    /// The obstacle it may touch.
+    pub obstacle: usize,
+    /// Gap of its place in the undeformed mesh (m).
+    pub undeformed_gap: f64,
+    /// Whether it is a candidate: its normal motion is not prescribed.
+    pub free: bool,
+    /// Whether its tangential motion is prescribed, as on a plane of symmetry: its tangential
+    /// reaction is then the support's.
+    pub guided: bool,
+}
+
+/// A facet that may touch an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactFacet<const D: usize> {
+    /// The facet.
+    pub facet: FacetId,
+    /// Positions of its nodes in [`ContactSurface::nodes`], in the order of the facet's nodes.
+    pub nodes: [usize; D],
+    /// Its area, with thickness or section (m²).
+    pub area: f64,
+    /// The obstacle it may touch.
+    pub obstacle: usize,
+}
+
+/// All obstacles and all candidate facets, ordered along the boundary: in 2D a facet joins two nodes that follow
+/// each other in [`ContactSurface::nodes`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactSurface<const D: usize> {
+    obstacles: Vec<Obstacle<D>>,
+    nodes: Vec<ContactNode>,
+    /// Places of the nodes in the undeformed mesh (m).
+    points: Vec<[f64; D]>,
+    facets: Vec<ContactFacet<D>>,
+}
+
+impl<const D: usize> ContactSurface<D> {
+    /// The obstacles.
+    #[must_use]
+    pub fn obstacles(&self) -> &[Obstacle<D>] {
+        &self.obstacles
+    }
+
+    /// Nodes of the candidate facets.
+    #[must_use]
+    pub fn nodes(&self) -> &[ContactNode] {
+        &self.nodes
+    }
+
+    /// Place of a node in the undeformed mesh (m).
+    #[must_use]
+    pub fn point(&self, at: usize) -> &[f64; D] {
+        &self.points[at]
+    }
+
+    /// Candidate facets.
+    #[must_use]
+    pub fn facets(&self) -> &[ContactFacet<D>] {
+        &self.facets
+    }
+
+    /// Tributary area (m²) of each node: its share of the candidate facets, ℓ_k of eq. \[45\].
+    #[must_use]
+    pub fn tributary_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.nodes.len()];
+        for facet in &self.facets {
+            facet.nodes.iter().for_each(|&at| areas[at] += facet.area / D as f64);
+        }
+        areas
+    }
+
+    /// The gap of a node with this displacement (m), eq. \[3\].
+    #[inline]
+    #[must_use]
+    pub fn gap(&self, at: usize, displacement: &[f64; D]) -> f64 {
+        let contact = &self.nodes[at];
+        self.obstacles[contact.obstacle].gap_after(contact.undeformed_gap, displacement)
+    }
+
+    /// The frame at a node with this displacement.
+    #[inline]
+    #[must_use]
+    pub fn frame(&self, at: usize, displacement: &[f64; D]) -> Frame<D> {
+        let place = std::array::from_fn(|c| self.points[at][c] + displacement[c]);
+        self.obstacles[self.nodes[at].obstacle].frame_at(&place)
+    }
+
+    /// The law of contact at a node. At a guided node the support takes the tangential reaction.
+    #[inline]
+    pub(super) fn law(&self, at: usize) -> Coulomb {
+        let contact = &self.nodes[at];
+        if contact.guided { Coulomb::FRICTIONLESS } else { self.obstacles[contact.obstacle].law() }
+    }
+
+    /// Adds an obstacle with its candidates. The facets have positions in `nodes`.
+    pub(crate) fn add(
+        &mut self,
+        obstacle: Obstacle<D>,
+        nodes: impl IntoIterator<Item = (ContactNode, [f64; D])>,
+        facets: impl IntoIterator<Item = ContactFacet<D>>,
+    ) {
+        let start = self.nodes.len();
+        for (node, point) in nodes {
+            self.nodes.push(node);
+            self.points.push(point);
+        }
+        self.facets.extend(facets.into_iter().map(|f| ContactFacet { nodes: f.nodes.map(|at| start + at), ..f }));
+        self.facets.sort_by_key(|f| f.nodes.iter().copied().min());
+        self.obstacles.push(obstacle);
+    }
+}

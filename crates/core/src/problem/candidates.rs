@@ -1,0 +1,132 @@
+//! Candidates of contact: the facets that face an obstacle, and their nodes.
+
+use super::{Cause, HeldBy, InputError};
+use crate::contact::{ContactFacet, ContactNode, ContactSurface, Obstacle, dot};
+use crate::ids::{FacetId, NodeId};
+use crate::mesh::Mesh;
+use std::collections::BTreeMap;
+
+/// A facet faces an obstacle if its outward unit normal · n is below this.
+const FACES: f64 = -1e-9;
+/// A prescribed component of which the normal has no more than this is tangential.
+const ALIGNED: f64 = 1e-12;
+
+/// Adds an obstacle and the facets that may touch it to the contact surface.
+pub(super) fn add<const D: usize, const N: usize>(
+    surface: &mut ContactSurface<D>,
+    mesh: &Mesh<D, N>,
+    obstacle: Obstacle<D>,
+    held: impl Fn(FacetId) -> Option<HeldBy>,
+    prescribed: impl Fn(NodeId) -> [bool; D],
+    area: impl Fn(FacetId) -> f64,
+) -> Result<(), InputError> {
+    let index = surface.obstacles().len();
+    let facing = facing(mesh, &obstacle, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
+    let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
+    for node in along_the_boundary(mesh, &facing) {
+        if let Some(other) = surface.nodes().iter().find(|c| c.node == node) {
+            let cause = Cause::TwoPlanes { node: node.index(), first: other.obstacle + 1 };
+            return Err(cause.at("obstacle", Some(index), "group"));
+        }
+        let (point, held) = (mesh.points()[node.index()], prescribed(node));
+        let frame = obstacle.frame_at(&point);
+        let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
+        let guided = free && held != [false; D];
+        let undeformed_gap = obstacle.gap(&point);
+        nodes.push((ContactNode { node, obstacle: index, undeformed_gap, free, guided }, point));
+    }
+    if let Some((first, _)) = nodes.first().filter(|_| nodes.iter().all(|(contact, _)| !contact.free)) {
+        return Err(Cause::HeldNodes { node: first.node.index() }.at("obstacle", Some(index), ""));
+    }
+    let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, (c, _))| (c.node, at)).collect();
+    let facet = |facet: FacetId| {
+        let nodes = mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
+        ContactFacet { facet, nodes, area: area(facet), obstacle: index }
+    };
+    surface.add(obstacle, nodes, facing.into_iter().map(facet));
+    Ok(())
+}
+
+/// Free facets that face an obstacle, of its group if it names one. The error has the key of the statement.
+fn facing<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    obstacle: &Obstacle<D>,
+    held: impl Fn(FacetId) -> Option<HeldBy>,
+) -> Result<Vec<FacetId>, (Cause, &'static str)> {
+    let nodes = |facet: FacetId| mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+    let faces = |&facet: &FacetId| dot(&mesh.facet_normal(facet).0, &normal_at(mesh, obstacle, facet)) < FACES;
+    let mut found: Vec<FacetId>;
+    if let Some(name) = obstacle.group() {
+        let group = super::boundary::facet_group(mesh, name).map_err(|cause| (cause, "group"))?;
+        if let Some((facet, by)) = group.iter().find_map(|&facet| Some((facet, held(facet)?))) {
+            return Err((Cause::NotFree { nodes: nodes(facet), by }, "group"));
+        }
+        found = group.iter().copied().filter(faces).collect();
+        if found.is_empty() {
+            return Err((nothing_faces(mesh, obstacle, name, group), "group"));
+        }
+    } else {
+        found = mesh.boundary().filter(faces).collect();
+        // A closed boundary has facets in all directions: some always face the obstacle.
+        let first = found.first().and_then(|&facet| Some((facet, held(facet)?)));
+        found.retain(|&facet| held(facet).is_none());
+        if let (Some((facet, by)), true) = (first, found.is_empty()) {
+            return Err((Cause::AllHeld { nodes: nodes(facet), by }, ""));
+        }
+    }
+    Ok(found)
+}
+
+/// The normal of a group that does not face the obstacle, and the groups that do face it.
+fn nothing_faces<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    obstacle: &Obstacle<D>,
+    name: &str,
+    group: &[FacetId],
+) -> Cause {
+    let mean = |facets: &[FacetId]| {
+        let mut sum = [0.0; D];
+        for &facet in facets {
+            let (normal, area) = mesh.facet_normal(facet);
+            (0..D).for_each(|c| sum[c] += area * normal[c]);
+        }
+        let length = dot(&sum, &sum).sqrt();
+        // A few digits are enough to be shown.
+        sum.map(|s| if length > 0.0 { (1e3 * s / length).round() / 1e3 } else { 0.0 })
+    };
+    let (outward, normal) = (mean(group), normal_at(mesh, obstacle, group[0]));
+    let looks = |facets: &[FacetId]| dot(&mean(facets), &normal) < FACES;
+    let facing = mesh.facet_groups().iter().filter(|(_, facets)| looks(facets)).map(|(name, _)| name.clone()).collect();
+    let normal = normal.map(|n| (1e3 * n).round() / 1e3);
+    Cause::NothingFaces { group: name.to_string(), outward: Box::new(outward), normal: Box::new(normal), facing }
+}
+
+/// Normal of an obstacle at the centroid of a facet.
+fn normal_at<const D: usize, const N: usize>(mesh: &Mesh<D, N>, obstacle: &Obstacle<D>, facet: FacetId) -> [f64; D] {
+    let points = mesh.facets()[facet.index()].nodes.map(|node| mesh.points()[node.index()]);
+    let centroid = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / D as f64);
+    *obstacle.frame_at(&centroid).normal()
+}
+
+/// Nodes of the facets, piece by piece along the boundary. A piece is never closed: not all
+/// facets of a closed curve face the same obstacle.
+fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
+    let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
+    for facet in facets {
+        let nodes = &mesh.facets()[facet.index()].nodes;
+        for node in nodes {
+            neighbours.entry(*node).or_default().extend(nodes.iter().filter(|n| *n != node));
+        }
+    }
+    let mut ordered: Vec<NodeId> = Vec::with_capacity(neighbours.len());
+    let ends: Vec<NodeId> = neighbours.iter().filter(|(_, n)| n.len() < 2).map(|(n, _)| *n).collect();
+    for end in ends {
+        let mut next = neighbours.contains_key(&end).then_some(end);
+        while let Some(node) = next {
+            let around = neighbours.remove(&node).unwrap_or_default();
+            ordered.push(node);
+            next = around.into_iter().find(|n| neighbours.contains_key(n));
+        }
+    }
+    ordered
+}
