@@ -138,28 +138,23 @@ def compute(section: Section, resolution: Resolution) -> None:
     """Compute the study."""
     grid = Grid(resolution.first(FEW, ELEMENTS), resolution)
     sweep = _sweep(resolution)
-    section.add(*INTRODUCTION, Figure("figure-5", FIGURE_5, grid.relative()), *_ranges(grid))
+    section.add(INTRODUCTION, Figure("figure-5", FIGURE_5, grid.relative()), _ranges(grid))
     for m, what in enumerate(("largest error [15]", "mean error [16]")):
         section.add(Figure(f"figure-6-{MEASURES[m]}", f"The paper's figure 6: effectivity e/e_Ex of the {what} [60]{MAPS}", grid.effectivity(m, _middle)))
-    section.add(_effectivities(grid))
     # A summary needs all runs.
-    if not resolution.small:
-        section.add(_by_choice(grid))
-    section.add(*INSTANTS, Figure("figure-6-worst", WORST, grid.effectivity(0, _until(ENDS[1]))))
-    section.add(Figure("figure-6-instants", SWEPT, _draw_sweep(sweep)))
-    if not resolution.small:
-        section.add(_by_fraction(grid))
-    section.add(sweep, grid.table())
+    summaries = [] if resolution.small else [_by_choice(grid), _by_fraction(grid)]
+    section.add(*summaries[:1], INSTANTS, Figure("figure-6-worst", WORST, grid.effectivity(0, _until(ENDS[1]))))
+    section.add(Figure("figure-6-instants", SWEPT, _draw_sweep(sweep)), *summaries[1:], _effectivities(grid), sweep, grid.table())
 
 
 INTRODUCTION = (
     f"An aluminium bar (E = {1e-9 * BAR['young']:g} GPa, L = {BAR['length']} m, S = {BAR['section']} m², ρ = {BAR['density']:g} kg/m³) flies at "
     f"{BAR['speed']:g} m/s against a rigid plane. The exact solution is known: contact lasts 2L/c, and then the bar flies back. The true error "
     "e_Ex [60] is measured against it at the instants t_n. The effectivity is the estimate over it, of the largest values over time (`sup`) or "
-    "of the means (`mean`). Steps are fractions of the critical one, Δt_c = h/c [33].",
+    "of the means (`mean`). Steps are fractions of the critical one, Δt_c = h/c [33]. "
     f"The paper states neither the gap nor the end of its runs. Here the impact falls {WHOLE:g} + f steps after the start, for several fractions f. "
     f"Runs end {ENDS[0]:g} L/c after the impact t_c, when contact ends, or {ENDS[1]:g} L/c after it, in the flight back; up to a step is added, so that "
-    "the number of steps is whole.",
+    "the number of steps is whole."
 )
 FIGURE_5 = (
     "The paper's figure 5: relative error ε of the largest values [22] (%, colours logarithmic) over the number of elements and Δt/Δt_c, for each "
@@ -171,9 +166,8 @@ MAPS = (
     f"T = t_c + {ENDS[1]:g} L/c. Pale is 1, blue too small, red too large; colours are in equal ratios from 1/4 to 4."
 )
 INSTANTS = (
-    "### The instant of impact inside a step",
     "The scheme stops the node that touches at the end of a step, wherever inside the step the bar arrives. The loss, and the part of it that the "
-    "estimate contains, depend on the fraction of the step that is left.",
+    "estimate contains, depend on the fraction of the step that is left."
 )
 WORST = (
     f"The same maps as figure 6 for the largest error [15], T = t_c + {ENDS[1]:g} L/c, but each value is the one farthest from 1 (as a ratio) over the "
@@ -186,7 +180,7 @@ SWEPT = (
 )
 
 
-def _ranges(grid: Grid) -> list[str]:
+def _ranges(grid: Grid) -> str:
     """State the ranges of the effectivities with the default Γ_DA."""
     of = {(name, m, end): Summary(grid.effectivities(of_default(name), m, _until(end))) for name in RECONSTRUCTIONS for m in (0, 1) for end in ENDS}
     whole = {name: [s for (other, *_), s in of.items() if other == name] for name in RECONSTRUCTIONS}
@@ -199,22 +193,22 @@ def _ranges(grid: Grid) -> list[str]:
     but = f", except {'; '.join(wider)} (because of Δt = Δt_c, see below)" if wider else ""
     below = [Summary(grid.effectivities(of_default("corrected"), m, lambda s: s.after_impact == ENDS[1] and s.ratio < 1)) for m in (0, 1)]
     ranges = " and ".join(f"{short(s.low, 3)} to {short(s.high, 3)} (`{name}`)" for s, name in zip(below, MEASURES, strict=True))
-    return [
+    return (
         f"The paper finds effectivities from {PAPER[0]} to {PAPER[1]} and does not state of which measure. Over all runs and both measures, with Γ_DA "
         f"`{DEFAULT}`, they are {', '.join(spans)}. The highest means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but "
         "for the step of the impact. The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind "
-        "the front: a measure whose balance is that of the simulation's own displacements does not contain the accumulated error.",
+        "the front: a measure whose balance is that of the simulation's own displacements does not contain the accumulated error. "
         "`corrected` balances an auxiliary solution with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c "
         "in the runs that go on beyond the contact. There the simulation is at its limit of stability, and its shortest wave, once the release has excited "
         "it, grows with time. That of the auxiliary solution does not grow, but the release excites it as well, and about half of that is missing in the "
         f"estimate. The highest over the lowest value is with `corrected` at most half of that with either other reconstruction{but}. With all shorter "
-        f"steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c.",
-    ]
+        f"steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c."
+    )
 
 
 def _effectivities(grid: Grid) -> Table:
     columns = [Column("contact force"), Column("measure"), Column("elements"), *(Column(f"Δt/Δt_c = {short(ratio, 1)}", digits=3) for ratio in RATIOS)]
-    table = Table("bar-maps-effectivity", f"The values of the two maps with Γ_DA `{DEFAULT}`.", columns, on_page=False)
+    table = Table("bar-maps-effectivity", f"The effectivities of the paper's figure 6 with Γ_DA `{DEFAULT}`.", columns, on_page=False)
     for name, (m, measure) in product(RECONSTRUCTIONS, enumerate(MEASURES)):
         cells = grid.cells(grid.effectivities(of_default(name), m, _middle))
         for n, elements in enumerate(grid.elements):
@@ -226,10 +220,10 @@ def _by_choice(grid: Grid) -> Table:
     caption = (
         f"Effectivity e/e_Ex over {ELEMENTS[0]} to {ELEMENTS[-1]} elements, Δt/Δt_c from {RATIOS[0]} to {RATIOS[-1]:g} and the fractions "
         f"{', '.join(map(str, FRACTIONS))} of a step: its range, the places of its ends, and the part of it in the range that the paper states; on the "
-        f"page with Γ_DA `{DEFAULT}`."
+        f"page of the largest error with Γ_DA `{DEFAULT}`."
     )
     columns = [Column("contact force"), Column("Γ_DA"), Column("measure"), Column("T − t_c", "L/c", digits=2), Column("runs"), *Summary.COLUMNS]
-    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT})
+    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT, "measure": "sup"})
     for (c, choice), (m, measure), end in product(enumerate(CHOICES), enumerate(MEASURES), ENDS):
         summary = Summary(grid.effectivities(c, m, _until(end)))
         table.add(*choice.values(), measure, end, summary.count, *summary.cells())
@@ -238,7 +232,8 @@ def _by_choice(grid: Grid) -> Table:
 
 def _by_fraction(grid: Grid) -> Table:
     caption = (
-        f"The same for the largest error, Γ_DA `{DEFAULT}` and runs until t_c + {ENDS[1]:g} L/c, for each fraction of a step at which the impact falls."
+        f"Range of the effectivity of the largest error with Γ_DA `{DEFAULT}` and runs until t_c + {ENDS[1]:g} L/c, for each fraction of a step at which "
+        "the impact falls."
     )
     columns = [Column("contact force"), Column("fraction", "steps", digits=1), *Summary.COLUMNS]
     table = Table("bar-maps-fractions", caption, columns, on_page=False)

@@ -89,13 +89,11 @@ def compute(section: Section, resolution: Resolution) -> None:
         "stress or plane strain. Taken here: plane stress, a gap that the block crosses in 1.3 steps, and the first whole step past "
         f"{short(1e6 * base.past, 3)} µs. The influence of each is below.",
         Figure("table1-errors", CAPTION, _draw(absolute)),
-        *_conclusions(rows, own),
+        " ".join(_conclusions(rows, own)),
         absolute,
-        relative,
-        "### The influence of the open assumptions",
     )
     table = _assumptions(rows, variants, others)
-    section.add(_spreads(table), Figure("table1-gap", GAP_CAPTION, _draw_gap(table, rows)), table)
+    section.add(_spreads(table), Figure("table1-gap", GAP_CAPTION, _draw_gap(table, rows)), relative, table)
 
 
 CAPTION = (
