@@ -158,7 +158,6 @@ def test_the_committed_page_has_the_computed_numbers(folder: Path) -> None:
                 for other in committed[heading]
             )
             rows += 1
-            # The range over all bodies and steps needs all of them.
             assert same, f"docs/verification.md does not have the row {row} of {heading}"
     assert rows > 30
 
@@ -196,11 +195,12 @@ def test_every_estimate_states_the_ranges_of_the_page(block_history: pc.History)
             (corner if "10°" in body else inside).extend(float(values[i]) for i in (0, 4))
             slow.append(float(values[7]))
     least = []
-    for name, option, after, *values in rows("contact force", "Γ_DA", "runs until (L/c)"):
-        if option == "closest" and name == "corrected" and after == "2":
-            inside += [float(values[1]), float(values[3])]
-        elif option == "closest" and name != "corrected":
-            least.append(float(values[1]))
+    for name, _, _, after, _, lowest, _, highest, *_ in rows("Γ_DA", "T − t_c (L/c)"):
+        # Until the end of contact.
+        if name == "corrected" and after == "2.0":
+            inside += [float(lowest), float(highest)]
+        elif name != "corrected":
+            least.append(float(lowest))
     low, high = math.floor(20 * min(inside)) / 20, math.ceil(10 * max(inside)) / 10
     at_a_corner = math.ceil(10 * max(corner)) / 10
     meaning = pc.estimate(block_history).meaning

@@ -240,9 +240,9 @@ def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, 
 
 def _html(sections: Sequence[Section], origin: str, svg: dict[str, str]) -> str:
     style = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
-    contents = "\n".join(f'<li><a href="#{section.key}">{html.escape(section.title)}</a></li>' for section in sections)
+    contents = "\n".join(f'<li><a href="#study-{section.key}">{html.escape(section.title)}</a></li>' for section in sections)
     body = "\n".join(
-        f'<section id="{section.key}">\n<h2>{html.escape(section.title)}</h2>\n' + "\n".join(pieces + left) + "\n</section>"
+        f'<section id="study-{section.key}">\n<h2>{html.escape(section.title)}</h2>\n' + "\n".join(pieces + left) + "\n</section>"
         for section, pieces, left in _items(sections, _Html(), svg)
     )
     return (

@@ -69,15 +69,16 @@ def prepare(folder: Path, overwrite: bool) -> None:
         raise StorageError(f"`folder`: cannot write {folder}: there is no folder {folder.parent}; create it first, or give another name")
     try:
         folder.mkdir(exist_ok=True)
-        if any(folder.iterdir()) and not overwrite:
-            raise ExistingFileError(f"`folder`: the folder {folder} is not empty; give another name, or overwrite=True")
-        for name in PAGES:
+        used = any(folder.iterdir())
+        for name in PAGES if overwrite or not used else ():
             kept = (folder / name).exists()
             (folder / name).open("a").close()
             if not kept:
                 (folder / name).unlink()
     except OSError as error:
         raise StorageError(f"cannot write {error.filename or folder}: {error.strerror}") from error
+    if used and not overwrite:
+        raise ExistingFileError(f"`folder`: the folder {folder} is not empty; give another name, or overwrite=True")
 
 
 def run(
