@@ -65,7 +65,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     cases, rows, runs, curves = _cases(), _rows(), _runs(), _curves()
     panels = []
     for case, outcome in zip(BENCHMARKS, outcomes, strict=True):
-        orders, bounds = [], []
+        orders, within = [], []
         for each in outcome.quantities:
             numbers = each.exact, each.computed[-1], each.difference, each.observed, each.order, each.bound
             rows.add(case.key, each.name, each.unit, *numbers, each.reason)
@@ -74,9 +74,9 @@ def compute(section: Section, resolution: Resolution) -> None:
             if each.observed is not None and each.order is not None:
                 orders.append(f"{short(each.observed, 2)} ({short(each.order, 2)})")
             elif each.bound is not None:
-                bounds.append(abs(each.difference) / each.bound)
-        largest = short(max(bounds), 1) if bounds else "–"
-        cases.add(case.key, case.title, case.refined, case.source, ", ".join(orders) or "–", largest)
+                within.append(abs(each.difference) <= each.bound)
+        bounded = f"{sum(within)} of {len(within)}" if within else None
+        cases.add(case.key, case.title, case.refined, case.source, ", ".join(orders) or None, bounded)
         if outcome.curve is not None:
             panels.append((case.key, outcome.curve))
             _thin(curves, case.key, outcome.curve)
@@ -95,10 +95,10 @@ CAPTION = (
 
 
 def _cases() -> Table:
-    names = ("case", "subject", "halved from run to run", "source", "observed orders (expected)", "largest difference over its bound")
+    names = ("case", "subject", "halved from run to run", "source", "observed orders (expected)", "quantities within their bound")
     caption = (
         "The cases, the sources of their solutions, and the results: the mean order of each quantity over all runs, beside the order that "
-        "theory predicts, and quantities without an order in parts of their bound."
+        "theory predicts, and how many of the quantities without an order are within their bound."
     )
     return Table("benchmarks-cases", caption, [Column(name) for name in names])
 
