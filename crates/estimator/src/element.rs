@@ -1,7 +1,10 @@
-//! What is needed of each element again and again, computed once.
+//! The data of an element, computed once.
 
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
+
+/// Elements or nodes in a block of parallel work: small enough to share the work, large enough to be worth a task.
+pub(crate) const BLOCK: usize = 256;
 
 /// Geometry and mass of one element.
 #[derive(Clone, Copy, Debug)]

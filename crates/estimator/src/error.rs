@@ -1,4 +1,4 @@
-//! What can keep an estimate from being made.
+//! Reasons why an estimate cannot be made.
 
 use crate::options::MOST_THREADS;
 use crate::request::RequestError;

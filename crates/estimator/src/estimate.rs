@@ -1,4 +1,4 @@
-//! What an estimate says.
+//! The results of an estimate.
 
 use crate::map::ElementMap;
 use crate::residual::Residuals;

@@ -1,8 +1,8 @@
 //! The constitutive relation error of an explicit impact simulation.
 //!
 //! From the steps of a simulation, an [`Estimator`] builds fields that satisfy the kinematics
-//! exactly and fields that satisfy equilibrium exactly, and measures how badly they miss the
-//! material, inertia and contact laws (eq. \[14\]). It never asks where the steps came from.
+//! exactly and fields that satisfy equilibrium exactly. It measures by how much they miss the
+//! material, inertia and contact laws (eq. \[14\]). The origin of the steps does not matter.
 //!
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur en
 //! relation de comportement pour les problèmes d'impact*. All units are SI.

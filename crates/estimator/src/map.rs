@@ -1,4 +1,4 @@
-//! Maps: what each element adds to the error at one instant, and the fields behind it.
+//! Maps: the part of each element in the error at one instant, and the fields behind it.
 
 /// The contributions of all elements to the error at one instant t_n. Where the contact zone
 /// changes at that instant, they are those after it, like the later of its two samples.
@@ -14,7 +14,7 @@ pub struct ElementMap<const D: usize> {
     pub elastic: Vec<f64>,
     /// Its contact part (J), an integral from 0 to t_n, in the element that owns the facet.
     pub contact: Vec<f64>,
-    /// ∫η_E dt of each element from 0 to t_n (J s). What the paper's figure 9 shows follows from it, see
+    /// ∫η_E dt of each element from 0 to t_n (J s). The quantity of the paper's figure 9 follows from it, see
     /// [`ElementMap::error`].
     pub accumulated: Vec<f64>,
     /// The fields, if they were requested.

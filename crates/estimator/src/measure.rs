@@ -14,7 +14,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::problem::Problem;
 
-/// What one element adds to η and d at one sample (J), contact apart.
+/// The part of one element in η and d at one sample (J), contact apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ElementError {
     pub(crate) kinetic: f64,
@@ -42,13 +42,13 @@ pub(crate) struct Balanced<const D: usize, const N: usize> {
     /// Tractions and Γ_DA − f_d.
     pub(crate) loading: Loading<D, N>,
     /// Largest component of f_d and of ρã at the nodes (N/m³). Γ_DA − f_d is made of them, and where
-    /// they cancel, as in a fall, says nothing about how large the terms of the balance are.
+    /// they cancel, as in a fall, it does not show how large the terms of the balance are.
     terms: f64,
     /// Their work on the shape function of each node.
     forces: [NodalForce<D>; N],
 }
 
-/// What acts on one node of an element (N per unit of section or thickness).
+/// The forces on one node of an element (N per unit of section or thickness).
 #[derive(Clone, Copy, Debug)]
 struct NodalForce<const D: usize> {
     /// Tractions.
@@ -250,7 +250,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         (self.stress.mean(&balanced.loading), acceleration)
     }
 
-    /// ∫σ_DA : ε(u) as the work of what σ_DA balances (J).
+    /// ∫σ_DA : ε(u) as the work of the loading that σ_DA balances (J).
     #[inline]
     fn work(&self, balanced: &Balanced<D, N>, u: &[[f64; D]; N]) -> f64 {
         let mut work = 0.0;
@@ -279,7 +279,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// The smallest force that counts, per unit of section or thickness: 1e-12 of the largest in
-    /// the mesh, or what f_d or the lumped inertia does at a node.
+    /// the mesh, or the force of f_d or of the lumped inertia at a node.
     fn floor(&self, balanced: &Balanced<D, N>, scale: f64) -> f64 {
         (1e-12 * scale).max(balanced.terms * self.element.volume / N as f64) / self.law.extent()
     }

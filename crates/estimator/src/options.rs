@@ -42,8 +42,8 @@ pub enum Ablation {
     /// All parts.
     #[default]
     None,
-    /// The balance of the simulation's own displacements, with accelerations that take up what the nodal forces of the
-    /// density and the reactions differ by.
+    /// The simulation's own displacements are balanced, with accelerations that take up the difference between the nodal
+    /// forces of the density and the reactions.
     AuxiliarySolution,
     /// A auxiliary solution with the dispersion of the simulation.
     Correction,

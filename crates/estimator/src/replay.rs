@@ -13,8 +13,8 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the
-/// observer breaks, the steps taken so far are estimated. The simulation is what the steps tell of
-/// it. `beside` takes every step that is estimated too, so that they need not be read again.
+/// observer breaks, the steps taken so far are estimated. The simulation is summed up from the steps.
+/// `beside` takes every step that is estimated too, so that they need not be read again.
 ///
 /// # Errors
 /// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps
@@ -46,7 +46,7 @@ pub fn estimate<const D: usize, const N: usize>(
     Ok((Simulation { balance, balance_over_time, steps, interrupted }, estimate))
 }
 
-/// What takes the steps of a history.
+/// Takes the steps of a history.
 struct Replay<'a, 'p, const D: usize, const N: usize> {
     estimator: Estimator<'p, D, N>,
     balancing: Balancing<'p, D, N>,

@@ -3,7 +3,7 @@
 use percute_core::time::TimeGrid;
 use thiserror::Error;
 
-/// Which maps an estimate keeps besides its sums. The default asks for nothing and costs nothing.
+/// Which maps an estimate keeps besides its sums. The default keeps none and costs nothing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// Steps at whose instants the contribution of every element is kept: increasing, and each one

@@ -24,7 +24,7 @@ pub(crate) struct ContactTrack {
     between_instants: f64,
 }
 
-/// One step of the simulation as a candidate node sees it.
+/// The normal motion of a candidate node over one step of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalStep {
     /// Length of each of its two half steps (s).
@@ -142,7 +142,7 @@ impl ContactTrack {
         self.undeformed_gap
     }
 
-    /// Adds what this node leaves to the residuals.
+    /// Adds the residuals of this node.
     pub(crate) fn report(&self, residuals: &mut Residuals) {
         residuals.onset = worse(residuals.onset, self.onset);
         residuals.penetration_at_instants = worse(residuals.penetration_at_instants, self.at_instants);

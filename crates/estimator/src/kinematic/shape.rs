@@ -8,7 +8,7 @@
 use super::window::FlightWindow;
 use nalgebra::{DMatrix, DVector};
 
-/// Exchanges after which the search ends; what still penetrates shows in the residuals.
+/// Exchanges after which the search ends; a penetration that is left shows in the residuals.
 const MOST_EXCHANGES: usize = 200;
 
 /// Cuts nearer to each other than this fraction of a half step are one. The parabola between two

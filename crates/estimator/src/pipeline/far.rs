@@ -1,9 +1,9 @@
 //! Elements without a candidate node of contact, sampled as soon as a level is equilibrated.
 
-use super::BLOCK;
 use super::maps::Contribution;
 use super::sampling::{Course, ElementInterval, ElementSampler, ElementVelocities, Sampling};
 use super::totals::FarSums;
+use crate::element::BLOCK;
 use crate::residual::Residuals;
 use crate::time_level::{Side, Velocities};
 use crate::traction::Equilibrated;

@@ -1,7 +1,7 @@
 //! The maps that were requested, as they fill: nodal motion and element fields when their level is
 //! worked on, contributions as elements get there, the motion at contact when the run is over.
 
-use super::BLOCK;
+use crate::element::BLOCK;
 use crate::element::Element;
 use crate::kinematic::{ContactTrack, settle};
 use crate::map::{AdmissibleFields, ElementMap};

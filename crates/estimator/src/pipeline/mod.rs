@@ -24,9 +24,6 @@ use rayon::ThreadPool;
 use window::LevelWindow;
 pub use window::memory;
 
-/// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
-const BLOCK: usize = 256;
-
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
@@ -35,9 +32,9 @@ const BLOCK: usize = 256;
 /// requested.
 ///
 /// A [`push`](StepSink::push) that fills a window works on all of it before it returns, and so does
-/// [`finish`](Estimator::finish) on the last one. Whoever wants to stop may have to wait that long: with
+/// [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: with
 /// the default window about a second on one core for up to 250 000 elements, and in proportion to them
-/// beyond, for a window has 8 steps at least. [`Options::window`] makes it shorter.
+/// beyond, because a window has 8 steps at least. [`Options::window`] makes it shorter.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
@@ -71,8 +68,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         Ok(Self { problem, times, pool, preparation, window })
     }
 
-    /// Keeps the maps requested as well; asked before the first step, for of steps already taken there
-    /// are none. Whatever is requested, no other number of the estimate changes.
+    /// Keeps the maps requested as well, from the first step on. No other number of the estimate changes.
     ///
     /// # Errors
     /// Steps out of order, beyond the last or not sampled; more maps than memory can hold.

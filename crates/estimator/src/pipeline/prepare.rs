@@ -73,7 +73,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
     }
 
-    /// Prepares what the reconstruction needs of the elements.
+    /// Prepares the element data of the reconstruction.
     pub(super) fn prepare(&mut self, elements: &[Element<D, N>]) {
         self.reconstruction.prepare(elements);
     }
@@ -87,7 +87,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.steps.count()
     }
 
-    /// What the history brings of its own.
+    /// The fields that the history brings of its own.
     pub(super) fn given(&self) -> Given {
         let [velocity, acceleration] = self.steps.given();
         Given { velocity, acceleration }

@@ -130,7 +130,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         self.carried = levels.pop();
     }
 
-    /// Equilibrates the levels of the window behind the one that was carried over; returns how many that are, too.
+    /// The level carried over and the new ones, equilibrated; the first new one is at the index returned.
     fn equilibrate(&mut self) -> (usize, Vec<Equilibrated<D>>) {
         let mut levels: Vec<_> = self.carried.take().into_iter().collect();
         let first = levels.len();

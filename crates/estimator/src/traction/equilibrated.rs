@@ -1,14 +1,11 @@
 //! A time level with the stress of the finite elements and equilibrated tractions.
 
 use super::Equilibration;
-use crate::element::Element;
+use crate::element::{BLOCK, Element};
 use crate::residual::worse;
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, NodeId};
 use rayon::prelude::*;
-
-/// Elements and nodes in a block: small enough to share the work, large enough to be worth a task.
-const BLOCK: usize = 256;
 
 /// σ_h of a level.
 #[derive(Clone, Debug)]

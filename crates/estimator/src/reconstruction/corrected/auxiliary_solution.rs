@@ -1,9 +1,8 @@
 //! A second solution of the motion, under the admissible contact force and with less dispersion.
 //!
-//! Fields that balance the simulation's own displacements repeat its dispersion and hide it: ahead of a local
-//! measure, waves of the simulation and waves of the balance are late together. The auxiliary solution is what the
-//! balance is built on instead. It starts like the simulation and takes the steps of the same scheme, but
-//! under the nodal forces of F_DA, and with the acceleration
+//! Fields that balance the simulation's own displacements repeat its dispersion and hide it: the waves of the simulation and
+//! those of the balance are late together. The auxiliary solution is balanced instead. It starts like the simulation and
+//! takes the steps of the same scheme, but under the nodal forces of F_DA, and with the acceleration
 //!
 //! a = ã + p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã,   p(μ) = μ/2 − βμ²,   M ã = F + F_DA − K u,
 //!

@@ -1,10 +1,10 @@
-//! Impulses that stop a node, spread over the time in which the exact force would stop its mass.
+//! Smoothing of the impulses that stop a node.
 //!
-//! The simulation stops the lumped mass of a node that arrives within a step. As a density, the reaction that does so
+//! The simulation stops the lumped mass of a node that arrives within a step. As a density, the reaction of that step
 //! would grow without bound as steps become shorter. An exact impact at speed v exerts ρcv: it
 //! stops the mass m of the tributary depth m/(ρℓ) in a time of the order of τ = m/(ρcℓ), a wave's through that depth.
-//! So the part of a reaction that changes the motion of its node goes on, ever weaker, until τ later. Where
-//! steps are as long as τ, on a uniform bar from half the critical step on, nothing is changed.
+//! So the part of a reaction that changes the motion of its node is spread, with decreasing weight, over the time τ that
+//! follows. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 /// The share of a reaction at a node at rest that is rounding: not worth a record for the steps to come.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// What is still to come at each node of the contact surface.
+/// The impulses under way at each node of the contact surface.
 #[derive(Clone, Debug)]
 pub(super) struct ImpulseSmoothing<const D: usize> {
     /// τ (s).
@@ -27,7 +27,7 @@ pub(super) struct ImpulseSmoothing<const D: usize> {
 struct Pending<const D: usize> {
     /// When it began (s).
     start: f64,
-    /// What is left of it (N s).
+    /// Its rest (N s).
     impulse: [f64; D],
 }
 
@@ -46,7 +46,7 @@ impl<const D: usize> ImpulseSmoothing<D> {
     }
 
     /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but for
-    /// what is to come after the last step; nothing depends on how long later steps are.
+    /// the rest after the last step. Nothing depends on the length of later steps.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -87,8 +87,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
     }
 }
 
-/// Which part of what is left of an impulse is due, where its weight has come down to `weight` and comes down by `fall`
-/// in each step, this one counting for a `share` of a step: what this weight is among those that follow, an arithmetic series.
+/// The part of the rest of an impulse that is due. Its weight is now `weight` and falls by `fall` in each step; this step
+/// counts for a `share` of one. The part is this weight over the sum of all that follow, an arithmetic series.
 fn part(weight: f64, fall: f64, share: f64) -> f64 {
     let count = (weight / fall).ceil() - 1.0;
     if count < 1.0 {

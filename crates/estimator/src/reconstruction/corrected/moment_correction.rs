@@ -1,11 +1,12 @@
 //! Moments of densities.
 //!
-//! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k, but acts
-//! at the centroids of the shape functions, and at the end of a contact surface or between unequal facets those are
-//! not at the nodes. What is missing would turn the body, ever faster as long as it acts. So the normal forces of the nodes of a body
-//! that face one plane are multiplied by factors that keep their sum and bring the moment: those nearest to 1, in the mean that
-//! the forces weigh, affine along the plane, and 0 where that would be negative. Friction goes with its normal force, and what
-//! its sum lacks then is shared out where the cone has room, of which there is always enough.
+//! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k. It acts at the
+//! centroids of the shape functions, which are not at the nodes at the end of a contact surface or between unequal facets.
+//! The missing moment would turn the body, ever faster as long as it acts. So the normal forces of the nodes of a body
+//! that face one plane are multiplied by factors that keep their sum and bring the moment. The factors are those nearest
+//! to 1, in the mean weighted by the forces, affine along the plane, and 0 where they would be negative. Friction is
+//! multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room; there is
+//! always enough.
 
 use crate::reconstruction::contact_law::{along, tangent};
 use percute_core::contact::Coulomb;
@@ -16,7 +17,7 @@ use percute_core::simplex::Shape;
 /// Such a part of a force is nothing: its place within an edge is known to 1e-16 only, which counts squared.
 const NOTHING: f64 = 1e-24;
 
-/// What the nodes of a body that face one plane have in common, and their places.
+/// The nodes of a body that face one plane, with their common data.
 #[derive(Clone, Debug)]
 struct Group<const D: usize> {
     normal: [f64; D],
@@ -112,7 +113,7 @@ impl<const D: usize> Group<D> {
             let (weight, mean) = (sum(0), sum(1) / sum(0));
             let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / total;
             let extent = pressed.iter().map(|&k| (place(k) - mean).powi(2)).fold(0.0, f64::max);
-            // One node alone, or all but what is rounding beside it, has no lever.
+            // One node alone, but for rounding beside it, has no lever.
             let slope = if pressed.len() > 1 && spread > NOTHING * extent { (way - mean) / spread } else { 0.0 };
             let factor = |k: usize| 1.0 / weight + slope * (place(k) - mean);
             let kept: Vec<usize> = pressed.iter().copied().filter(|&k| factor(k) > 0.0).collect();
@@ -125,7 +126,7 @@ impl<const D: usize> Group<D> {
         }
     }
 
-    /// Friction that goes with its normal force; what its sum lacks goes where there is room up to μN.
+    /// Friction in proportion to its normal force; the rest of its sum is put where there is room up to μN.
     fn share_out(&self, normal: &[f64], tangential: &[f64], factors: &[f64]) -> Vec<f64> {
         let mut shared: Vec<f64> = tangential.iter().zip(factors).map(|(t, factor)| t * factor).collect();
         let lacking = tangential.iter().sum::<f64>() - shared.iter().sum::<f64>();

@@ -1,4 +1,4 @@
-//! The changes of the tractions that no element feels as a whole.
+//! The changes of the tractions that leave the resultant and the moment on each element as they are.
 //!
 //! Moments of an edge act on an element like forces at the two nodes of the edge. So these changes have no
 //! resultant and no moment on any element, and they are all there are:

@@ -44,8 +44,7 @@ pub(super) fn descend<const D: usize>(
     change
 }
 
-/// a/b; 0 where there is nothing to gain any more, or where numbers are beyond their range, which the measure
-/// will tell.
+/// a/b; 0 where nothing can be gained any more, or where numbers are beyond their range, which shows in the measure.
 fn quotients(a: &Lanes, b: &Lanes) -> Lanes {
     std::array::from_fn(|lane| if a[lane] > 0.0 && b[lane] > 0.0 { a[lane] / b[lane] } else { 0.0 })
 }

@@ -1,12 +1,12 @@
 //! Tractions of least energy: changes of those of the star problems that balance as well.
 //!
-//! The star problems fix most of the tractions by what the finite-element stress does on each shape function,
+//! The star problems fix most of the tractions by the work of the finite-element stress on each shape function,
 //! element by element. Where that stress jumps, at a corner or where contact begins, such tractions can cost
-//! three times the energy of the true error. But equilibrium asks for less: any change of the tractions
-//! that gives no element a resultant or a moment is allowed. All of them are spanned by the modes of
-//! [`basis`], and a few conjugate gradients over these, for each instant alone, bring down
-//! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. However many steps are
-//! taken, the fields stay exactly admissible.
+//! three times the energy of the true error. Equilibrium requires less: any change of the tractions
+//! that gives no element a resultant or a moment is allowed. The modes of [`basis`] span all of them. A few steps of
+//! conjugate gradients over these modes, for each instant alone, reduce
+//! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. The fields stay exactly admissible after
+//! any number of steps.
 
 mod basis;
 mod descent;
@@ -21,8 +21,7 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use rayon::prelude::*;
 
-/// Conjugate gradients from the star problems' tractions on: they bring 95 % of what can be gained (a test holds them to
-/// that). On the plane impacts of docs/verification.md, 20 steps instead lower the largest error by 1 to 2 %.
+/// Steps of conjugate gradients: they bring 95 % of the possible gain (a test checks it). On the plane impacts of docs/verification.md, 20 steps instead lower the largest error by 1 to 2 %.
 const STEPS: usize = 5;
 
 /// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
@@ -38,7 +37,7 @@ pub(super) const LANES: usize = 8;
 /// A number at each of these instants.
 pub(super) type Lanes = [f64; LANES];
 
-/// What is fixed in time.
+/// The data that are fixed in time.
 #[derive(Debug)]
 pub(in crate::reconstruction) struct TractionMinimisation<const D: usize> {
     basis: Basis<D>,
