@@ -27,7 +27,6 @@ __all__ = [
     "Effectivity",
     "RigidSlide",
     "TrueError",
-    "bar_impact",
 ]
 
 UNITS = {
@@ -193,7 +192,9 @@ class _StruckBar(_Bar):
 
 @dataclass(frozen=True, kw_only=True)
 class BarImpact(_StruckBar):
-    """A uniform bar on [0, L] that moves in -x towards a rigid plane at x = -gap; see `bar_impact`.
+    """A uniform bar on [0, L], as `Mesh.bar` makes it, that moves in -x at ``speed`` towards a rigid plane at x = -``gap``.
+
+    All arguments are positive: ``length`` (m), ``young`` (Pa), ``density`` (kg/m³), ``section`` (m²), ``speed`` (m/s) and ``gap`` (m).
 
     Source: Louf, Gallimard and Pelle, §7.1.
     """
@@ -410,31 +411,3 @@ class RigidSlide(_Exact):
     def dissipated(self, t: ArrayLike) -> NDArray[np.float64]:
         """Energy dissipated so far (J), likewise."""
         return self._evaluate("dissipated", t=t)
-
-
-def bar_impact(
-    *, length: float, young: float, density: float, section: float, speed: float, gap: float
-) -> BarImpact:
-    """Give the exact impact of a uniform bar on a rigid plane.
-
-    Parameters
-    ----------
-    length : float
-        L (m): the undeformed bar is [0, L], as `Mesh.bar` makes it.
-    young : float
-        Young's modulus E (Pa).
-    density : float
-        Density ρ (kg/m³).
-    section : float
-        Section S (m²).
-    speed : float
-        Speed v₀ towards the plane (m/s), positive: the initial velocity is -v₀.
-    gap : float
-        Distance from the bar to the plane at t = 0 (m), positive: the plane goes through x = -gap.
-
-    Returns
-    -------
-    BarImpact
-        Its fields, and the true error and effectivity of simulations and estimates.
-    """
-    return BarImpact(length=length, young=young, density=density, section=section, speed=speed, gap=gap)

@@ -32,7 +32,7 @@ class Calls:
     def __init__(self, block: pc.History, bar: pc.History, folder: Path) -> None:
         self.block, self.bar, self.folder = block, bar, folder
         self.estimated = pc.estimate(bar)
-        self.exact = pc.exact.bar_impact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=2e-4)
+        self.exact = pc.exact.BarImpact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=2e-4)
 
     def mesh(self, **wrong: Any) -> object:
         return pc.Mesh(**({"points": POINTS, "cells": CELLS} | wrong))
@@ -104,7 +104,7 @@ class Calls:
 
     def bar_impact(self, **wrong: Any) -> object:
         right = {"length": 0.1, "young": 7e10, "density": 2700.0, "section": 0.02, "speed": 400.0, "gap": 2e-4}
-        return pc.exact.bar_impact(**(right | wrong))
+        return pc.exact.BarImpact(**(right | wrong))
 
     def displacement(self, **wrong: Any) -> object:
         return self.exact.displacement(**({"x": 0.0, "t": 0.0} | wrong))

@@ -7,7 +7,7 @@ import percute as pc
 import pytest
 from conftest import bar
 
-EXACT = pc.exact.bar_impact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=2e-4)
+EXACT = pc.exact.BarImpact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=2e-4)
 
 
 def test_fields_are_those_of_the_wave() -> None:
@@ -42,13 +42,13 @@ def test_true_errors_shrink_and_effectivities_do_not(bar_history: pc.History) ->
 
 
 def test_another_bar_is_refused(bar_history: pc.History, block_history: pc.History) -> None:
-    other = pc.exact.bar_impact(length=0.1, young=70e9, density=2700.0, section=0.03, speed=400.0, gap=2e-4)
+    other = pc.exact.BarImpact(length=0.1, young=70e9, density=2700.0, section=0.03, speed=400.0, gap=2e-4)
     with pytest.raises(pc.InputError, match="section"):
         other.error(bar_history)
     with pytest.raises(pc.InputError, match="plane body"):
         EXACT.error(block_history)
     with pytest.raises(pc.InputError, match="`gap` is 0 m"):
-        pc.exact.bar_impact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=0.0)
+        pc.exact.BarImpact(length=0.1, young=70e9, density=2700.0, section=0.02, speed=400.0, gap=0.0)
 
 
 STEEL = {"length": 2.0, "young": 200e9, "density": 8000.0, "section": 1e-3}

@@ -70,6 +70,6 @@ def test_copies_need_no_room(block_history: pc.History) -> None:
 
 
 def test_values_and_exact_bars() -> None:
-    exact = pc.exact.bar_impact(length=0.1, young=70e9, density=2700, section=0.02, speed=400, gap=2e-4)
+    exact = pc.exact.BarImpact(length=0.1, young=70e9, density=2700, section=0.02, speed=400, gap=2e-4)
     for value in (exact, *stack().supports, *stack().tractions):
         assert pickle.loads(pickle.dumps(value)) == value == copy.deepcopy(value)

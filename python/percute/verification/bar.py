@@ -51,7 +51,7 @@ class Setting:
 
     def run(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> Outcome:
         """Simulate, estimate with each choice of arguments of `percute.estimate`, and compare with the exact solution."""
-        exact = pc.exact.bar_impact(gap=(WHOLE + self.fraction) * self.step * BAR["speed"], **BAR)
+        exact = pc.exact.BarImpact(gap=(WHOLE + self.fraction) * self.step * BAR["speed"], **BAR)
         problem = pc.Problem(
             pc.Mesh.bar(BAR["length"], elements=self.elements),
             material=pc.Elastic(young=BAR["young"], density=BAR["density"], section=BAR["section"]),
