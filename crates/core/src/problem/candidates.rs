@@ -108,8 +108,8 @@ fn normal_at<const D: usize, const N: usize>(mesh: &Mesh<D, N>, obstacle: &Obsta
     *obstacle.frame_at(&centroid).normal()
 }
 
-/// Nodes of the facets, piece by piece along the boundary. A piece is never closed: not all
-/// facets of a closed curve face the same obstacle.
+/// Nodes of the facets, piece by piece. In 2D a piece is a chain from one end to the other: not all facets of a closed
+/// curve face the same obstacle.
 fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
     let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
     for facet in facets {
@@ -119,9 +119,10 @@ fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets:
         }
     }
     let mut ordered: Vec<NodeId> = Vec::with_capacity(neighbours.len());
-    let ends: Vec<NodeId> = neighbours.iter().filter(|(_, n)| n.len() < 2).map(|(n, _)| *n).collect();
-    for end in ends {
-        let mut next = neighbours.contains_key(&end).then_some(end);
+    let mut starts: Vec<NodeId> = neighbours.keys().copied().collect();
+    starts.sort_by_key(|node| neighbours[node].len() > 1);
+    for start in starts {
+        let mut next = neighbours.contains_key(&start).then_some(start);
         while let Some(node) = next {
             let around = neighbours.remove(&node).unwrap_or_default();
             ordered.push(node);
