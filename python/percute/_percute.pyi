@@ -27,8 +27,8 @@ __all__ = [
     "is_estimate",
     "meaning",
     "open_history",
+    "run_case",
     "simulate",
-    "simulate_case",
     "true_error_of_bar_impact",
 ]
 
@@ -169,7 +169,8 @@ class HistoryData:
 @final
 class EstimateData:
     @staticmethod
-    def restore(problem: ProblemData, state: dict[str, Any]) -> EstimateData: ...
+    def restore(problem: ProblemData, state: bytes) -> EstimateData: ...
+    def state(self, name: str) -> bytes: ...
     def times(self) -> list[float]: ...
     def problem(self) -> ProblemData: ...
     def measures(self) -> _Measures: ...
@@ -239,9 +240,16 @@ def simulate(
     overwrite: bool,
     progress: _Tell,
 ) -> HistoryData: ...
-def simulate_case(
-    case: CaseData, store: str | PathLike[str] | None, overwrite: bool, progress: _Tell
-) -> HistoryData: ...
+def run_case(
+    case: CaseData,
+    store: str | PathLike[str] | None,
+    overwrite: bool,
+    pace: tuple[int | None, int | None],
+    instants: int | Sequence[float] | None,
+    fields: bool,
+    contact_steps: bool,
+    progress: _Tell,
+) -> tuple[HistoryData, EstimateData]: ...
 def is_estimate(path: str | PathLike[str]) -> bool: ...
 def open_history(path: str | PathLike[str]) -> HistoryData: ...
 def errors_against_history(histories: Sequence[HistoryData], reference: HistoryData) -> list[_TrueError]: ...

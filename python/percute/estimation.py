@@ -284,25 +284,7 @@ class Estimate:
         data = self._data
         if isinstance(data, StoredEstimate):
             return _reopen, (data.path,)
-        maps = data.maps()
-        for each in maps:
-            fields = {name: each.pop(name).copy() for name in _FIELDS if name in each}
-            parts = {name: each[name].copy() for name in ("kinetic", "elastic", "contact", "accumulated")}
-            each.update(parts, fields=fields or None)
-            del each["total"], each["error"]
-        state = {
-            "times": data.times(),
-            "options": data.options(),
-            "measures": data.measures(),
-            "parts": data.parts(),
-            "over_time": {name: column.copy() for name, column in data.over_time().items()},
-            "by_element": data.by_element().copy(),
-            "residuals": data.residuals(),
-            "given": data.given(),
-            "maps": maps,
-            "json": self.to_json(),
-        }
-        return _restore, (self.problem, state, self._name)
+        return _restore, (self.problem, data.state(self._name), self._name)
 
     def __copy__(self) -> Estimate:
         return self
@@ -311,14 +293,11 @@ class Estimate:
         return self
 
 
-_FIELDS = ("displacement", "velocity", "acceleration", "stress", "compatible_stress")
-
-
 def _reopen(path: str) -> Estimate:
     return Estimate._of(StoredEstimate(path), None, path)
 
 
-def _restore(problem: Problem, state: dict[str, Any], name: str) -> Estimate:
+def _restore(problem: Problem, state: bytes, name: str) -> Estimate:
     restored = Estimate._of(_percute.EstimateData.restore(problem._data, state), None, name)
     restored.__dict__["problem"] = problem
     return restored

@@ -10,7 +10,7 @@ from percute import _percute
 from percute.checks import encodable, flag, text, warn, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError, MissingFileError, StorageError
-from percute.estimation import Estimate, estimate, pace
+from percute.estimation import Estimate, pace
 from percute.history import History, absolute, history_of_the_exception
 from percute.mesh_files import tell_of_mesh
 from percute.progress import ProgressOption, shown
@@ -104,9 +104,10 @@ def run(
         warn(read.plausibility_warnings(file is None))
         # Only an estimate file needs maps.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
-        history = History._of(_percute.simulate_case(read, file, replace, tell), name=name)
+        data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
+        history = History._of(data[0], name=name)
+        estimated = Estimate._of(data[1], history, name)
         try:
-            estimated = estimate(history, threads=threads, window=window, progress=tell, instants=instants, fields=fields)
             if report is not None:
                 estimated.save(report, overwrite=replace)
             return estimated

@@ -3,9 +3,10 @@
 use crate::map::ElementMap;
 use crate::residual::Residuals;
 use percute_core::ids::ElementId;
+use serde::{Deserialize, Serialize};
 
 /// The three parts of η (J), eq. \[14\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Parts {
     /// ½∫ρ(u̇_DA − u̇_CA)².
     pub kinetic: f64,
@@ -25,7 +26,7 @@ impl Parts {
 
 /// η and d at one instant. Where the contact zone changes, an instant has two samples: before and
 /// after.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// t (s).
     pub time: f64,
@@ -36,7 +37,7 @@ pub struct Sample {
 }
 
 /// The error measures. Absolute values are in J^½, per metre of thickness where that is 1 m.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorMeasures {
     /// √sup η, eq. \[15\].
     pub sup: f64,
@@ -53,7 +54,7 @@ pub struct ErrorMeasures {
 }
 
 /// Which fields of the motion the history brought of its own; the others follow by the scheme.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Given {
     /// v_n.
     pub velocity: bool,
@@ -62,7 +63,7 @@ pub struct Given {
 }
 
 /// The constitutive relation error of a history.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate<const D: usize> {
     /// The measures.
     pub error: ErrorMeasures,

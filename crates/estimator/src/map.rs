@@ -1,8 +1,10 @@
 //! Maps: the part of each element in the error at one instant, and the fields behind it.
 
+use serde::{Deserialize, Serialize};
+
 /// The contributions of all elements to the error at one instant t_n. Where the contact zone
 /// changes at that instant, they are those after it, like the later of its two samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ElementMap<const D: usize> {
     /// n.
     pub step: usize,
@@ -22,17 +24,22 @@ pub struct ElementMap<const D: usize> {
 }
 
 /// Admissible fields at one instant; where they jump in time, their values after it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AdmissibleFields<const D: usize> {
     /// u_CA at the nodes (m).
+    #[serde(with = "vectors")]
     pub displacement: Vec<[f64; D]>,
     /// u̇_CA at the nodes (m/s).
+    #[serde(with = "vectors")]
     pub velocity: Vec<[f64; D]>,
     /// Mean of σ_DA over each element (Pa).
+    #[serde(with = "tensors")]
     pub stress: Vec<[[f64; D]; D]>,
     /// σ_CA = Kε(u_CA) of each element (Pa).
+    #[serde(with = "tensors")]
     pub compatible_stress: Vec<[[f64; D]; D]>,
     /// Mean of Γ_DA/ρ over each element (m/s²).
+    #[serde(with = "vectors")]
     pub acceleration: Vec<[f64; D]>,
 }
 
@@ -50,5 +57,34 @@ impl<const D: usize> ElementMap<D> {
     #[must_use]
     pub fn error(&self, end: f64) -> Vec<f64> {
         self.accumulated.iter().map(|integral| (integral / end).sqrt()).collect()
+    }
+}
+
+/// Vectors as a flat list of numbers.
+mod vectors {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<const D: usize, S: Serializer>(rows: &[[f64; D]], to: S) -> Result<S::Ok, S::Error> {
+        rows.as_flattened().serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, const D: usize, S: Deserializer<'de>>(from: S) -> Result<Vec<[f64; D]>, S::Error> {
+        Ok(Vec::<f64>::deserialize(from)?.as_chunks().0.to_vec())
+    }
+}
+
+/// Tensors as a flat list of numbers.
+mod tensors {
+    use super::vectors;
+    use serde::{Deserializer, Serializer};
+
+    pub(super) fn serialize<const D: usize, S: Serializer>(rows: &[[[f64; D]; D]], to: S) -> Result<S::Ok, S::Error> {
+        vectors::serialize(rows.as_flattened(), to)
+    }
+
+    pub(super) fn deserialize<'de, const D: usize, S: Deserializer<'de>>(
+        from: S,
+    ) -> Result<Vec<[[f64; D]; D]>, S::Error> {
+        Ok(vectors::deserialize::<D, S>(from)?.as_chunks().0.to_vec())
     }
 }

@@ -1,5 +1,6 @@
 //! The choices that the method leaves open.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -8,7 +9,8 @@ use thiserror::Error;
 pub const MOST_THREADS: usize = 1024;
 
 /// How the admissible contact force and the fields that balance it are built.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ReconstructionChoice {
     /// No reaction is dropped: the densities hold all reactions, those that brake a node before contact included. The
     /// normal contact law is measured where they act off contact. An auxiliary solution with less dispersion is balanced,
@@ -24,7 +26,8 @@ pub enum ReconstructionChoice {
 }
 
 /// Which field Γ_DA balances the equilibrated tractions of an element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Acceleration {
     /// The one nearest to ρ ã_h: ρ ã_h plus a rotation.
     #[default]
@@ -60,22 +63,23 @@ pub enum Ablation {
 }
 
 /// Options of an estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Options {
     /// Reconstruction of the contact force.
     pub reconstruction: ReconstructionChoice,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
     /// For evidence only.
+    #[serde(skip)]
     pub ablation: Ablation,
     /// The error is sampled at every half-step instant if 1, else at t_0, t_k, t_2k, … and at the end, so that the
     /// mean covers the whole run.
     pub every: usize,
+    /// How many threads, at most [`MOST_THREADS`]; by default one for each core. The result does not depend on it.
+    pub threads: Option<usize>,
     /// How many steps are worked on at once; by default as many as fit into a modest memory. The
     /// result does not depend on it.
     pub window: Option<usize>,
-    /// How many threads, at most [`MOST_THREADS`]; by default one for each core. The result does not depend on it.
-    pub threads: Option<usize>,
 }
 
 impl Default for Options {

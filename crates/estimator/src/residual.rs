@@ -1,5 +1,7 @@
 //! How far the fields are from exactly admissible.
 
+use serde::{Deserialize, Serialize};
+
 /// The largest residual of every admissibility condition.
 ///
 /// Each is relative to the largest term of its own equation at that node or element, floored at
@@ -9,7 +11,7 @@
 /// not admissible. All are taken at every sampled instant, but for the last three: of stresses that are
 /// a constant linear map of tractions and Γ_DA, each element is checked in its turn, at one instant of 4
 /// at contact and of 64 elsewhere.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].
     pub initial_conditions: f64,

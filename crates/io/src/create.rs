@@ -2,7 +2,7 @@
 
 use crate::error::FileCause;
 use crate::held::Held;
-use crate::library::{alone, detail};
+use crate::library::{alone, refused};
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
@@ -159,9 +159,4 @@ fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {
         return FileCause::NoSpace { needed, free: free(folder).unwrap_or(0) };
     }
     FileCause::Create { source }
-}
-
-/// A library error during the creation of the file.
-pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
-    FileCause::Create { source: io::Error::other(detail(error)) }
 }

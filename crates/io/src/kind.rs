@@ -1,9 +1,6 @@
 //! The kind of a file.
 
-use crate::error::{FileCause, FileError};
-use crate::read::Opened;
 use std::fmt;
-use std::path::Path;
 
 /// The kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,19 +23,5 @@ impl fmt::Display for Kind {
             Self::OtherHdf5 => "an HDF5 file of another program",
             Self::Other => "not an HDF5 file",
         })
-    }
-}
-
-/// Determines the kind of a file by its first bytes and its attribute `kind`.
-///
-/// # Errors
-/// A file that is missing, locked, damaged or cannot be read.
-pub fn kind(path: impl AsRef<Path>) -> Result<Kind, FileError> {
-    let path = path.as_ref();
-    let found = Opened::new(path).and_then(|opened| opened.kind());
-    match found {
-        Err(FileCause::NotHdf5 | FileCause::Empty) => Ok(Kind::Other),
-        Err(FileCause::Foreign { .. }) => Ok(Kind::OtherHdf5),
-        found => found.map_err(|cause| cause.at(path)),
     }
 }

@@ -20,7 +20,8 @@ mod write;
 
 pub use create::Overwrite;
 pub use error::{FileCause, FileError};
-pub use kind::{Kind, kind};
+pub use kind::Kind;
 pub use library::hdf5_version;
 pub use read::is_hdf5;
+pub use read::kind;
 pub use write::{Case, Provenance};

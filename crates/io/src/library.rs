@@ -1,6 +1,7 @@
 //! The HDF5 library.
 
 use crate::error::FileCause;
+use std::io;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 static USED: Mutex<()> = Mutex::new(());
@@ -40,4 +41,9 @@ mod tests {
     fn the_library_is_the_bundled_one() {
         assert!(hdf5_version().starts_with("2."), "HDF5 {}", hdf5_version());
     }
+}
+
+/// A library error during the creation of the file.
+pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
+    FileCause::Create { source: io::Error::other(detail(error)) }
 }

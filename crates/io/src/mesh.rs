@@ -27,7 +27,7 @@ pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
 pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Mesh<D, N>) -> Result<Group, FileCause> {
     let vtk = group(file, "VTKHDF")?;
     let version = vtk.new_attr::<i64>().shape(2).create("Version").and_then(|a| a.write_raw(&[2_i64, 2]));
-    version.map_err(|error| crate::create::refused(&error))?;
+    version.map_err(|error| crate::library::refused(&error))?;
     let kind = FixedAscii::<16>::from_ascii(b"UnstructuredGrid");
     attribute(&vtk, "Type", kind.map_err(|_| FileCause::Damaged { detail: "a name".to_string() })?)?;
     let (nodes, cells) = (mesh.node_count(), mesh.element_count());

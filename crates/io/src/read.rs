@@ -269,3 +269,17 @@ fn one<T: H5Type>(stored: &Container) -> Result<T, FileCause> {
 pub(crate) fn reading<T>(path: &Path, read: impl FnOnce(&Opened) -> Result<T, FileCause>) -> Result<T, FileError> {
     Opened::new(path).and_then(|opened| read(&opened)).map_err(|cause| cause.at(path))
 }
+
+/// Determines the kind of a file by its first bytes and its attribute `kind`.
+///
+/// # Errors
+/// A file that is missing, locked, damaged or cannot be read.
+pub fn kind(path: impl AsRef<Path>) -> Result<Kind, FileError> {
+    let path = path.as_ref();
+    let found = Opened::new(path).and_then(|opened| opened.kind());
+    match found {
+        Err(FileCause::NotHdf5 | FileCause::Empty) => Ok(Kind::Other),
+        Err(FileCause::Foreign { .. }) => Ok(Kind::OtherHdf5),
+        found => found.map_err(|cause| cause.at(path)),
+    }
+}

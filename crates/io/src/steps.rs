@@ -1,20 +1,20 @@
 //! The instants in VTKHDF: a static mesh with fields over time.
 
-use crate::create::refused;
 use crate::error::FileCause;
+use crate::library::refused;
 use crate::write::{attribute, group, numbers, unit};
 use hdf5::dataset::AllocTime;
 use hdf5::{Extent, Group};
 
 /// A name and its number of rows for each instant; none for a constant field.
-type Field<'a> = (&'a str, usize);
+type StepField<'a> = (&'a str, usize);
 
 /// Creates `VTKHDF/Steps` for all these instants; only the first is visible to VTK at first.
 pub(crate) fn write_steps(
     vtk: &Group,
     instants: &[f64],
-    points: &[Field<'_>],
-    cells: &[Field<'_>],
+    points: &[StepField<'_>],
+    cells: &[StepField<'_>],
 ) -> Result<(), FileCause> {
     let steps = group(vtk, "Steps")?;
     let count = instants.len();

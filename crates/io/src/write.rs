@@ -1,8 +1,8 @@
 //! Parts of a new file: contiguous data sets with reserved space, and attributes.
 
-use crate::create::refused;
 use crate::error::FileCause;
 use crate::kind::Kind;
+use crate::library::refused;
 use crate::read::LAYOUT;
 use hdf5::dataset::{AllocTime, FillTime, Layout};
 use hdf5::plist::link_create::CharEncoding;

@@ -122,7 +122,7 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
 }
 
 /// An estimate that failed.
-pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
+fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Simulation(error) => simulation(py, error),
         RunError::Estimate(
@@ -130,6 +130,16 @@ pub(crate) fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
         ) => input(py, &error.to_string()),
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),
+    }
+}
+
+/// A run or an estimate that failed.
+pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
+    match error {
+        Failure::Run(error) => estimate(py, error),
+        Failure::File(error) => file(py, error),
+        Failure::Contact(error) => PyMemoryError::new_err(error.to_string()),
+        other => input(py, &other.to_string()),
     }
 }
 

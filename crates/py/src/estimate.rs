@@ -1,29 +1,32 @@
 //! Estimates of histories.
 
 use crate::history::HistoryData;
+use crate::options::{Wanted, analysis, options};
 use crate::problem::ProblemData;
-use crate::restore::restore;
 use crate::run::{Run, Stoppable};
 use crate::{bridge, contact, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
-use percute_core::contact::{ContactRecorder, ContactResults};
+use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
-use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Request, Sample, UnknownName};
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Sample, UnknownName};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
-use percute_workflow::message::hint;
 use percute_workflow::report::{Report, Subject};
+use percute_workflow::run::Results;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+/// The layout of a pickle is that of the version that wrote it.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An estimate, with what it is the estimate of.
 pub(crate) struct Made<const D: usize, const N: usize> {
@@ -32,17 +35,17 @@ pub(crate) struct Made<const D: usize, const N: usize> {
     pub(crate) times: TimeGrid,
     pub(crate) options: Options,
     pub(crate) estimate: Estimate<D>,
-    pub(crate) report: Told<D>,
+    pub(crate) report: ReportSource<D>,
 }
 
 /// Where the report comes from.
-pub(crate) enum Told<const D: usize> {
+pub(crate) enum ReportSource<const D: usize> {
     /// It is made when it is asked for.
     Now {
         /// What the simulation did.
         simulation: Simulation,
         /// What contact did.
-        contact: Box<ContactResults<D>>,
+        contact: Arc<ContactResults<D>>,
         /// Number of instants, of a stored history.
         held: Option<usize>,
         /// How long the estimate took (s).
@@ -64,22 +67,6 @@ type Numbers<const D: usize> = fn(&ElementMap<D>) -> &[f64];
 type Vectors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[f64; D]];
 /// Stresses.
 type Tensors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[[f64; D]; D]];
-
-/// At which instants maps are kept: so many, or near these times (s).
-#[derive(FromPyObject)]
-pub(crate) enum Wanted {
-    Count(usize),
-    Times(Vec<f64>),
-}
-
-impl From<Wanted> for Instants {
-    fn from(wanted: Wanted) -> Self {
-        match wanted {
-            Wanted::Count(count) => Self::Count(count),
-            Wanted::Times(times) => Self::Times(times),
-        }
-    }
-}
 
 /// Estimates a history; without `instants`, no maps are kept.
 #[pyfunction]
@@ -119,17 +106,6 @@ pub(crate) fn meaning(reconstruction: &str) -> String {
     percute_workflow::report::meaning(reconstruction.parse().ok())
 }
 
-/// Options of an estimate by their names.
-pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, every: usize) -> PyResult<Options> {
-    let unknown = |name: &str, error: UnknownName| {
-        let hint = hint(&error.given, error.known.iter().copied());
-        errors::input(py, &format!("`{name}`: {error}{hint}"))
-    };
-    let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
-    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
-    Ok(Options { reconstruction, acceleration, every, ..Options::default() })
-}
-
 fn estimate_one<const D: usize, const N: usize>(
     py: Python<'_>,
     run: &Arc<Run<D, N>>,
@@ -138,30 +114,48 @@ fn estimate_one<const D: usize, const N: usize>(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Arc<Made<D, N>>> {
-    // An `every` of zero is for the estimator to refuse.
-    let every = options.every.max(1);
-    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(run.times(), every));
-    let request = Request { steps, fields };
+    let analysis = analysis(options, instants, fields, false, run.times());
     let start = Instant::now();
     let work = {
         let run = run.clone();
         move |mut watch: bridge::Watch| {
             let source = Stoppable { source: run.source(), watch: watch.clone() };
-            let mut contact = ContactRecorder::new(&run.problem, run.times());
-            let done = percute_estimator::estimate(&run.problem, &source, options, &request, &mut contact, &mut watch)?;
-            Ok((done, contact.finish()))
+            percute_workflow::run::estimate(&run.problem, &source, &analysis, &mut watch)
         }
     };
-    let outcome = bridge::blocking(py, progress, work)?;
-    let ((simulation, estimate), contact) = outcome.map_err(|error| errors::estimate(py, &error))?;
+    let results = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
-    Ok(Arc::new(Made {
-        problem: run.problem.clone(),
-        times: run.times().clone(),
-        options,
-        estimate,
-        report: Told::Now { simulation, contact: Box::new(contact), held, seconds },
-    }))
+    Ok(Arc::new(Made::new(run.problem.clone(), run.times().clone(), options, results, held, seconds)))
+}
+
+impl<const D: usize, const N: usize> Made<D, N> {
+    /// An estimate from its state.
+    fn restored(py: Python<'_>, problem: &Arc<Problem<D, N>>, state: &[u8]) -> PyResult<Self> {
+        let refused =
+            || errors::percute_error(py, "the estimate was pickled by another version of percute, or is damaged");
+        type State<const D: usize> = (Vec<f64>, Options, Estimate<D>, String);
+        let (version, rest) = postcard::take_from_bytes::<&str>(state).map_err(|_| refused())?;
+        if version != VERSION {
+            return Err(refused());
+        }
+        let (times, options, estimate, report) = postcard::from_bytes::<State<D>>(rest).map_err(|_| refused())?;
+        let times = TimeGrid::from_instants(times).map_err(|_| refused())?;
+        Ok(Self { problem: problem.clone(), times, options, estimate, report: ReportSource::Before(report) })
+    }
+
+    /// The estimate of a run, or of a stored history with `held` instants, that took so many seconds.
+    pub(crate) fn new(
+        problem: Arc<Problem<D, N>>,
+        times: TimeGrid,
+        options: Options,
+        results: Results<D>,
+        held: Option<usize>,
+        seconds: f64,
+    ) -> Self {
+        let Results { simulation, estimate, contact } = results;
+        let report = ReportSource::Now { simulation, contact: Arc::new(contact), held, seconds };
+        Self { problem, times, options, estimate, report }
+    }
 }
 
 impl<const D: usize, const N: usize> Made<D, N> {
@@ -169,8 +163,8 @@ impl<const D: usize, const N: usize> Made<D, N> {
     fn report(&self, name: &str) -> Result<String, String> {
         let Self { problem, times, options, estimate, report } = self;
         match report {
-            Told::Before(text) => Ok(text.clone()),
-            Told::Now { simulation, contact, held, seconds } => {
+            ReportSource::Before(text) => Ok(text.clone()),
+            ReportSource::Now { simulation, contact, held, seconds } => {
                 let critical_step = critical_time_step(problem);
                 let subject = Subject { name, problem, times, critical_step, held: *held };
                 let report = Report::new(&subject, *options, simulation, estimate, contact, *seconds);
@@ -204,7 +198,10 @@ impl<const D: usize, const N: usize> Made<D, N> {
         name: String,
         history: Option<&Arc<Run<D, N>>>,
     ) -> PyResult<()> {
-        let contact = history.map(|run| contact::of_run(py, run)).transpose()?;
+        let contact = match &self.report {
+            ReportSource::Now { contact, .. } if contact.steps.is_some() => Some(contact.clone()),
+            _ => history.map(|run| contact::of_run(py, run)).transpose()?,
+        };
         let made = self.clone();
         let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
         bridge::blocking(py, None, work)?.map_err(|error| errors::failure(py, &error))
@@ -217,19 +214,20 @@ impl EstimateData {
         ProblemData::new(map_dimension!(&self.made, m => m.problem.clone()))
     }
 
-    /// All instants planned (s).
-    fn times(&self) -> Vec<f64> {
-        each_dimension!(&self.made, m => m.times.instants().to_vec())
+    /// All of it but its problem and its history, as bytes for `restore`; `name` is that of the report.
+    fn state<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyBytes>> {
+        let report = self.to_json(py, name)?;
+        let bytes = each_dimension!(&self.made, made => {
+            let Made { times, options, estimate, .. } = &**made;
+            postcard::to_stdvec(&(VERSION, times.instants(), options, estimate, report))
+        });
+        Ok(PyBytes::new(py, &bytes.map_err(|error| errors::percute_error(py, &error.to_string()))?))
     }
 
-    /// An estimate put together again from what the other methods give.
+    /// The same estimate, bit by bit, from its problem and its `state`.
     #[staticmethod]
-    fn restore(problem: &ProblemData, state: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let made = match &problem.problem {
-            ByDimension::Bar(problem) => ByDimension::Bar(Arc::new(restore(problem, &state.extract()?)?)),
-            ByDimension::Plane(problem) => ByDimension::Plane(Arc::new(restore(problem, &state.extract()?)?)),
-        };
-        Ok(Self { made })
+    fn restore(py: Python<'_>, problem: &ProblemData, state: &[u8]) -> PyResult<Self> {
+        Ok(Self { made: map_dimension!(&problem.problem, problem => Arc::new(Made::restored(py, problem, state)?)) })
     }
 
     /// The measures: those of `percute.Estimate` that are single numbers.

@@ -1,7 +1,7 @@
 //! Closed-form solutions, and the true error of a bar that strikes a plane.
 
 use crate::history::HistoryData;
-use crate::reference::{Told, told};
+use crate::reference::{TrueErrorColumns, told};
 use crate::run::{Run, Stoppable};
 use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
@@ -153,7 +153,7 @@ pub(crate) fn true_error_of_bar_impact<'py>(
     py: Python<'py>,
     values: [f64; 6],
     history: &HistoryData,
-) -> PyResult<Told<'py>> {
+) -> PyResult<TrueErrorColumns<'py>> {
     let ByDimension::Bar(run) = &history.run else {
         return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
     };

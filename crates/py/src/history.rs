@@ -4,7 +4,7 @@ use crate::any::AnyProblem;
 use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
-use crate::{bridge, contact, errors, estimate, view};
+use crate::{bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, Step, StepSink};
@@ -42,7 +42,7 @@ impl HistoryData {
         let (reconstruction, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::time(py, &error))?;
         let given = Given {
-            options: estimate::options(py, &reconstruction, &acceleration, every)?,
+            options: options::options(py, &reconstruction, &acceleration, every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: reaction.as_slice()?,

@@ -10,9 +10,9 @@ mod estimate;
 mod exact;
 mod history;
 mod mesh;
+mod options;
 mod problem;
 mod reference;
-mod restore;
 mod run;
 mod simulate;
 mod statement;
@@ -43,7 +43,7 @@ mod _percute {
     #[pymodule_export]
     use super::reference::{errors_against_history, errors_against_simulation};
     #[pymodule_export]
-    use super::simulate::{open_history, plausibility_warnings, simulate, simulate_case};
+    use super::simulate::{open_history, plausibility_warnings, run_case, simulate};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
 

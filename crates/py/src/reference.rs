@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// Sup, mean, and time, kinetic and elastic part and their sum at each instant.
-pub(crate) type Told<'py> = (f64, f64, Bound<'py, PyDict>);
+pub(crate) type TrueErrorColumns<'py> = (f64, f64, Bound<'py, PyDict>);
 
 /// The steps of a reference: of a history, or of a simulation whose steps are not kept.
 #[derive(Clone)]
@@ -33,7 +33,7 @@ pub(crate) fn errors_against_history<'py>(
     py: Python<'py>,
     histories: Vec<PyRef<'_, HistoryData>>,
     reference: &HistoryData,
-) -> PyResult<Vec<Told<'py>>> {
+) -> PyResult<Vec<TrueErrorColumns<'py>>> {
     match &reference.run {
         ByDimension::Bar(run) => compared(py, bars(py, &histories)?, Source::Kept(run.clone()), None),
         ByDimension::Plane(run) => compared(py, planes(py, &histories)?, Source::Kept(run.clone()), None),
@@ -48,7 +48,7 @@ pub(crate) fn errors_against_simulation<'py>(
     problem: &ProblemData,
     times: Times,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<Told<'py>>> {
+) -> PyResult<Vec<TrueErrorColumns<'py>>> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     match &problem.problem {
@@ -78,7 +78,7 @@ fn compared<'py, const D: usize, const N: usize>(
     runs: Vec<Arc<Run<D, N>>>,
     reference: Source<D, N>,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<Told<'py>>> {
+) -> PyResult<Vec<TrueErrorColumns<'py>>> {
     let found = bridge::blocking(py, progress, move |watch| match &reference {
         Source::Kept(fine) => {
             let source = Stoppable { source: fine.source(), watch: watch.clone() };
@@ -119,7 +119,7 @@ fn text(error: impl ToString) -> String {
 }
 
 /// A true error as Python takes it.
-pub(crate) fn told<'py>(py: Python<'py>, error: &TrueError) -> PyResult<Told<'py>> {
+pub(crate) fn told<'py>(py: Python<'py>, error: &TrueError) -> PyResult<TrueErrorColumns<'py>> {
     let quantities: view::Columns<TrueErrorSample, 4> =
         [("time", |s| s.time), ("kinetic", |s| s.kinetic), ("elastic", |s| s.elastic), ("total", |s| s.total())];
     let columns = PyDict::new(py);

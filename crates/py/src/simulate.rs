@@ -2,31 +2,34 @@
 
 use crate::bridge::Watch;
 use crate::case::CaseData;
+use crate::estimate::{EstimateData, Made};
 use crate::history::HistoryData;
+use crate::options::{Wanted, analysis};
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{bridge, errors, time};
-use percute_core::dynamics::SimulationError;
-use percute_core::history::Discard;
+use percute_core::dynamics::Balance;
+use percute_core::history::StepSink;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
-use percute_io::{FileError, Overwrite};
+use percute_io::Overwrite;
+use percute_io::history::Writer;
 use percute_workflow::Failure;
-use percute_workflow::case::{CaseError, NotRepresentable, Source};
+use percute_workflow::case::{CaseOf, Instants, Source};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
-use percute_workflow::run::simulate_into;
+use percute_workflow::run::{self, Analysis, Storage};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use thiserror::Error;
+use std::time::Instant;
 
-/// What is done with a start that is refused, and with a run.
-type Kind<'a, const D: usize, const N: usize> = (Refused<'a>, fn(Arc<Run<D, N>>) -> AnyRun);
+/// From a run of one dimension to a run of either.
+type Either<const D: usize, const N: usize> = fn(Arc<Run<D, N>>) -> AnyRun;
 
 /// How the instants are stated: end, courant, step, steps.
 pub(crate) type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
@@ -45,36 +48,86 @@ pub(crate) fn simulate(
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
     match &problem.problem {
-        ByDimension::Bar(problem) => {
-            one(py, problem, &times, Options::default(), store, progress, (&|_| None, ByDimension::Bar))
-        }
-        ByDimension::Plane(problem) => {
-            one(py, problem, &times, Options::default(), store, progress, (&|_| None, ByDimension::Plane))
-        }
+        ByDimension::Bar(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Bar),
+        ByDimension::Plane(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Plane),
     }
 }
 
-/// Simulates a case, likewise.
+fn simulate_one<const D: usize, const N: usize>(
+    py: Python<'_>,
+    problem: &Arc<Problem<D, N>>,
+    times: TimeGrid,
+    store: Option<Store>,
+    progress: Option<&Bound<'_, PyAny>>,
+    either: Either<D, N>,
+) -> PyResult<HistoryData> {
+    let work = {
+        let (problem, times) = (problem.clone(), times.clone());
+        move |storage: Storage<'_, D>, watch: &mut Watch| {
+            let done = run::simulate(&problem, &times, storage, watch)?;
+            Ok((done.balance_over_time, ()))
+        }
+    };
+    let planned = Planned { problem: problem.clone(), times, options: Options::default(), store };
+    Ok(planned.carry_out(py, progress, either, work, &|failure| failure)?.0)
+}
+
+/// Simulates a case and estimates its error beside the run. What is raised on the way has a `history`, likewise.
 #[pyfunction]
-pub(crate) fn simulate_case(
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn run_case(
     py: Python<'_>,
     case: &CaseData,
     store: Option<PathBuf>,
     overwrite: bool,
+    pace: (Option<usize>, Option<usize>),
+    instants: Option<Wanted>,
+    fields: bool,
+    contact_steps: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<HistoryData> {
-    let (source, options) = each_dimension!(&case.case, case => (case.source.clone(), case.options));
-    let store = store.map(|path| Store::new(path, overwrite, options, Some(source)));
-    match &case.case {
+) -> PyResult<(HistoryData, EstimateData)> {
+    let instants = instants.map(Instants::from);
+    let (threads, window) = pace;
+    let (history, made) = match &case.case {
         ByDimension::Bar(case) => {
-            let kind: Kind<'_, 1, 2> = (&|error| case.refused_start(error), ByDimension::Bar);
-            one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
+            let options = Options { threads, window, ..case.options };
+            let analysis = analysis(options, instants.as_ref(), fields, contact_steps, &case.times);
+            let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Bar)?;
+            (history, ByDimension::Bar(made))
         }
         ByDimension::Plane(case) => {
-            let kind: Kind<'_, 2, 3> = (&|error| case.refused_start(error), ByDimension::Plane);
-            one(py, &Arc::new(case.problem.clone()), &case.times, options, store, progress, kind)
+            let options = Options { threads, window, ..case.options };
+            let analysis = analysis(options, instants.as_ref(), fields, contact_steps, &case.times);
+            let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Plane)?;
+            (history, ByDimension::Plane(made))
         }
-    }
+    };
+    Ok((history, EstimateData { made }))
+}
+
+fn run_one<const D: usize, const N: usize>(
+    py: Python<'_>,
+    case: &CaseOf<D, N>,
+    store: Option<PathBuf>,
+    overwrite: bool,
+    analysis: Analysis,
+    progress: Option<&Bound<'_, PyAny>>,
+    either: Either<D, N>,
+) -> PyResult<(HistoryData, Arc<Made<D, N>>)> {
+    let (problem, times, options) = (Arc::new(case.problem.clone()), case.times.clone(), analysis.options);
+    let store = store.map(|path| Store::new(path, overwrite, case.options, Some(case.source.clone())));
+    let work = {
+        let (problem, times) = (problem.clone(), times.clone());
+        move |storage: Storage<'_, D>, watch: &mut Watch| {
+            let start = Instant::now();
+            let results = run::run(&problem, &times, &analysis, storage, watch)?;
+            Ok((results.simulation.balance_over_time.clone(), (results, start.elapsed().as_secs_f64())))
+        }
+    };
+    let planned = Planned { problem: problem.clone(), times: times.clone(), options: case.options, store };
+    let (history, (results, seconds)) =
+        planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
+    Ok((history, Arc::new(Made::new(problem, times, options, results, None, seconds))))
 }
 
 /// Plausibility warnings about a run; with `in_memory`, its history is kept in memory.
@@ -129,98 +182,70 @@ impl Store {
     }
 }
 
-/// Why a simulation into a file failed.
-#[derive(Debug, Error)]
-enum StoreError {
-    #[error(transparent)]
-    NotRepresentable(#[from] NotRepresentable),
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-}
-
-impl StoreError {
-    fn raised(&self, py: Python<'_>, case: Refused<'_>) -> PyErr {
-        match self {
-            Self::NotRepresentable(error) => errors::input(py, &error.to_string()),
-            Self::File(error) => errors::file(py, error),
-            Self::Simulation(error) => raised(py, error, case),
-        }
+impl Store {
+    /// Makes the file.
+    fn begin<const D: usize, const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+    ) -> Result<Writer<D>, Failure> {
+        let plan = plan(problem, times, &self.options, self.case.as_ref())?;
+        let writer = plan.create(&self.path, Overwrite::allowed(self.overwrite))?;
+        self.ours.store(true, Relaxed);
+        Ok(writer)
     }
 }
 
-/// The place in a case of a start that was refused.
-type Refused<'a> = &'a dyn Fn(&SimulationError) -> Option<CaseError>;
-
-fn raised(py: Python<'_>, error: &SimulationError, case: Refused<'_>) -> PyErr {
-    case(error).map_or_else(|| errors::simulation(py, error), |mistake| errors::case(py, &mistake))
-}
-
-fn one<const D: usize, const N: usize>(
-    py: Python<'_>,
-    problem: &Arc<Problem<D, N>>,
-    times: &TimeGrid,
+/// A run whose history goes to a file or into memory.
+struct Planned<const D: usize, const N: usize> {
+    problem: Arc<Problem<D, N>>,
+    times: TimeGrid,
+    /// Options that the estimate of its history takes unless told otherwise.
     options: Options,
     store: Option<Store>,
-    progress: Option<&Bound<'_, PyAny>>,
-    kind: Kind<'_, D, N>,
-) -> PyResult<HistoryData> {
-    let Some(store) = store else { return into_memory(py, problem, times, options, progress, kind) };
-    let work = {
-        let (problem, times, store) = (problem.clone(), times.clone(), store.clone());
-        move |watch| into_file(&problem, &times, &store, watch)
-    };
-    let outcome = bridge::blocking(py, progress, work);
-    match outcome.and_then(|done| done.map_err(|error| error.raised(py, kind.0))) {
-        Ok(()) => open_history(py, store.path),
-        // To open it takes time that whoever pressed Ctrl-C does not have.
-        Err(error) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
-        Err(error) => Err(error),
-    }
 }
 
-fn into_file<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    store: &Store,
-    mut watch: Watch,
-) -> Result<(), StoreError> {
-    let overwrite = Overwrite::allowed(store.overwrite);
-    let plan = plan(problem, times, &store.options, store.case.as_ref())?;
-    let writer = plan.create(&store.path, overwrite)?;
-    store.ours.store(true, Relaxed);
-    let done = simulate_into(problem, times, Some(writer), &mut Discard, &mut watch);
-    if matches!(done, Err(SimulationError::StartsTooNear { .. })) {
-        store.ours.store(false, Relaxed);
-    }
-    Ok(done.map(|_| ())?)
-}
-
-fn into_memory<const D: usize, const N: usize>(
-    py: Python<'_>,
-    problem: &Arc<Problem<D, N>>,
-    times: &TimeGrid,
-    options: Options,
-    progress: Option<&Bound<'_, PyAny>>,
-    (case, either): Kind<'_, D, N>,
-) -> PyResult<HistoryData> {
-    let growing = Growing::new(times);
-    let work = {
-        let (problem, times, mut sink) = (problem.clone(), times.clone(), growing.clone());
-        move |mut watch: Watch| percute_core::dynamics::simulate(&problem, &times, &mut sink, &mut watch)
-    };
-    let outcome = bridge::blocking(py, progress, work);
-    let kept = growing.take();
-    let data = |history, balance| {
-        let run = Run::new(problem.clone(), history, options, balance);
-        HistoryData { run: either(Arc::new(run)) }
-    };
-    match outcome.and_then(|done| done.map_err(|error| raised(py, &error, case))) {
-        Ok(simulation) => kept
-            .map(|history| data(history, Some(simulation.balance_over_time)))
-            .ok_or_else(|| errors::percute_error(py, "internal error: a simulation without steps")),
-        Err(error) => Err(with_history(py, error, kept.map(|history| data(history, None)))),
+impl<const D: usize, const N: usize> Planned<D, N> {
+    /// Does the work, which returns the balance over time and more, and gives the history and the rest.
+    fn carry_out<T: Send + 'static>(
+        self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        either: Either<D, N>,
+        work: impl FnOnce(Storage<'_, D>, &mut Watch) -> Result<(Vec<Balance>, T), Failure> + Send + 'static,
+        located: &dyn Fn(Failure) -> Failure,
+    ) -> PyResult<(HistoryData, T)> {
+        let Self { problem, times, options, store } = self;
+        let growing = store.is_none().then(|| Growing::new(&times));
+        let task = {
+            let (problem, store, mut growing) = (problem.clone(), store.clone(), growing.clone());
+            move |mut watch: Watch| {
+                let file = store.as_ref().map(|store| store.begin(&problem, &times)).transpose()?;
+                let memory = growing.as_mut().map(|growing| growing as &mut dyn StepSink<D>);
+                let done = work(Storage { file, memory }, &mut watch);
+                if let (Err(failure), Some(store)) = (&done, &store)
+                    && failure.is_refused_start()
+                {
+                    store.ours.store(false, Relaxed);
+                }
+                done
+            }
+        };
+        let outcome = bridge::blocking(py, progress, task)
+            .and_then(|done| done.map_err(|failure| errors::run(py, &located(failure))));
+        let kept = growing.and_then(|growing| growing.take());
+        let data =
+            |history, balance| HistoryData { run: either(Arc::new(Run::new(problem, history, options, balance))) };
+        match (outcome, store) {
+            (Ok((_, rest)), Some(store)) => Ok((open_history(py, store.path)?, rest)),
+            (Ok((balance, rest)), None) => match kept {
+                Some(history) => Ok((data(history, Some(balance)), rest)),
+                None => Err(errors::percute_error(py, "internal error: a simulation without steps")),
+            },
+            // To open it takes time that whoever pressed Ctrl-C does not have.
+            (Err(error), Some(store)) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
+            (Err(error), _) => Err(with_history(py, error, kept.map(|history| data(history, None)))),
+        }
     }
 }
 

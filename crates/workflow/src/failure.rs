@@ -85,6 +85,12 @@ impl Failure {
         }
     }
 
+    /// Whether the simulation refused the start: its history file is removed then.
+    #[must_use]
+    pub fn is_refused_start(&self) -> bool {
+        matches!(self, Self::Run(RunError::Simulation(SimulationError::StartsTooNear { .. })))
+    }
+
     /// What became of a sink that did not take a step: it stands for itself.
     pub(crate) fn from_sink(error: SinkError, otherwise: impl FnOnce(SinkError) -> RunError) -> Self {
         let error = match error.downcast::<FileError>() {

@@ -3,14 +3,14 @@
 use crate::case::{NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
 use crate::report::Subject;
-use percute_core::dynamics::{Simulation, critical_time_step};
-use percute_core::history::StepSink;
+use crate::run::{self, Analysis, Results};
+use percute_core::dynamics::critical_time_step;
 use percute_core::map_dimension;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Options, Request, RunError};
+use percute_estimator::{Options, RunError};
 use percute_io::Case;
 use percute_io::history::{HistoryFile, Plan};
 use std::path::Path;
@@ -78,25 +78,15 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()) }
     }
 
-    /// Estimates the error of the steps it holds; with the same options, bit by bit what a run that
-    /// made them would say. `beside` takes the steps too.
+    /// Analyses the steps that the file holds.
     ///
     /// # Errors
-    /// Steps that cannot be read or do not fit the problem, options out of range.
-    pub fn estimate(
-        &self,
-        options: Options,
-        request: &Request,
-        beside: &mut dyn StepSink<D>,
-        observer: &mut dyn Observer,
-    ) -> Result<(Simulation, Estimate<D>), Failure> {
+    /// As [`run::estimate`].
+    pub fn estimate(&self, analysis: &Analysis, observer: &mut dyn Observer) -> Result<Results<D>, Failure> {
         let source = self.file.source(&self.problem)?;
-        percute_estimator::estimate(&self.problem, &source, options, request, beside, observer).map_err(|error| {
-            match error {
-                RunError::Estimate(cause) => Failure::History { file: self.file.path().to_path_buf(), cause },
-                RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
-                RunError::Simulation(_) => Failure::Run(error),
-            }
+        run::estimate(&self.problem, &source, analysis, observer).map_err(|failure| match failure {
+            Failure::Run(RunError::Estimate(cause)) => Failure::History { file: self.file.path().to_path_buf(), cause },
+            other => other,
         })
     }
 }

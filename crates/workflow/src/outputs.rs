@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// A file to come.
 #[derive(Clone, Copy, Debug)]
-pub struct Output<'a> {
+pub struct OutputFile<'a> {
     /// The argument or key that names it.
     pub what: &'static str,
     /// The file.
@@ -18,9 +18,9 @@ pub fn chosen<'a>(
     [flag, key]: [&'static str; 2],
     given: Option<&'a Path>,
     stated: Option<&'a Path>,
-) -> Option<Output<'a>> {
-    let stated = stated.map(|file| Output { what: key, file });
-    given.map(|file| Output { what: flag, file }).or(stated)
+) -> Option<OutputFile<'a>> {
+    let stated = stated.map(|file| OutputFile { what: key, file });
+    given.map(|file| OutputFile { what: flag, file }).or(stated)
 }
 
 /// Makes sure that all files can be made, that no two of them are one, and that none is an input; `inputs` say what
@@ -30,12 +30,12 @@ pub fn chosen<'a>(
 /// [`Failure::Argument`] for two names of one file, [`Failure::Exists`] and [`Failure::Unwritable`].
 pub fn check(
     inputs: &[(&str, &Path)],
-    outputs: &[Option<Output<'_>>],
-    picture: Option<Output<'_>>,
+    outputs: &[Option<OutputFile<'_>>],
+    picture: Option<OutputFile<'_>>,
     force: bool,
 ) -> Result<(), Failure> {
-    let all: Vec<Output<'_>> = outputs.iter().copied().chain([picture]).flatten().collect();
-    for (i, Output { what, file }) in all.iter().enumerate() {
+    let all: Vec<OutputFile<'_>> = outputs.iter().copied().chain([picture]).flatten().collect();
+    for (i, OutputFile { what, file }) in all.iter().enumerate() {
         let shown = file.display();
         if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {
             return Err(Failure::Argument(format!("{what} {shown} is the {name} itself; give another name")));
@@ -47,7 +47,7 @@ pub fn check(
             )));
         }
     }
-    for Output { what, file } in outputs.iter().flatten() {
+    for OutputFile { what, file } in outputs.iter().flatten() {
         if !force && file.exists() {
             return Err(Failure::Exists { what, file: file.to_path_buf() });
         }

@@ -1,87 +1,146 @@
-//! A case simulated, and estimated beside the run.
+//! Runs: the simulation of a problem, with its estimate beside it or without, and the estimate of a history. The command
+//! and Python use the same functions. If the observer breaks, the results are those of the steps done.
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
-use percute_core::dynamics::{Simulation, SimulationError, simulate};
-use percute_core::history::StepSink;
+use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
+use percute_core::dynamics::{Simulation, SimulationError};
+use percute_core::history::{Discard, StepSink, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Estimator, Options, Request};
+use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
 use percute_io::history::Writer;
 
-/// Simulates a case, stores its history if there is a file for it, and estimates its error. `beside` takes the
-/// steps too. If the observer breaks, the file holds the steps done and the estimate is theirs.
-///
-/// # Errors
-/// A start that the simulation refuses (the input's fault; its history file is removed), an unstable
-/// run, a history that cannot be written, a failed estimate.
-pub fn run<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    options: Options,
-    request: &Request,
-    history: Option<Writer<D>>,
-    beside: &mut dyn StepSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate<D>), Failure> {
-    let estimator = Estimator::new(&case.problem, &case.times, options).and_then(|e| e.keeping(request));
-    let mut estimator = estimator.map_err(percute_estimator::RunError::from)?;
-    let simulation = stored(case, history, &mut (&mut estimator, beside), observer)?;
-    Ok((simulation, estimator.finish().map_err(percute_estimator::RunError::from)?))
+/// The analysis of the steps of a run or of a history.
+#[derive(Clone, Debug, Default)]
+pub struct Analysis {
+    /// Options of the estimate.
+    pub options: Options,
+    /// The maps that the estimate keeps.
+    pub request: Request,
+    /// Whether the contact results hold all nodes at all instants.
+    pub contact_steps: bool,
 }
 
-/// Simulates a case and stores its history. If the observer breaks, the file holds the steps done.
-///
-/// # Errors
-/// As [`run`].
-pub fn simulate_only<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    history: Writer<D>,
-    observer: &mut dyn Observer,
-) -> Result<Simulation, Failure> {
-    stored(case, Some(history), &mut percute_core::history::Discard, observer)
+/// The results of an estimated run or history.
+#[derive(Clone, Debug)]
+pub struct Results<const D: usize> {
+    /// Balance and number of the steps.
+    pub simulation: Simulation,
+    /// The estimate of the error.
+    pub estimate: Estimate<D>,
+    /// The contact results.
+    pub contact: ContactResults<D>,
 }
 
-/// Hands every step to the file, if there is one, and to `sink`.
-fn stored<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    history: Option<Writer<D>>,
-    sink: &mut dyn StepSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Simulation, Failure> {
-    simulate_into(&case.problem, &case.times, history, sink, observer)
-        .map_err(|error| case.refused_start(&error).map_or_else(|| error.into(), Failure::from))
+/// The places of the history of a run; each is optional.
+pub struct Storage<'s, const D: usize> {
+    /// A file.
+    pub file: Option<Writer<D>>,
+    /// Memory.
+    pub memory: Option<&'s mut dyn StepSink<D>>,
 }
 
-/// Simulates a problem, and hands every step to the file of its history, if there is one, and then to `sink`. A run that
-/// was stopped is finished like one that came to its end; a start that is refused leaves no file behind; after any other
-/// error the file is left as it is.
+impl Analysis {
+    fn recorder<'p, const D: usize, const N: usize>(
+        &self,
+        problem: &'p Problem<D, N>,
+        times: &'p TimeGrid,
+    ) -> Result<ContactRecorder<'p, D, N>, ContactMemoryError> {
+        let recorder = ContactRecorder::new(problem, times);
+        if self.contact_steps { recorder.keeping_steps() } else { Ok(recorder) }
+    }
+}
+
+/// Simulates a problem.
 ///
 /// # Errors
-/// As [`simulate`]; what is wrong with the file comes as [`SimulationError::Sink`].
-pub fn simulate_into<const D: usize, const N: usize>(
+/// A start that the simulation refuses (its history file is removed), an unstable run, a history that cannot be stored;
+/// after these the file holds the steps done.
+pub fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
-    history: Option<Writer<D>>,
-    sink: &mut dyn StepSink<D>,
+    storage: Storage<'_, D>,
     observer: &mut dyn Observer,
-) -> Result<Simulation, SimulationError> {
-    // The file first: a step that cannot be estimated is still worth having.
-    let mut sinks = (history, sink);
-    let simulation = simulate(problem, times, &mut sinks, observer);
+) -> Result<Simulation, Failure> {
+    drive(problem, times, storage, &mut Discard, observer)
+}
+
+/// Simulates a problem and analyses the steps beside the run.
+///
+/// # Errors
+/// As [`simulate`], and as [`estimate`].
+pub fn run<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    analysis: &Analysis,
+    storage: Storage<'_, D>,
+    observer: &mut dyn Observer,
+) -> Result<Results<D>, Failure> {
+    let mut contact = analysis.recorder(problem, times)?;
+    let estimator = Estimator::new(problem, times, analysis.options).and_then(|e| e.keeping(&analysis.request));
+    let mut estimator = estimator.map_err(RunError::from)?;
+    let simulation = drive(problem, times, storage, &mut (&mut estimator, &mut contact), observer)?;
+    let estimate = estimator.finish().map_err(RunError::from)?;
+    Ok(Results { simulation, estimate, contact: contact.finish() })
+}
+
+/// Analyses the steps of a history; with the same options, the results are those of its run, bit by bit.
+///
+/// # Errors
+/// Steps that cannot be read or do not fit the problem, options out of range, no memory for all contact results.
+pub fn estimate<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    analysis: &Analysis,
+    observer: &mut dyn Observer,
+) -> Result<Results<D>, Failure> {
+    let Analysis { options, request, .. } = analysis;
+    let mut contact = analysis.recorder(problem, source.times())?;
+    let done = percute_estimator::estimate(problem, source, *options, request, &mut contact, observer);
+    let (simulation, estimate) = done.map_err(|error| match error {
+        RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
+        error => error.into(),
+    })?;
+    Ok(Results { simulation, estimate, contact: contact.finish() })
+}
+
+/// The failure of the run of a case: a refused start is a mistake in the case, with its line.
+#[must_use]
+pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Failure) -> Failure {
+    match failure {
+        Failure::Run(RunError::Simulation(error)) => {
+            case.refused_start(&error).map_or_else(|| error.into(), Failure::from)
+        }
+        other => other,
+    }
+}
+
+/// Hands every step to the history and then to `beside`. A run that was stopped is finished like a complete one; a
+/// refused start leaves no file; after any other error the file remains.
+fn drive<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    storage: Storage<'_, D>,
+    beside: &mut dyn StepSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, Failure> {
+    // The history first: a step that cannot be estimated is still stored.
+    let mut sinks = (storage.file, (storage.memory, beside));
+    let simulation = percute_core::dynamics::simulate(problem, times, &mut sinks, observer);
     match (simulation, sinks.0) {
         (Ok(simulation), Some(history)) => {
-            let steps = simulation.steps;
-            history.finish().map_err(|cause| SimulationError::Sink { step: steps, cause: cause.into() })?;
+            history.finish()?;
             Ok(simulation)
         }
         (Err(error @ SimulationError::StartsTooNear { .. }), Some(history)) => {
             let file = history.path().to_path_buf();
             drop(history);
-            // What cannot be removed does no harm: it says itself how few steps it holds.
+            // A file that cannot be removed does no harm: it holds no step.
             let _ = std::fs::remove_file(file);
-            Err(error)
+            Err(error.into())
         }
-        (simulation, _) => simulation,
+        (simulation, _) => Ok(simulation?),
     }
 }

@@ -1,8 +1,8 @@
 //! `percute estimate`.
 
 use super::Console;
-use super::outputs::{check, contact_recorder, with_work};
-use super::result::{Given, give};
+use super::outputs::{check, with_work};
+use super::result::{Finished, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
 use crate::picture::Drawn;
@@ -12,12 +12,12 @@ use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
 use percute_workflow::history::{Stored, open};
-use percute_workflow::outputs::Output;
-use percute_workflow::report::Report;
+use percute_workflow::outputs::OutputFile;
+use percute_workflow::run::Analysis;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    let output = arguments.output.as_deref().map(|file| Output { what: "--output", file });
+    let output = arguments.output.as_deref().map(|file| OutputFile { what: "--output", file });
     let picture = arguments.print.picture.as_deref();
     check(&[("history", &arguments.history)], &[output], picture, arguments.work.force)?;
     each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, arguments, console))
@@ -25,7 +25,7 @@ pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) 
 
 fn estimate<const D: usize, const N: usize>(
     stored: &Stored<D, N>,
-    output: Option<Output<'_>>,
+    output: Option<OutputFile<'_>>,
     arguments: &EstimateArguments,
     console: &mut Console<'_>,
 ) -> Result<u8, Failure>
@@ -41,23 +41,11 @@ where
     let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let mut contact = contact_recorder(&stored.problem, times, output)?;
-    let (simulation, estimate) = stored.estimate(options, &request, &mut contact, watch)?;
+    let analysis = Analysis { options, request, contact_steps: output.is_some() };
+    let results = stored.estimate(&analysis, watch)?;
     watch.clear();
-    let seconds = start.elapsed().as_secs_f64();
-    let contact = contact.finish();
-    let report = Report::new(&stored.subject(), options, &simulation, &estimate, &contact, seconds);
-    let given = Given {
-        problem: &stored.problem,
-        options,
-        case: stored.file.case().cloned(),
-        estimate: &estimate,
-        contact: &contact,
-        report: &report,
-        told: Vec::new(),
-        interrupted: simulation.interrupted,
-    };
-    give(&given, print, output, work, console)
+    let (case, seconds, subject) = (stored.file.case().cloned(), start.elapsed().as_secs_f64(), stored.subject());
+    give(&Finished { subject, options, case, results, seconds, told: Vec::new() }, print, output, work, console)
 }
 
 /// The options stored in the history, with those of the command line instead where there are any.

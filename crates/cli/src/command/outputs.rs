@@ -2,9 +2,6 @@
 
 use super::Console;
 use crate::picture::check_path;
-use percute_core::contact::ContactRecorder;
-use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
@@ -12,17 +9,17 @@ use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::history;
 use percute_workflow::message::bytes;
-use percute_workflow::outputs::{self, Output};
+use percute_workflow::outputs::{self, OutputFile};
 use std::path::Path;
 
 /// Checks all files that a command makes, before any work; a picture, which may replace a file, as well.
 pub(super) fn check(
     inputs: &[(&str, &Path)],
-    outputs: &[Option<Output<'_>>],
+    outputs: &[Option<OutputFile<'_>>],
     picture: Option<&Path>,
     force: bool,
 ) -> Result<(), Failure> {
-    outputs::check(inputs, outputs, picture.map(|file| Output { what: "--picture", file }), force)?;
+    outputs::check(inputs, outputs, picture.map(|file| OutputFile { what: "--picture", file }), force)?;
     picture.map_or(Ok(()), check_path)
 }
 
@@ -37,7 +34,7 @@ pub(super) fn taken(error: FileError) -> Failure {
 /// Makes the history file of a case and says how large it is.
 pub(super) fn begin_history<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
-    output: Output<'_>,
+    output: OutputFile<'_>,
     force: bool,
     quiet: bool,
     console: &mut Console<'_>,
@@ -48,16 +45,6 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }
     Ok(writer)
-}
-
-/// Keeps the contact results: of all nodes at all instants for an estimate file only.
-pub(super) fn contact_recorder<'p, const D: usize, const N: usize>(
-    problem: &'p Problem<D, N>,
-    times: &'p TimeGrid,
-    file: Option<Output<'_>>,
-) -> Result<ContactRecorder<'p, D, N>, Failure> {
-    let recorder = ContactRecorder::new(problem, times);
-    Ok(if file.is_some() { recorder.keeping_steps()? } else { recorder })
 }
 
 /// Options of a case or a history with what the command line says of them.

@@ -1,7 +1,7 @@
 //! `percute run`.
 
-use super::outputs::{begin_history, check, contact_recorder, with_work};
-use super::result::{Given, give};
+use super::outputs::{begin_history, check, with_work};
+use super::result::{Finished, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
 use crate::exit::INTERRUPTED;
@@ -13,9 +13,8 @@ use percute_estimator::{EstimateError, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::history::stored_case;
-use percute_workflow::outputs::{Output, chosen};
-use percute_workflow::report::Report;
-use percute_workflow::run::run;
+use percute_workflow::outputs::{OutputFile, chosen};
+use percute_workflow::run::{Analysis, Storage, located, run};
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -43,8 +42,10 @@ where
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let mut contact = contact_recorder(&case.problem, &case.times, stored)?;
-    let (simulation, estimate) = match run(case, options, &request, history, &mut contact, watch) {
+    let (analysis, storage) =
+        (Analysis { options, request, contact_steps: stored.is_some() }, Storage { file: history, memory: None });
+    let done = run(&case.problem, &case.times, &analysis, storage, watch).map_err(|failure| located(case, failure));
+    let results = match done {
         // Nothing can be estimated from a run stopped at its very start.
         Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
             console.say(&format!("interrupted: {error}"));
@@ -53,27 +54,15 @@ where
         other => other?,
     };
     watch.clear();
-    let seconds = start.elapsed().as_secs_f64();
-    let contact = contact.finish();
-    let report = Report::new(&case.subject(), options, &simulation, &estimate, &contact, seconds);
-    let given = Given {
-        problem: &case.problem,
-        options,
-        case: Some(stored_case(&case.source)),
-        estimate: &estimate,
-        contact: &contact,
-        report: &report,
-        told,
-        interrupted: simulation.interrupted,
-    };
-    give(&given, print, stored, work, console)
+    let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
+    give(&Finished { subject, options, case, results, seconds, told }, print, stored, work, console)
 }
 
 /// The files of the history and of the estimate, as far as they are wanted.
 fn files<'a, const D: usize, const N: usize>(
     case: &'a CaseOf<D, N>,
     arguments: &'a RunArguments,
-) -> [Option<Output<'a>>; 2] {
+) -> [Option<OutputFile<'a>>; 2] {
     let RunArguments { history, estimate, .. } = arguments;
     let stated = &case.output;
     [
@@ -89,7 +78,7 @@ pub(super) fn within(flag: &str, instants: &Instants, end: f64) -> Result<(), Fa
 
 /// Maps are kept for a file only, which `flag` names.
 pub(super) fn request(
-    file: Option<Output<'_>>,
+    file: Option<OutputFile<'_>>,
     flag: &str,
     given: &MapArguments,
     wanted: impl FnOnce() -> Request,

@@ -8,9 +8,9 @@ use crate::progress::Watch;
 use percute_core::each_dimension;
 use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
-use percute_workflow::outputs::{Output, chosen};
+use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::report::{reported, simulated};
-use percute_workflow::run::simulate_only;
+use percute_workflow::run::{self, Storage, located};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -27,7 +27,7 @@ fn simulate<const D: usize, const N: usize>(
     let named = named_after(&arguments.case);
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
-    let history = chosen.unwrap_or(Output { what: "history", file: &named });
+    let history = chosen.unwrap_or(OutputFile { what: "history", file: &named });
     check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
     console.warn_about(case, quiet);
     if !quiet {
@@ -36,7 +36,9 @@ fn simulate<const D: usize, const N: usize>(
     let writer = begin_history(case, history, force, quiet, console)?;
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
     let start = Instant::now();
-    let simulation = simulate_only(case, writer, watch)?;
+    let storage = Storage { file: Some(writer), memory: None };
+    let done = run::simulate(&case.problem, &case.times, storage, watch);
+    let simulation = done.map_err(|failure| located(case, failure))?;
     watch.clear();
     console.print(&simulated(&case.subject(), &simulation, history.file, start.elapsed().as_secs_f64()))?;
     Ok(if simulation.interrupted { INTERRUPTED } else { DONE })

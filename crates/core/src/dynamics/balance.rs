@@ -6,9 +6,10 @@ use crate::ids::NodeId;
 
 use crate::problem::PrescribedComponent;
 use crate::ratio;
+use serde::Serialize;
 
 /// Energies and works at t_n (J), and the drift of the two balances so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Balance {
     /// Kinetic energy ½ v_n·M v_n.
     pub kinetic: f64,
@@ -29,9 +30,13 @@ pub struct Balance {
     /// Largest |momentum − initial momentum − impulses| so far (any component), over the largest
     /// momentum or impulse.
     pub impulse_drift: f64,
+    #[serde(skip)]
     largest_energy_gap: f64,
+    #[serde(skip)]
     largest_energy: f64,
+    #[serde(skip)]
     largest_impulse_gap: f64,
+    #[serde(skip)]
     largest_impulse: f64,
 }
 

@@ -1,6 +1,5 @@
 //! Fields of an estimate file over the instants of its maps.
 
-use super::open::size;
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::read::{Data, Part, reading};
@@ -115,4 +114,18 @@ fn found<'f>(part: &Part<'f>, name: &'static str, shape: [usize; 3]) -> Result<S
     data.check_floats()?;
     let dimensions = if components == 1 { 2 } else { 3 };
     Ok(Stored { name, shape: shape[..dimensions].to_vec(), data })
+}
+
+/// Dimension, and numbers of nodes and elements.
+pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
+    let dimension = ours.integer_attribute("dimension")?;
+    if !(1..=2).contains(&dimension) {
+        let detail = format!("{dimension} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
+        return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
+    }
+    let points = vtk.data("Points")?;
+    points.expect_dimensions(2, "(nodes, 3)")?;
+    let by_element = vtk.group("CellData")?.data("by_element")?;
+    by_element.expect_dimensions(1, "(elements)")?;
+    Ok([dimension as usize, points.shape[0], by_element.shape[0]])
 }

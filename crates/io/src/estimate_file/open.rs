@@ -1,6 +1,6 @@
 //! Reads an estimate file except its maps, which are only checked.
 
-use super::maps::{Size, fields, has_admissible, instants};
+use super::maps::{fields, has_admissible, instants, size};
 use crate::error::{FileCause, FileError};
 use crate::history::{case, provenance};
 use crate::kind::Kind;
@@ -99,20 +99,6 @@ fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
             Err(FileCause::Value { name: data.name.clone(), detail })
         }
     }
-}
-
-/// Dimension, and numbers of nodes and elements.
-pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
-    let dimension = ours.integer_attribute("dimension")?;
-    if !(1..=2).contains(&dimension) {
-        let detail = format!("{dimension} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
-        return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
-    }
-    let points = vtk.data("Points")?;
-    points.expect_dimensions(2, "(nodes, 3)")?;
-    let by_element = vtk.group("CellData")?.data("by_element")?;
-    by_element.expect_dimensions(1, "(elements)")?;
-    Ok([dimension as usize, points.shape[0], by_element.shape[0]])
 }
 
 fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {

@@ -1,9 +1,10 @@
 //! Writes an estimate, completely or not at all.
 
 use super::contact;
-use crate::create::{Overwrite, Unnamed, refused};
+use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
+use crate::library::refused;
 use crate::mesh::{in_space, write_grid, write_groups};
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
@@ -58,7 +59,7 @@ pub fn write<const D: usize, const N: usize>(
 /// The numbers of one field in a map.
 type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
 /// Name, unit, numbers for each node or element, and their source.
-type Field<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
+type WrittenField<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
 
 impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     fn check(&self) -> Result<(), FileCause> {
@@ -153,7 +154,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         &self,
         data: &Group,
         rows: usize,
-        fields: Vec<Field<'_, D>>,
+        fields: Vec<WrittenField<'_, D>>,
         offsets: &mut Vec<(&'static str, usize)>,
     ) -> Result<(), FileCause> {
         for (name, of, components, take) in fields {
@@ -166,9 +167,9 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         Ok(())
     }
 
-    fn cell_fields(&self) -> Vec<Field<'_, D>> {
+    fn cell_fields(&self) -> Vec<WrittenField<'_, D>> {
         let end = self.estimate.end;
-        let mut fields: Vec<Field<'_, D>> = vec![
+        let mut fields: Vec<WrittenField<'_, D>> = vec![
             ("kinetic", "J", 1, Box::new(|map| map.kinetic.clone())),
             ("elastic", "J", 1, Box::new(|map| map.elastic.clone())),
             ("contact", "J", 1, Box::new(|map| map.contact.clone())),
@@ -223,7 +224,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     }
 }
 
-fn point_fields<const D: usize>() -> Vec<Field<'static, D>> {
+fn point_fields<const D: usize>() -> Vec<WrittenField<'static, D>> {
     vec![
         ("admissible_displacement", "m", 3, of_fields(|f| in_space(&f.displacement))),
         ("admissible_velocity", "m/s", 3, of_fields(|f| in_space(&f.velocity))),

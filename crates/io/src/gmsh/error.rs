@@ -209,7 +209,7 @@ pub enum GmshCause {
 }
 
 fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {
-    let groups = if groups.is_empty() { String::new() } else { format!(", in {},", super::groups::quoted(groups)) };
+    let groups = if groups.is_empty() { String::new() } else { format!(", in {},", quoted(groups)) };
     let [what, part, of] = if dimension == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
     format!("the {what} {element} of nodes {nodes:?}{groups} is not a {part} of any {of}")
 }
@@ -255,4 +255,11 @@ impl Fault {
         });
         GmshError { path: path.to_path_buf(), place, cause: *self.cause }
     }
+}
+
+/// Names in a sentence.
+pub(super) fn quoted(names: &[String]) -> String {
+    let all: Vec<_> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let what = if names.len() == 1 { "the physical group" } else { "the physical groups" };
+    format!("{what} {}", all.join(", "))
 }

@@ -116,10 +116,3 @@ fn once<const N: usize>(elements: &mut Vec<Element<N>>, members: &mut BTreeMap<i
     }
     doubled
 }
-
-/// Names in a sentence.
-pub(super) fn quoted(names: &[String]) -> String {
-    let all: Vec<_> = names.iter().map(|name| format!("\"{name}\"")).collect();
-    let what = if names.len() == 1 { "the physical group" } else { "the physical groups" };
-    format!("{what} {}", all.join(", "))
-}

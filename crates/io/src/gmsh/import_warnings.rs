@@ -1,6 +1,7 @@
 //! Warnings about a file that could be read.
 
-use super::groups::{Sorted, quoted};
+use super::error::quoted;
+use super::groups::Sorted;
 use super::header::Version;
 use super::raw::Raw;
 use percute_core::mesh::ImportWarning;

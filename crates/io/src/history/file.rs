@@ -1,12 +1,10 @@
 //! An open history file.
 
-use super::source::HistorySource;
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
 use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use std::fs::File;
@@ -276,17 +274,5 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
             }
             Ok(arrays)
         })
-    }
-
-    /// The steps for a problem that was built from this file.
-    ///
-    /// # Errors
-    /// A problem on another mesh.
-    pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
-        let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
-        if given != needed {
-            return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
-        }
-        Ok(HistorySource::new(self.clone(), problem))
     }
 }

@@ -23,15 +23,29 @@ pub struct HistorySource<const D: usize, const N: usize> {
 }
 
 /// Some consecutive steps.
-struct Block<const D: usize> {
+struct StepBlock<const D: usize> {
     displacement: Vec<[f64; D]>,
     reaction: Vec<[f64; D]>,
     touching: Vec<bool>,
     motion: [Option<Vec<[f64; D]>>; 2],
 }
 
+impl<const D: usize, const N: usize> HistoryFile<D, N> {
+    /// The steps for a problem that was built from this file.
+    ///
+    /// # Errors
+    /// A problem on another mesh.
+    pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
+        let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
+        if given != needed {
+            return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
+        }
+        Ok(HistorySource::new(self.clone(), problem))
+    }
+}
+
 impl<const D: usize, const N: usize> HistorySource<D, N> {
-    pub(super) fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Self {
+    fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Self {
         let mut row_of = vec![None; file.mesh().node_count()];
         for (row, &node) in file.contact_nodes().iter().enumerate() {
             row_of[node] = Some(row);
@@ -42,7 +56,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         Self { file, rows, strange }
     }
 
-    fn block(&self, steps: Range<usize>) -> Result<Block<D>, FileError> {
+    fn block(&self, steps: Range<usize>) -> Result<StepBlock<D>, FileError> {
         let nodes = self.file.mesh().node_count();
         let rows = steps.start * nodes..steps.end * nodes;
         self.file.again(|opened| {
@@ -54,7 +68,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
             let displacement = vectors(&displacement, displacement.float_rows(rows.clone())?)?;
             self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
             let (reaction, touching) = self.contact(opened, steps.clone())?;
-            Ok(Block { displacement, reaction, touching, motion: [velocity?, acceleration?] })
+            Ok(StepBlock { displacement, reaction, touching, motion: [velocity?, acceleration?] })
         })
     }
 
@@ -126,7 +140,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         Err(FileCause::NotFinite { name: name.to_string(), step: first + at / rows, node: node(at % rows), value })
     }
 
-    fn hand_on(&self, block: &Block<D>, steps: Range<usize>, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+    fn hand_on(&self, block: &StepBlock<D>, steps: Range<usize>, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
         let (nodes, surface) = (self.file.mesh().node_count(), self.rows.len());
         for (k, index) in steps.enumerate() {
             let (nodal, contact) = (k * nodes..(k + 1) * nodes, k * surface..(k + 1) * surface);

@@ -37,7 +37,6 @@ mod source;
 mod statement;
 mod support;
 mod syntax;
-mod table;
 mod text;
 mod time;
 mod value;
@@ -54,8 +53,9 @@ use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use std::path::{Path, PathBuf};
-use table::Table;
 use toml::de::DeTable;
+use value::table;
+use value::table::Table;
 
 /// The tables of a case file.
 const TABLES: [&str; 10] =

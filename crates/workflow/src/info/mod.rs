@@ -15,8 +15,9 @@ use crate::history::{Stored, plan};
 use crate::message::{bytes, trimmed};
 use crate::report::build::problem_summary;
 use crate::report::summary::{body, layout, step};
-use crate::report::{FORMAT, Given, ProblemSummary, Versions};
+use crate::report::{FORMAT, ProblemSummary, Versions};
 use percute_core::time::TimeGrid;
+use percute_estimator::Given;
 use percute_io::Provenance;
 use serde::Serialize;
 

@@ -1,16 +1,38 @@
 //! From the results of a run to its report.
 
+use super::columns::{Columns, Named};
 use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
-    ADMISSIBLE, BalanceOverTime, BalanceSummary, ContactReport, FORMAT, Given, LargestResidual, Measures,
-    ObstacleSummary, OptionsUsed, OverTime, Parts, ProblemSummary, Report, Subject, Versions, WorstElement, meaning,
+    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Report, Subject, Versions,
+    WorstElement, meaning,
 };
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
-use percute_core::problem::plausibility_warnings;
-use percute_estimator::{ErrorMeasures, Estimate, Options, Sample};
+use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
+use percute_estimator::{Estimate, Options, Sample};
+
+/// Names of the energies over time.
+const ENERGIES: [Named<(f64, Balance)>; 7] = [
+    ("time", |(time, _)| *time),
+    ("kinetic", |(_, b)| b.kinetic),
+    ("strain", |(_, b)| b.strain),
+    ("work_of_loads", |(_, b)| b.work_of_loads),
+    ("work_of_supports", |(_, b)| b.work_of_supports),
+    ("work_of_contact", |(_, b)| b.work_of_contact),
+    ("friction", |(_, b)| b.friction),
+];
+
+/// Names of the parts of η over time.
+const PARTS: [Named<Sample>; 6] = [
+    ("time", |s| s.time),
+    ("kinetic", |s| s.parts.kinetic),
+    ("elastic", |s| s.parts.elastic),
+    ("contact", |s| s.parts.contact),
+    ("total", |s| s.parts.total()),
+    ("reference", |s| s.reference),
+];
 
 /// How many elements the report names.
 const WORST: usize = 5;
@@ -28,73 +50,69 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let mut plausibility_warnings = plausibility_warnings(subject.problem, times);
-        // What was foreseen and did not come is no warning any more.
-        plausibility_warnings.retain(|plausibility_warning| {
-            plausibility_warning.name != "never_touches" || estimate.kept_impulse.is_none()
-        });
-        let (kept_impulse, residual, planned) = (estimate.kept_impulse, &largest_residual, times.step_count());
-        let (drift, interrupted) = (simulation.balance.energy_drift, estimate.steps < planned);
-        let reconstruction = options.reconstruction;
+        let balances = simulation.balance_over_time.iter().copied();
+        let over_time = times.instants().iter().copied().zip(balances).collect();
         let facts = Facts {
             problem: &problem,
-            plausibility_warnings: &plausibility_warnings,
-            drift,
-            interrupted,
-            reconstruction,
-            kept_impulse,
-            residual,
+            plausibility_warnings: &foreseen(subject, estimate),
+            drift: simulation.balance.energy_drift,
+            interrupted: estimate.steps < times.step_count(),
+            reconstruction: options.reconstruction,
+            kept_impulse: estimate.kept_impulse,
+            residual: &largest_residual,
         };
-        let mut warnings = warnings(&facts);
-        warnings.extend(
-            few_samples(options.every, planned).map(|few| Warning { message: format!("every {}", few.message), ..few }),
-        );
-        warnings.extend(reported(subject.problem.mesh()));
+        let (interrupted, warnings) = (facts.interrupted, all_warnings(&facts, subject, options));
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),
             case: name.into(),
             problem,
             warnings,
-            options: options_used(options),
+            options,
             time_step: times.longest_step(),
             critical_time_step: critical_step,
             steps: estimate.steps,
             end: estimate.end,
-            steps_planned: planned,
+            steps_planned: times.step_count(),
             interrupted,
-            given: given(estimate),
+            given: estimate.given,
             held,
-            error: measures(&estimate.error),
+            error: estimate.error,
             meaning: meaning(Some(options.reconstruction)),
-            parts: parts(&estimate.parts),
+            parts: estimate.parts,
             time_of_sup: estimate.time_of_sup,
             worst_elements: worst(subject.problem.mesh(), estimate),
-            residuals: estimate.residuals.entries().to_vec(),
+            residuals: estimate.residuals,
             largest_residual,
-            balance: balance_summary(&simulation.balance),
-            balance_over_time: balance_over_time(&simulation.balance_over_time, times.instants()),
-            kept_impulse,
+            balance: simulation.balance,
+            balance_over_time: Columns::new(over_time, ENERGIES),
+            kept_impulse: estimate.kept_impulse,
             contact: ContactReport::new(contact),
-            over_time: over_time(&estimate.over_time),
+            over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             seconds,
         }
     }
 }
 
-fn given<const D: usize>(estimate: &Estimate<D>) -> Given {
-    Given { velocity: estimate.given.velocity, acceleration: estimate.given.acceleration }
+/// The plausibility warnings; a contact that came is not foreseen to fail.
+fn foreseen<const D: usize, const N: usize>(
+    subject: &Subject<'_, D, N>,
+    estimate: &Estimate<D>,
+) -> Vec<PlausibilityWarning> {
+    let mut all = plausibility_warnings(subject.problem, subject.times);
+    all.retain(|warning| warning.name != "never_touches" || estimate.kept_impulse.is_none());
+    all
 }
 
-fn options_used(options: Options) -> OptionsUsed {
-    OptionsUsed {
-        reconstruction: options.reconstruction.to_string(),
-        acceleration: options.acceleration.to_string(),
-        every: options.every,
-        threads: options.threads,
-        window: options.window,
-    }
+fn all_warnings<const D: usize, const N: usize>(
+    facts: &Facts<'_>,
+    subject: &Subject<'_, D, N>,
+    options: Options,
+) -> Vec<Warning> {
+    let few = few_samples(options.every, subject.times.step_count());
+    let few = few.map(|few| Warning { message: format!("every {}", few.message), ..few });
+    warnings(facts).into_iter().chain(few).chain(reported(subject.problem.mesh())).collect()
 }
 
 pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {
@@ -126,35 +144,6 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
     }
 }
 
-fn measures(error: &ErrorMeasures) -> Measures {
-    Measures {
-        sup: error.sup,
-        mean: error.mean,
-        relative_sup: error.relative_sup,
-        relative_mean: error.relative_mean,
-        reference_sup: error.reference_sup,
-        reference_mean: error.reference_mean,
-    }
-}
-
-fn parts(parts: &percute_estimator::Parts) -> Parts {
-    Parts { kinetic: parts.kinetic, elastic: parts.elastic, contact: parts.contact }
-}
-
-pub(crate) fn balance_summary(balance: &Balance) -> BalanceSummary {
-    BalanceSummary {
-        kinetic: balance.kinetic,
-        strain: balance.strain,
-        initial: balance.initial,
-        work_of_loads: balance.work_of_loads,
-        work_of_supports: balance.work_of_supports,
-        work_of_contact: balance.work_of_contact,
-        friction: balance.friction,
-        energy_drift: balance.energy_drift,
-        impulse_drift: balance.impulse_drift,
-    }
-}
-
 fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate<D>) -> Vec<WorstElement> {
     let centroid = |element: ElementId| {
         let corners = mesh.cell_points(element);
@@ -171,29 +160,4 @@ fn largest_residual<const D: usize>(estimate: &Estimate<D>) -> LargestResidual {
     let (name, value) =
         entries.iter().fold(entries[0], |worst, &next| if rank(next.1) > rank(worst.1) { next } else { worst });
     LargestResidual { name, value, admissible: value <= ADMISSIBLE }
-}
-
-fn balance_over_time(balances: &[Balance], instants: &[f64]) -> BalanceOverTime {
-    let column = |of: fn(&Balance) -> f64| balances.iter().map(of).collect();
-    BalanceOverTime {
-        time: instants[..balances.len()].to_vec(),
-        kinetic: column(|b| b.kinetic),
-        strain: column(|b| b.strain),
-        work_of_loads: column(|b| b.work_of_loads),
-        work_of_supports: column(|b| b.work_of_supports),
-        work_of_contact: column(|b| b.work_of_contact),
-        friction: column(|b| b.friction),
-    }
-}
-
-fn over_time(samples: &[Sample]) -> OverTime {
-    let column = |of: fn(&Sample) -> f64| samples.iter().map(of).collect();
-    OverTime {
-        time: column(|s| s.time),
-        kinetic: column(|s| s.parts.kinetic),
-        elastic: column(|s| s.parts.elastic),
-        contact: column(|s| s.parts.contact),
-        total: column(|s| s.parts.total()),
-        reference: column(|s| s.reference),
-    }
 }

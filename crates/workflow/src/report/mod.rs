@@ -2,12 +2,14 @@
 //! in `docs/json.md`.
 
 pub(crate) mod build;
+mod columns;
 mod contact;
 mod meaning;
 mod simulated;
 pub(crate) mod summary;
 mod warnings;
 
+pub use columns::Columns;
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
 pub use simulated::simulated;
@@ -16,9 +18,11 @@ pub use warnings::Warning;
 pub(crate) use warnings::few_samples;
 pub use warnings::reported;
 
+use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use serde::{Serialize, Serializer};
+use percute_estimator::{ErrorMeasures, Given, Options, Parts, Residuals, Sample};
+use serde::Serialize;
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
 pub(crate) const FORMAT: u32 = 1;
@@ -49,7 +53,7 @@ pub struct Report {
     pub versions: Versions,
     pub case: String,
     pub problem: ProblemSummary,
-    pub options: OptionsUsed,
+    pub options: Options,
     pub time_step: f64,
     pub critical_time_step: f64,
     pub steps: usize,
@@ -59,30 +63,21 @@ pub struct Report {
     pub given: Given,
     #[serde(skip)]
     pub held: Option<usize>,
-    pub error: Measures,
+    pub error: ErrorMeasures,
     pub meaning: String,
     pub parts: Parts,
     pub time_of_sup: f64,
     pub worst_elements: Vec<WorstElement>,
-    #[serde(serialize_with = "as_map")]
-    pub residuals: Vec<(&'static str, f64)>,
+    pub residuals: Residuals,
     pub largest_residual: LargestResidual,
-    pub balance: BalanceSummary,
-    pub balance_over_time: BalanceOverTime,
+    pub balance: Balance,
+    pub balance_over_time: Columns<(f64, Balance), 7>,
     pub kept_impulse: Option<f64>,
     pub contact: Option<ContactReport>,
-    pub over_time: OverTime,
+    pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
     pub warnings: Vec<Warning>,
     pub seconds: f64,
-}
-
-/// Which fields a history brought of its own; the others follow by the scheme.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct Given {
-    pub velocity: bool,
-    pub acceleration: bool,
 }
 
 /// Versions of the programs that made a report.
@@ -125,38 +120,6 @@ pub struct ObstacleSummary {
     pub group: Option<String>,
 }
 
-/// Options of the estimate.
-#[derive(Clone, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct OptionsUsed {
-    pub reconstruction: String,
-    pub acceleration: String,
-    pub every: usize,
-    pub threads: Option<usize>,
-    pub window: Option<usize>,
-}
-
-/// The error measures, eq. \[15\], \[16\], \[22\], \[23\].
-#[derive(Clone, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct Measures {
-    pub sup: f64,
-    pub mean: f64,
-    pub relative_sup: f64,
-    pub relative_mean: f64,
-    pub reference_sup: f64,
-    pub reference_mean: f64,
-}
-
-/// The parts of η at one instant, eq. \[14\].
-#[derive(Clone, Copy, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct Parts {
-    pub kinetic: f64,
-    pub elastic: f64,
-    pub contact: f64,
-}
-
 /// An element with its contribution.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
@@ -175,46 +138,6 @@ pub struct LargestResidual {
     pub admissible: bool,
 }
 
-/// Energies and works at the last step, and drifts over the run.
-#[derive(Clone, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct BalanceSummary {
-    pub kinetic: f64,
-    pub strain: f64,
-    pub initial: f64,
-    pub work_of_loads: f64,
-    pub work_of_supports: f64,
-    pub work_of_contact: f64,
-    pub friction: f64,
-    pub energy_drift: f64,
-    pub impulse_drift: f64,
-}
-
-/// Energies and works at every step.
-#[derive(Clone, Debug, Default, Serialize)]
-#[allow(missing_docs)]
-pub struct BalanceOverTime {
-    pub time: Vec<f64>,
-    pub kinetic: Vec<f64>,
-    pub strain: Vec<f64>,
-    pub work_of_loads: Vec<f64>,
-    pub work_of_supports: Vec<f64>,
-    pub work_of_contact: Vec<f64>,
-    pub friction: Vec<f64>,
-}
-
-/// η, its parts and d at all samples.
-#[derive(Clone, Debug, Default, Serialize)]
-#[allow(missing_docs)]
-pub struct OverTime {
-    pub time: Vec<f64>,
-    pub kinetic: Vec<f64>,
-    pub elastic: Vec<f64>,
-    pub contact: Vec<f64>,
-    pub total: Vec<f64>,
-    pub reference: Vec<f64>,
-}
-
 impl Versions {
     pub(crate) fn of_this_program() -> Self {
         let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
@@ -230,9 +153,4 @@ impl Report {
     pub fn to_json(&self) -> Result<String, std::io::Error> {
         serde_json::to_string(self).map_err(std::io::Error::from)
     }
-}
-
-/// Named values in their own order.
-fn as_map<S: Serializer>(entries: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(entries.iter().copied())
 }

@@ -1,7 +1,7 @@
 //! The summary of a simulation.
 
 use super::Subject;
-use super::build::{balance_summary, problem_summary};
+use super::build::problem_summary;
 use super::summary::{body, drift, energy, layout, step};
 use crate::message::{bytes, short, trimmed};
 use percute_core::dynamics::Simulation;
@@ -15,7 +15,7 @@ pub fn simulated<const D: usize, const N: usize>(
     file: &Path,
     seconds: f64,
 ) -> String {
-    let (times, balance) = (subject.times, balance_summary(&simulation.balance));
+    let (times, balance) = (subject.times, &simulation.balance);
     let (steps, planned) = (simulation.steps, times.step_count());
     let reached = trimmed(times.instants()[steps], 5);
     let time = match steps < planned {
@@ -29,8 +29,8 @@ pub fn simulated<const D: usize, const N: usize>(
         ("body", body(&problem_summary(subject))),
         ("time", time),
         ("", step(times.longest_step(), subject.critical_step)),
-        ("energy", energy(&balance)),
-        ("drift", drift(&balance)),
+        ("energy", energy(balance)),
+        ("drift", drift(balance)),
         ("history", format!("{}, {}", file.display(), bytes(size))),
     ])
 }

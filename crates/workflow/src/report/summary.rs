@@ -1,7 +1,8 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
-use super::{ADMISSIBLE, BalanceSummary, ProblemSummary, Report, meaning};
+use super::{ADMISSIBLE, ProblemSummary, Report, meaning};
 use crate::message::{percent, short, trimmed};
+use percute_core::dynamics::Balance;
 
 /// The summary of a run.
 #[must_use]
@@ -90,7 +91,7 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
         format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
     };
     let (e, parts) = (&report.error, &report.parts);
-    let total = parts.kinetic + parts.elastic + parts.contact;
+    let total = parts.total();
     let share = |part: f64| if total > 0.0 { percent(part / total) } else { "0 %".to_string() };
     let shares = [("kinetic", parts.kinetic), ("elastic", parts.elastic), ("contact", parts.contact)];
     let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
@@ -134,13 +135,13 @@ fn balance(report: &Report) -> Vec<(&'static str, String)> {
 }
 
 /// Energies at the start and now.
-pub(crate) fn energy(balance: &BalanceSummary) -> String {
+pub(crate) fn energy(balance: &Balance) -> String {
     let [initial, kinetic, strain] = [balance.initial, balance.kinetic, balance.strain].map(|x| short(x, 4));
     format!("initial {initial}, now kinetic {kinetic}, strain {strain} J")
 }
 
 /// Drifts of the two balances.
-pub(crate) fn drift(balance: &BalanceSummary) -> String {
+pub(crate) fn drift(balance: &Balance) -> String {
     format!("energy {}, impulse {}", percent(balance.energy_drift), percent(balance.impulse_drift))
 }
 

@@ -1,7 +1,7 @@
 //! Reads contact results.
 
 use crate::error::{FileCause, FileError};
-use crate::estimate_file::open::size;
+use crate::estimate_file::maps::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
 use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant, Status};

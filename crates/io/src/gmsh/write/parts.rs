@@ -4,7 +4,7 @@ use percute_core::mesh::Mesh;
 use std::collections::BTreeMap;
 
 /// Elements or facets that are in the same groups.
-pub(super) struct Part {
+pub(super) struct GroupedPart {
     /// Tags of their physical groups.
     pub(super) groups: Vec<usize>,
     /// Their numbers.
@@ -16,9 +16,9 @@ pub(super) struct Parts {
     /// Dimension, tag and name of the physical groups.
     pub(super) names: Vec<(usize, usize, String)>,
     /// Parts of the boundary, of facets that are in a group.
-    pub(super) facets: Vec<Part>,
+    pub(super) facets: Vec<GroupedPart>,
     /// Parts of the body.
-    pub(super) cells: Vec<Part>,
+    pub(super) cells: Vec<GroupedPart>,
 }
 
 impl Parts {
@@ -37,8 +37,10 @@ impl Parts {
         let mut facets = parts(facets.into_iter());
         if D == 1 {
             // A point of the geometry is one point.
-            let alone = |part: Part| {
-                part.members.into_iter().map(move |facet| Part { groups: part.groups.clone(), members: vec![facet] })
+            let alone = |part: GroupedPart| {
+                part.members
+                    .into_iter()
+                    .map(move |facet| GroupedPart { groups: part.groups.clone(), members: vec![facet] })
             };
             facets = facets.into_iter().flat_map(alone).collect();
         }
@@ -46,8 +48,8 @@ impl Parts {
     }
 }
 
-fn parts(entries: impl Iterator<Item = (usize, Vec<usize>)>) -> Vec<Part> {
+fn parts(entries: impl Iterator<Item = (usize, Vec<usize>)>) -> Vec<GroupedPart> {
     let mut parts = BTreeMap::<Vec<usize>, Vec<usize>>::new();
     entries.for_each(|(member, groups)| parts.entry(groups).or_default().push(member));
-    parts.into_iter().map(|(groups, members)| Part { groups, members }).collect()
+    parts.into_iter().map(|(groups, members)| GroupedPart { groups, members }).collect()
 }

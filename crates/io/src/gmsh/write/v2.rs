@@ -1,7 +1,7 @@
 //! Nodes and elements of version 2.2.
 
 use super::in_space;
-use super::parts::{Part, Parts};
+use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
 use percute_core::mesh::Mesh;
@@ -56,7 +56,7 @@ fn end(out: &mut Sink, name: &str) {
 
 /// Elements, once for each of their groups: the first under its own tag, if it has one, the others under new ones.
 fn entries(
-    parts: &[Part],
+    parts: &[GroupedPart],
     next: &mut usize,
     own: impl Fn(usize) -> Option<usize>,
     nodes: impl Fn(usize) -> Vec<usize>,
@@ -66,7 +66,7 @@ fn entries(
         *next - 1
     };
     let mut entries = Vec::new();
-    for (part, Part { groups, members }) in parts.iter().enumerate() {
+    for (part, GroupedPart { groups, members }) in parts.iter().enumerate() {
         let groups = if groups.is_empty() { &[0][..] } else { groups };
         for &member in members {
             for (i, &group) in groups.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Geometry, nodes and elements of version 4.1.
 
 use super::in_space;
-use super::parts::{Part, Parts};
+use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
 use percute_core::mesh::Mesh;
@@ -52,7 +52,7 @@ fn entities<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, p
         mesh.points().iter().map(in_space).reduce(|a, b| std::array::from_fn(|c| pick(a[c], b[c]))).unwrap_or([0.0; 3])
     };
     let around = [extreme(f64::min), extreme(f64::max)];
-    let point = |part: &Part| mesh.facets()[part.members[0]].nodes[0].index();
+    let point = |part: &GroupedPart| mesh.facets()[part.members[0]].nodes[0].index();
     for (dimension, all) in [(D - 1, &parts.facets), (D, &parts.cells)] {
         for (at, part) in all.iter().enumerate() {
             out.int(at + 1);

@@ -1,23 +1,23 @@
 //! Tables of a case file: which keys they may have, and which they must.
 
-use super::source::{At, CaseError, Source};
-use super::value::Value;
+use super::Value;
+use crate::case::source::{At, CaseError, Source};
 use crate::message::{hint, list};
 use toml::de::DeTable;
 
 /// A table with its place.
 #[derive(Clone, Debug)]
 pub(crate) struct Table<'a> {
-    pub(super) source: &'a Source,
-    pub(super) table: &'a DeTable<'a>,
-    pub(super) at: At,
+    pub(in crate::case) source: &'a Source,
+    pub(in crate::case) table: &'a DeTable<'a>,
+    pub(in crate::case) at: At,
     /// What joins the table's path to that of a key: `, ` after a header, `.` inside.
-    pub(super) joint: &'static str,
+    pub(in crate::case) joint: &'static str,
 }
 
 impl<'a> Table<'a> {
     /// The document as a whole.
-    pub(super) fn root(source: &'a Source, table: &'a DeTable<'a>) -> Self {
+    pub(in crate::case) fn root(source: &'a Source, table: &'a DeTable<'a>) -> Self {
         Self { source, table, at: At { path: String::new(), span: 0..0 }, joint: "" }
     }
 

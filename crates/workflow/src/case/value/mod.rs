@@ -1,7 +1,9 @@
 //! Values of a case file, read as what they should be.
 
+pub(super) mod table;
+
 use super::source::{At, CaseError, Source};
-use super::table::Table;
+use table::Table;
 use toml::de::DeValue;
 
 /// A value with its place.

@@ -1,0 +1,50 @@
+//! Options of an estimate, and the instants of its maps.
+
+use crate::errors;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Options, Request, UnknownName};
+use percute_workflow::case::Instants;
+use percute_workflow::message::hint;
+use percute_workflow::run::Analysis;
+use pyo3::prelude::*;
+
+/// At which instants maps are kept: so many, or near these times (s).
+#[derive(FromPyObject)]
+pub(crate) enum Wanted {
+    Count(usize),
+    Times(Vec<f64>),
+}
+
+impl From<Wanted> for Instants {
+    fn from(wanted: Wanted) -> Self {
+        match wanted {
+            Wanted::Count(count) => Self::Count(count),
+            Wanted::Times(times) => Self::Times(times),
+        }
+    }
+}
+
+/// Options of an estimate by their names.
+pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, every: usize) -> PyResult<Options> {
+    let unknown = |name: &str, error: UnknownName| {
+        let hint = hint(&error.given, error.known.iter().copied());
+        errors::input(py, &format!("`{name}`: {error}{hint}"))
+    };
+    let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
+    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
+    Ok(Options { reconstruction, acceleration, every, ..Options::default() })
+}
+
+/// The analysis of steps; without `instants`, no maps are kept.
+pub(crate) fn analysis(
+    options: Options,
+    instants: Option<&Instants>,
+    fields: bool,
+    contact_steps: bool,
+    times: &TimeGrid,
+) -> Analysis {
+    // An `every` of zero is for the estimator to refuse.
+    let every = options.every.max(1);
+    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(times, every));
+    Analysis { options, request: Request { steps, fields }, contact_steps }
+}

@@ -1,0 +1,39 @@
+//! Records over time as one array for each of their numbers.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// A number of a record, with its name.
+pub(super) type Named<R> = (&'static str, fn(&R) -> f64);
+
+/// Records, of which the named numbers are serialised, each as an array.
+#[derive(Clone, Debug)]
+pub struct Columns<R, const C: usize> {
+    records: Vec<R>,
+    numbers: [Named<R>; C],
+}
+
+/// One number of all records.
+struct Column<'a, R>(&'a [R], fn(&R) -> f64);
+
+impl<R, const C: usize> Columns<R, C> {
+    pub(super) fn new(records: Vec<R>, numbers: [Named<R>; C]) -> Self {
+        Self { records, numbers }
+    }
+}
+
+impl<R, const C: usize> Serialize for Columns<R, C> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(C))?;
+        for (name, number) in self.numbers {
+            map.serialize_entry(name, &Column(&self.records, number))?;
+        }
+        map.end()
+    }
+}
+
+impl<R> Serialize for Column<'_, R> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.0.iter().map(self.1))
+    }
+}
