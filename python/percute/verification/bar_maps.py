@@ -223,7 +223,7 @@ def _by_choice(grid: Grid) -> Table:
         f"page of the largest error with Γ_DA `{DEFAULT}`."
     )
     columns = [Column("contact force"), Column("Γ_DA"), Column("measure"), Column("T − t_c", "L/c", digits=2), Column("runs"), *Summary.COLUMNS]
-    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT, "measure": "sup"})
+    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT})
     for (c, choice), (m, measure), end in product(enumerate(CHOICES), enumerate(MEASURES), ENDS):
         summary = Summary(grid.effectivities(c, m, _until(end)))
         table.add(*choice.values(), measure, end, summary.count, *summary.cells())
