@@ -32,6 +32,11 @@ pub(crate) fn damaged(error: hdf5::Error) -> FileCause {
     FileCause::Damaged { detail: detail(&error) }
 }
 
+/// A library error during the creation of the file.
+pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
+    FileCause::Create { source: io::Error::other(detail(error)) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,9 +46,4 @@ mod tests {
     fn the_library_is_the_bundled_one() {
         assert!(hdf5_version().starts_with("2."), "HDF5 {}", hdf5_version());
     }
-}
-
-/// A library error during the creation of the file.
-pub(crate) fn refused(error: &hdf5::Error) -> FileCause {
-    FileCause::Create { source: io::Error::other(detail(error)) }
 }
