@@ -5,7 +5,7 @@ use crate::estimate::Estimate;
 use crate::options::Options;
 use crate::pipeline::Estimator;
 use crate::request::Request;
-use percute_core::dynamics::{Balancing, Simulation};
+use percute_core::dynamics::{Balancing, Evaluation, Simulation};
 use percute_core::history::{SinkError, Step, StepSink, StepSource};
 use percute_core::observer::{Observer, Progress};
 use percute_core::problem::Problem;
@@ -28,6 +28,7 @@ pub fn estimate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
     let mut replay = Replay {
+        evaluation: Evaluation::new(problem, source.times()),
         estimator: Estimator::new(problem, source.times(), options)?.keeping(request)?,
         balancing: Balancing::new(problem, source.times()),
         beside,
@@ -48,6 +49,7 @@ pub fn estimate<const D: usize, const N: usize>(
 
 /// Takes the steps of a history.
 struct Replay<'a, 'p, const D: usize, const N: usize> {
+    evaluation: Evaluation<'p, D, N>,
     estimator: Estimator<'p, D, N>,
     balancing: Balancing<'p, D, N>,
     beside: &'a mut dyn StepSink<D>,
@@ -63,9 +65,10 @@ struct Stopped;
 
 impl<const D: usize, const N: usize> StepSink<D> for Replay<'_, '_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.estimator.push(step)?;
-        self.balancing.push(step)?;
-        self.beside.push(step)?;
+        let state = self.evaluation.advance(step).map_err(EstimateError::from)?;
+        self.estimator.push_state(&state)?;
+        self.balancing.push_state(&state)?;
+        self.beside.push_state(&state)?;
         let progress = Progress { stage: "estimating", done: step.index, total: self.last };
         if self.observer.observe(progress) == ControlFlow::Break(()) && step.index < self.last {
             return Err(Stopped.into());

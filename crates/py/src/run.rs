@@ -2,7 +2,7 @@
 
 use crate::bridge::Watch;
 use percute_core::contact::{ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, Kinematics};
+use percute_core::dynamics::{Balance, Balancing, Evaluation};
 use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
@@ -134,24 +134,24 @@ impl<const D: usize, const N: usize> Run<D, N> {
 
     /// v_n and a_n by the scheme, or as the history brings them.
     pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
-        let kinematics = Kinematics::new(&self.problem, self.times());
+        let evaluation = Evaluation::new(&self.problem, self.times());
         let motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
-        let mut deriving = Deriving { kinematics, motion };
+        let mut deriving = Deriving { evaluation, motion };
         Stoppable { source: self.source(), watch }.replay(&mut deriving)?;
         Ok(deriving.motion)
     }
 }
 
 struct Deriving<'p, const D: usize, const N: usize> {
-    kinematics: Kinematics<'p, D, N>,
+    evaluation: Evaluation<'p, D, N>,
     motion: Motion<D>,
 }
 
 impl<const D: usize, const N: usize> StepSink<D> for Deriving<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.kinematics.advance(step)?;
-        self.motion.velocity.extend(self.kinematics.velocity());
-        self.motion.acceleration.extend(self.kinematics.acceleration());
+        let state = self.evaluation.advance(step)?;
+        self.motion.velocity.extend(state.velocity());
+        self.motion.acceleration.extend(state.acceleration());
         Ok(())
     }
 }

@@ -1,11 +1,11 @@
 //! Balance of energy and impulse.
 
-use super::Dynamics;
 use crate::contact::{dissipation, dot};
+use crate::history::State;
 use crate::ids::NodeId;
-
-use crate::problem::PrescribedComponent;
+use crate::problem::{PrescribedComponent, Problem};
 use crate::ratio;
+use crate::time::TimeGrid;
 use serde::Serialize;
 
 /// Energies and works at t_n (J), and the drift of the two balances so far.
@@ -83,8 +83,6 @@ pub(super) struct BalanceKeeper<const D: usize> {
     supports: WorkMeter<D>,
     contact: WorkMeter<D>,
     external: Vec<[f64; D]>,
-    /// Reaction of each prescribed component (N), filled by the integrator.
-    pub(super) support_reaction: Vec<f64>,
     initial_momentum: [f64; D],
     impulse: [f64; D],
     /// Sum of the sizes of all works put in by loads and supports (J).
@@ -95,19 +93,8 @@ pub(super) struct BalanceKeeper<const D: usize> {
     rounding: f64,
 }
 
-/// What the integrator knows at t_n.
-pub(super) struct Instant<'a, const D: usize> {
-    pub(super) n: usize,
-    pub(super) displacement: &'a [[f64; D]],
-    pub(super) reaction: &'a [[f64; D]],
-    pub(super) strain: f64,
-    pub(super) kinetic: f64,
-    pub(super) momentum: [f64; D],
-}
-
 impl<const D: usize> BalanceKeeper<D> {
-    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
-        let problem = dynamics.problem;
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Self {
         let loaded = if problem.is_loaded() { problem.mesh().node_count() } else { 0 };
         Self {
             balance: Balance::default(),
@@ -115,12 +102,11 @@ impl<const D: usize> BalanceKeeper<D> {
             supports: WorkMeter::new(problem.prescribed().iter().map(|p| p.node).collect()),
             contact: WorkMeter::new(problem.surface().nodes().iter().map(|c| c.node).collect()),
             external: vec![[0.0; D]; loaded],
-            support_reaction: vec![0.0; problem.prescribed().len()],
             initial_momentum: [0.0; D],
             impulse: [0.0; D],
             energy_put_in: 0.0,
             kick: 0.0,
-            rounding: rounding_energy(dynamics),
+            rounding: rounding_energy(problem, times),
         }
     }
 
@@ -131,23 +117,28 @@ impl<const D: usize> BalanceKeeper<D> {
     /// Takes in one instant; whether the energy is still plausible: below ten times what was
     /// there or put in, which only an instability exceeds. What a load gives before it has done
     /// any work, when it starts on a body at rest, and rounding do not count.
-    pub(super) fn record<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, now: &Instant<'_, D>) -> bool {
-        let total_force = self.advance_works(dynamics, now);
-        let times = dynamics.times;
+    pub(super) fn record<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        now: &State<'_, D>,
+    ) -> bool {
+        let total_force = self.advance_works(problem, times, now);
         let b = &mut self.balance;
-        (b.kinetic, b.strain) = (now.kinetic, now.strain);
+        let (kinetic, momentum) = now.energies(problem.mass());
+        (b.kinetic, b.strain) = (kinetic, now.strain);
         let energy = b.kinetic + b.strain;
-        if now.n == 0 {
+        if now.step.index == 0 {
             b.initial = energy;
-            self.initial_momentum = now.momentum;
+            self.initial_momentum = momentum;
         }
-        let back = if now.n == 0 { 0.0 } else { 0.5 * times.step(now.n - 1) };
-        let forward = times.velocity_step(now.n) - back;
+        let back = if now.step.index == 0 { 0.0 } else { 0.5 * times.step(now.step.index - 1) };
+        let forward = times.velocity_step(now.step.index) - back;
         for c in 0..D {
             self.impulse[c] += back * total_force[c];
-            let gap = now.momentum[c] - self.initial_momentum[c] - self.impulse[c];
+            let gap = momentum[c] - self.initial_momentum[c] - self.impulse[c];
             b.largest_impulse_gap = b.largest_impulse_gap.max(gap.abs());
-            b.largest_impulse = b.largest_impulse.max(now.momentum[c].abs()).max(self.impulse[c].abs());
+            b.largest_impulse = b.largest_impulse.max(momentum[c].abs()).max(self.impulse[c].abs());
             self.impulse[c] += forward * total_force[c];
         }
         let works = [b.work_of_loads, b.work_of_supports, b.work_of_contact];
@@ -160,22 +151,26 @@ impl<const D: usize> BalanceKeeper<D> {
 
     /// Adds the works of the step that ends at this instant; returns the sum of all external
     /// forces.
-    fn advance_works<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, now: &Instant<'_, D>) -> [f64; D] {
-        let first = now.n == 0;
-        let problem = dynamics.problem;
+    fn advance_works<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        now: &State<'_, D>,
+    ) -> [f64; D] {
+        let first = now.step.index == 0;
         let mut total = [0.0; D];
         let mut add = |force: &[f64; D]| (0..D).for_each(|c| total[c] += force[c]);
         let b = &mut self.balance;
         let put_in = &mut self.energy_put_in;
 
         if !self.external.is_empty() {
-            dynamics.external_forces(now.n, &mut self.external);
+            problem.external_forces(times.instants()[now.step.index], &mut self.external);
             self.external.iter().for_each(&mut add);
-            let h = dynamics.times.velocity_step(now.n);
-            let given = self.external.iter().zip(dynamics.inverse_mass()).map(|(f, m)| dot(f, f) * m).sum::<f64>();
+            let h = times.velocity_step(now.step.index);
+            let given = self.external.iter().zip(now.inverse_mass).map(|(f, m)| dot(f, f) * m).sum::<f64>();
             self.kick = self.kick.max(0.5 * h * h * given);
             let (mut work, external) = (0.0, &self.external);
-            self.loads.advance(now.displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
+            self.loads.advance(now.step.displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
             if !first {
                 b.work_of_loads += work;
                 *put_in += work.abs();
@@ -184,32 +179,32 @@ impl<const D: usize> BalanceKeeper<D> {
 
         let along = |i: usize| {
             let mut force = [0.0; D];
-            force[problem.prescribed()[i].component] = self.support_reaction[i];
+            force[problem.prescribed()[i].component] = now.support_reaction[i];
             force
         };
-        (0..self.support_reaction.len()).for_each(|i| add(&along(i)));
+        (0..now.support_reaction.len()).for_each(|i| add(&along(i)));
         let moving = |p: &PrescribedComponent| {
             // a_n already prepares the next velocity.
-            let next = (now.n + 1).min(dynamics.times.step_count());
-            let v = [now.n, next].map(|n| problem.prescribed_velocity(p, dynamics.times.instants()[n]));
+            let next = (now.step.index + 1).min(times.step_count());
+            let v = [now.step.index, next].map(|n| problem.prescribed_velocity(p, times.instants()[n]));
             0.5 * problem.mass()[p.node.index()] * v[0].abs().max(v[1].abs()).powi(2)
         };
         self.kick = self.kick.max(problem.prescribed().iter().map(moving).sum());
         let mut work = 0.0;
-        self.supports.advance(now.displacement, along, |_, mean, path| work += dot(&mean, &path));
+        self.supports.advance(now.step.displacement, along, |_, mean, path| work += dot(&mean, &path));
         if !first {
             b.work_of_supports += work;
             *put_in += work.abs();
         }
 
-        now.reaction.iter().for_each(&mut add);
+        now.step.reaction.iter().for_each(&mut add);
         let nodes = problem.surface().nodes();
         self.contact.advance(
-            now.displacement,
-            |i| now.reaction[i],
+            now.step.displacement,
+            |i| now.step.reaction[i],
             |i, mean, path| {
                 if !first {
-                    let frame = problem.surface().frame(i, &now.displacement[nodes[i].node.index()]);
+                    let frame = problem.surface().frame(i, &now.step.displacement[nodes[i].node.index()]);
                     b.work_of_contact += dot(&mean, &path);
                     b.friction += dissipation(&frame, &mean, &path);
                 }
@@ -221,10 +216,9 @@ impl<const D: usize> BalanceKeeper<D> {
 
 /// Rounding of the displacements, some 1e-16 of their size, moves nodes by as much in a step; the
 /// factor covers its growth over any number of steps.
-fn rounding_energy<const D: usize, const N: usize>(dynamics: &Dynamics<'_, D, N>) -> f64 {
-    let problem = dynamics.problem;
+fn rounding_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> f64 {
     let largest = problem.initial_displacement().iter().flatten().fold(0.0_f64, |m, u| m.max(u.abs()));
-    let step = (0..dynamics.times.step_count()).map(|n| dynamics.times.step(n)).fold(f64::INFINITY, f64::min);
+    let step = (0..times.step_count()).map(|n| times.step(n)).fold(f64::INFINITY, f64::min);
     let speed = 1e-10 * largest / step;
     problem.mass().iter().sum::<f64>() * speed * speed
 }

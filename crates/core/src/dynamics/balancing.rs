@@ -1,27 +1,28 @@
 //! The balance of a history, from its steps.
 
-use super::balance::{BalanceKeeper, Instant};
-use super::{Balance, Kinematics};
-use crate::history::{SinkError, Step, StepSink};
+use super::balance::BalanceKeeper;
+use super::{Balance, Evaluation};
+use crate::history::{SinkError, State, Step, StepSink};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
-/// Takes the steps of a history and keeps their balance of energy and impulse, as the integrator
-/// does beside its loop: from the integrator's steps come its own numbers, bit by bit.
+/// Keeps the balance of energy and impulse of a history, as the integrator does beside its loop: the integrator's steps give
+/// its own numbers, bit by bit.
 #[derive(Clone, Debug)]
 pub struct Balancing<'p, const D: usize, const N: usize> {
-    kinematics: Kinematics<'p, D, N>,
+    problem: &'p Problem<D, N>,
+    times: &'p TimeGrid,
     keeper: BalanceKeeper<D>,
     over_time: Vec<Balance>,
+    /// Evaluates bare steps.
+    evaluation: Option<Box<Evaluation<'p, D, N>>>,
 }
 
 impl<'p, const D: usize, const N: usize> Balancing<'p, D, N> {
     /// Before the first step.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
-        let kinematics = Kinematics::new(problem, times);
-        let keeper = BalanceKeeper::new(&kinematics.dynamics);
-        Self { kinematics, keeper, over_time: Vec::new() }
+        Self { problem, times, keeper: BalanceKeeper::new(problem, times), over_time: Vec::new(), evaluation: None }
     }
 
     /// Energies, works and drifts at every step taken.
@@ -29,27 +30,20 @@ impl<'p, const D: usize, const N: usize> Balancing<'p, D, N> {
     pub fn finish(self) -> Vec<Balance> {
         self.over_time
     }
-
-    /// Kinetic energy (J) and momentum (kg m/s): from the velocities given, or as the integrator
-    /// has them.
-    fn energies(&self) -> (f64, [f64; D]) {
-        let kinematics = &self.kinematics;
-        if kinematics.given() == [false, false] {
-            return kinematics.dynamics.energies(kinematics.back(), &kinematics.half_step, &kinematics.force);
-        }
-        kinematics.dynamics.energies(0.0, &kinematics.velocity(), &kinematics.force)
-    }
 }
 
 impl<const D: usize, const N: usize> StepSink<D> for Balancing<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let reactions = &mut self.keeper.support_reaction;
-        let strain = self.kinematics.advance_with(step, |i, reaction| reactions[i] = reaction)?;
-        let (kinetic, momentum) = self.energies();
-        let (n, displacement, reaction) = (step.index, step.displacement, step.reaction);
-        // Whether the energy is plausible is for the integrator to ask; here it is only told.
-        let now = Instant { n, displacement, reaction, strain, kinetic, momentum };
-        self.keeper.record(&self.kinematics.dynamics, &now);
+        let mut evaluation =
+            self.evaluation.take().unwrap_or_else(|| Box::new(Evaluation::new(self.problem, self.times)));
+        let pushed = evaluation.advance(step).map_err(SinkError::from).and_then(|state| self.push_state(&state));
+        self.evaluation = Some(evaluation);
+        pushed
+    }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        // The integrator alone refuses implausible energies.
+        self.keeper.record(self.problem, self.times, state);
         self.over_time.push(*self.keeper.balance());
         Ok(())
     }

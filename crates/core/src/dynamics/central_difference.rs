@@ -1,9 +1,9 @@
 //! The loop over the steps, eq. \[28\]–\[32\].
 
-use super::balance::{BalanceKeeper, Instant};
+use super::balance::BalanceKeeper;
 use super::contact::Contact;
-use super::{Balance, Dynamics};
-use crate::history::{SinkError, Step, StepSink};
+use super::{Balance, Dynamics, advance};
+use crate::history::{SinkError, State, Step, StepSink};
 use crate::observer::{Observer, Progress};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -94,26 +94,19 @@ pub fn simulate<const D: usize, const N: usize>(
     let mut velocity = problem.initial_velocity().to_vec();
     let mut force = vec![[0.0; D]; problem.mesh().node_count()];
     let mut contact = Contact::new(problem.surface().nodes().len());
-    let mut balance = BalanceKeeper::new(&dynamics);
+    let mut support_reaction = vec![0.0; problem.prescribed().len()];
+    let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let mut done = 0;
     let mut interrupted = false;
 
     for n in 0..=times.step_count() {
         let strain = dynamics.forces(n, &displacement, &mut force);
-        dynamics.apply_supports(n, &mut force, |i, reaction| balance.support_reaction[i] = reaction);
+        dynamics.apply_supports(n, &mut force, |i, reaction| support_reaction[i] = reaction);
         contact.react(&dynamics, n, &displacement, &velocity, &mut force);
         if n == 0 {
             contact.settle_start(&dynamics);
             refuse_a_start_too_near(&dynamics, &contact)?;
-        }
-
-        let back = if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) };
-        let (kinetic, momentum) = dynamics.energies(back, &velocity, &force);
-        let instant =
-            Instant { n, displacement: &displacement, reaction: &contact.reaction, strain, kinetic, momentum };
-        if !balance.record(&dynamics, &instant) {
-            return Err(unstable(&dynamics, n, &velocity));
         }
         let step = Step {
             index: n,
@@ -124,7 +117,20 @@ pub fn simulate<const D: usize, const N: usize>(
             velocity: None,
             acceleration: None,
         };
-        sink.push(&step).map_err(|cause| SimulationError::Sink { step: n, cause })?;
+        let state = State {
+            step,
+            strain,
+            force: &force,
+            force_before_contact: &contact.force_before,
+            support_reaction: &support_reaction,
+            half_step: &velocity,
+            back: if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) },
+            inverse_mass: &dynamics.inverse_mass,
+        };
+        if !balance.record(problem, times, &state) {
+            return Err(unstable(&dynamics, n, &velocity));
+        }
+        sink.push_state(&state).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
         done = n;
         let progress = Progress { stage: "simulating", done, total: times.step_count() };
@@ -132,27 +138,9 @@ pub fn simulate<const D: usize, const N: usize>(
             interrupted = true;
             break;
         }
-        advance(&dynamics, n, &force, &mut velocity, &mut displacement);
+        advance(times, n, &mut velocity, &mut displacement, dynamics.accelerations(&force));
     }
     Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
-}
-
-/// v_{n+½} = v_{n−½} + h_n a_n and u_{n+1} = u_n + Δt_n v_{n+½}.
-fn advance<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
-    n: usize,
-    force: &[[f64; D]],
-    velocity: &mut [[f64; D]],
-    displacement: &mut [[f64; D]],
-) {
-    let (h, dt) = (dynamics.times.velocity_step(n), dynamics.times.step(n));
-    let states = velocity.iter_mut().zip(displacement).zip(force).zip(&dynamics.inverse_mass);
-    for (((v, u), f), inverse_mass) in states {
-        for c in 0..D {
-            v[c] += h * (inverse_mass * f[c]);
-            u[c] += dt * v[c];
-        }
-    }
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at

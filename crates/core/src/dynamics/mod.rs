@@ -5,15 +5,17 @@ mod balancing;
 mod central_difference;
 mod contact;
 mod critical_step;
+mod evaluation;
 mod internal_force;
-mod kinematics;
+mod update;
 
 pub use balance::Balance;
 pub use balancing::Balancing;
 pub use central_difference::{Simulation, SimulationError, simulate};
 pub use critical_step::{critical_time_step, element_time_step};
+pub use evaluation::Evaluation;
 pub use internal_force::Stiffness;
-pub use kinematics::Kinematics;
+pub use update::advance;
 
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -38,6 +40,12 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass }
     }
 
+    /// The problem.
+    #[must_use]
+    pub fn problem(&self) -> &'p Problem<D, N> {
+        self.problem
+    }
+
     /// The stiffness K.
     #[inline]
     #[must_use]
@@ -52,30 +60,10 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         &self.inverse_mass
     }
 
-    /// Forces of the tractions and body forces at t_n (N).
-    pub fn external_forces(&self, n: usize, force: &mut [[f64; D]]) {
-        force.fill([0.0; D]);
-        let t = self.times.instants()[n];
-        for load in self.problem.facet_loads() {
-            let area = self.problem.facet_area(load.facet);
-            let moments = Problem::<D, N>::facet_moments(area, &self.problem.facet_traction_at(load, t));
-            let nodes = self.problem.mesh().facets()[load.facet.index()].nodes;
-            for (node, moment) in nodes.iter().zip(moments) {
-                (0..D).for_each(|c| force[node.index()][c] += moment[c]);
-            }
-        }
-        for load in self.problem.body_loads() {
-            let value = load.value.at(t);
-            for (node, volume) in &load.nodal_volume {
-                (0..D).for_each(|c| force[node.index()][c] += volume * value[c]);
-            }
-        }
-    }
-
     /// External minus internal forces at t_n (N), without contact and supports. Returns the
     /// strain energy (J).
     pub fn forces(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        self.external_forces(n, force);
+        self.problem.external_forces(self.times.instants()[n], force);
         self.stiffness.subtract_internal_forces(displacement, force)
     }
 
@@ -98,18 +86,9 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         }
     }
 
-    /// Kinetic energy (J) and momentum (kg m/s) with v_n = v_{n−½} + `back` a_n.
-    fn energies(&self, back: f64, velocity: &[[f64; D]], force: &[[f64; D]]) -> (f64, [f64; D]) {
-        let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
-        for ((v, f), mass) in velocity.iter().zip(force).zip(self.problem.mass()) {
-            for c in 0..D {
-                // m v_n without the inverse mass: one array less to read.
-                let p = mass * v[c] + back * f[c];
-                momentum[c] += p;
-                kinetic[c] += p * p / mass;
-            }
-        }
-        (0.5 * kinetic.iter().sum::<f64>(), momentum)
+    /// M⁻¹ of these forces (m/s²).
+    fn accelerations(&self, force: &[[f64; D]]) -> impl Iterator<Item = [f64; D]> {
+        force.iter().zip(&self.inverse_mass).map(|(f, inverse)| f.map(|f| inverse * f))
     }
 
     /// a_n of a prescribed component: what takes its half-step velocities from one to the next,

@@ -2,9 +2,11 @@
 
 mod check;
 mod memory;
+mod state;
 
 pub use check::{StepCheck, StepError};
 pub use memory::{History, MemoryError};
+pub use state::State;
 
 use crate::time::TimeGrid;
 
@@ -38,6 +40,15 @@ pub trait StepSink<const D: usize> {
     /// # Errors
     /// Whatever keeps the sink from taking it; the run then stops.
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError>;
+
+    /// Takes one step that was checked and evaluated already. A sink that needs no more than the step itself need not
+    /// implement this.
+    ///
+    /// # Errors
+    /// As [`StepSink::push`].
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.push(&state.step)
+    }
 }
 
 /// Gives steps back in order.
@@ -71,12 +82,21 @@ impl<const D: usize, A: StepSink<D>, B: StepSink<D>> StepSink<D> for (A, B) {
         self.0.push(step)?;
         self.1.push(step)
     }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.0.push_state(state)?;
+        self.1.push_state(state)
+    }
 }
 
 /// Any number of sinks side by side.
 impl<const D: usize, S: StepSink<D>> StepSink<D> for Vec<S> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         self.iter_mut().try_for_each(|sink| sink.push(step))
+    }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.iter_mut().try_for_each(|sink| sink.push_state(state))
     }
 }
 
@@ -85,10 +105,18 @@ impl<const D: usize, S: StepSink<D>> StepSink<D> for Option<S> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         self.as_mut().map_or(Ok(()), |sink| sink.push(step))
     }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.as_mut().map_or(Ok(()), |sink| sink.push_state(state))
+    }
 }
 
 impl<const D: usize, S: StepSink<D> + ?Sized> StepSink<D> for &mut S {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         (**self).push(step)
+    }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        (**self).push_state(state)
     }
 }

@@ -189,6 +189,25 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.element_body_loads.iter().map(sum).collect()
     }
 
+    /// Forces of the tractions and body forces at an instant (N).
+    pub fn external_forces(&self, t: f64, force: &mut [[f64; D]]) {
+        force.fill([0.0; D]);
+        for load in &self.facet_loads {
+            let area = self.facet_area(load.facet);
+            let moments = Self::facet_moments(area, &self.facet_traction_at(load, t));
+            let nodes = self.mesh.facets()[load.facet.index()].nodes;
+            for (node, moment) in nodes.iter().zip(moments) {
+                (0..D).for_each(|c| force[node.index()][c] += moment[c]);
+            }
+        }
+        for load in &self.body_loads {
+            let value = load.value.at(t);
+            for (node, volume) in &load.nodal_volume {
+                (0..D).for_each(|c| force[node.index()][c] += volume * value[c]);
+            }
+        }
+    }
+
     /// Whether any traction or body force acts.
     #[must_use]
     pub fn is_loaded(&self) -> bool {

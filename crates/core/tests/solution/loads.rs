@@ -1,7 +1,7 @@
 //! Tractions and body forces.
 
 use crate::run::{aluminium, difference, fixed, gravity, largest, run};
-use percute_core::dynamics::{Dynamics, critical_time_step};
+use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
@@ -79,7 +79,7 @@ fn nodal_forces_keep_resultant_and_moment() {
     let times = TimeGrid::uniform(2.0, 2).unwrap();
     let mut force = vec![[0.0; 2]; problem.mesh().node_count()];
     // At t = 1 the table stands halfway; the thickness is 0.5; the body force is uniform on 2 m².
-    Dynamics::new(&problem, &times).external_forces(1, &mut force);
+    problem.external_forces(times.instants()[1], &mut force);
     let moment = |c: usize, weight: &dyn Fn(&[f64; 2]) -> f64| -> f64 {
         force.iter().zip(problem.mesh().points()).map(|(f, x)| f[c] * weight(x)).sum()
     };

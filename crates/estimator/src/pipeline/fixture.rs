@@ -3,6 +3,7 @@
 use super::prepare::Preparation;
 use crate::options::{Options, ReconstructionChoice};
 use percute_core::contact::Obstacle;
+use percute_core::dynamics::Evaluation;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
@@ -81,10 +82,11 @@ pub(super) fn prepared_until<'p>(
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
     let mut preparation = Preparation::new(problem, times, &Options { reconstruction, ..Options::default() });
+    let mut evaluation = Evaluation::new(problem, times);
     for n in 0..=last {
         let step = history.step(n).unwrap();
         preparation.check(&step).unwrap();
-        preparation.push(&step);
+        preparation.push(&evaluation.advance(&step).unwrap());
     }
     preparation.finish();
     preparation

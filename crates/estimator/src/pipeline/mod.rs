@@ -16,7 +16,8 @@ use crate::estimate::Estimate;
 use crate::options::{MOST_THREADS, Options};
 use crate::request::Request;
 use maps::Maps;
-use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::dynamics::Evaluation;
+use percute_core::history::{SinkError, State, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
@@ -41,6 +42,8 @@ pub struct Estimator<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     pool: ThreadPool,
     preparation: Preparation<'p, D, N>,
+    /// Evaluates bare steps.
+    evaluation: Option<Box<Evaluation<'p, D, N>>>,
     window: LevelWindow<'p, D, N>,
 }
 
@@ -65,7 +68,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
         let mut preparation = Preparation::new(problem, times, &options);
         preparation.prepare(&window.equilibration.elements);
-        Ok(Self { problem, times, pool, preparation, window })
+        Ok(Self { problem, times, pool, preparation, evaluation: None, window })
     }
 
     /// Keeps the maps requested as well, from the first step on. No other number of the estimate changes.
@@ -102,8 +105,17 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
 
 impl<const D: usize, const N: usize> StepSink<D> for Estimator<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.preparation.check(step)?;
-        self.preparation.push(step);
+        let mut evaluation =
+            self.evaluation.take().unwrap_or_else(|| Box::new(Evaluation::new(self.problem, self.times)));
+        let state = evaluation.advance(step).map_err(EstimateError::from);
+        let pushed = state.map_err(SinkError::from).and_then(|state| self.push_state(&state));
+        self.evaluation = Some(evaluation);
+        pushed
+    }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.preparation.check(&state.step)?;
+        self.preparation.push(state);
         self.pass_on(false);
         Ok(())
     }

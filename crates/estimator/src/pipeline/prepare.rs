@@ -4,7 +4,6 @@ mod impulse;
 mod interval;
 mod supports;
 
-use crate::acceleration::accelerate;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
@@ -16,10 +15,9 @@ use crate::residual::{Residuals, worse};
 use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, TimeLevel};
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
-use percute_core::history::{Step, StepCheck};
+use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use std::borrow::Cow;
 use std::collections::VecDeque;
 use supports::SupportCheck;
 
@@ -45,7 +43,9 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     ready: VecDeque<ForcesKnown<D>>,
     /// Densities off contact of the steps since the last sampled level that was handed on.
     off_contact: Vec<OffContact<D>>,
-    steps: StepCheck,
+    /// Number of steps taken in.
+    count: usize,
+    given: Given,
     pub(crate) impulse: Impulse,
     pub(crate) residuals: Residuals,
 }
@@ -67,7 +67,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             motions: VecDeque::new(),
             ready: VecDeque::new(),
             off_contact: Vec::new(),
-            steps: StepCheck::default(),
+            count: 0,
+            given: Given::default(),
             impulse: Impulse::default(),
             residuals: Residuals::default(),
         }
@@ -84,13 +85,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Number of steps taken in.
     pub(super) fn count(&self) -> usize {
-        self.steps.count()
+        self.count
     }
 
     /// The fields that the history brings of its own.
     pub(super) fn given(&self) -> Given {
-        let [velocity, acceleration] = self.steps.given();
-        Given { velocity, acceleration }
+        self.given
     }
 
     /// Which steps are sampled.
@@ -104,7 +104,6 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Refuses a step that does not fit.
     pub(super) fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        self.steps.check(self.problem, self.times, step)?;
         match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
@@ -153,25 +152,17 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Takes in one step.
-    pub(super) fn push(&mut self, step: &Step<'_, D>) {
-        let (problem, n) = (self.problem, step.index);
-        self.steps.accept(step);
-        let mut force = vec![[0.0; D]; step.displacement.len()];
-        let strain_energy = self.dynamics.forces_without_contact(n, step.displacement, &mut force);
-        // The equilibrium of ã needs the acceleration that the scheme makes of u_n; the motion takes the given one.
-        let acceleration = step.acceleration.map_or_else(
-            || Cow::Owned(accelerate(problem, self.dynamics.inverse_mass(), force.clone(), step.reaction)),
-            Cow::Borrowed,
-        );
-        let (mid, now) = self.motion.advance(problem, self.times, &acceleration, step.velocity);
+    pub(super) fn push(&mut self, state: &State<'_, D>) {
+        let (problem, step, n) = (self.problem, &state.step, state.step.index);
+        self.count += 1;
+        self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
+        let (mid, now) = self.motion.advance(problem, self.times, state);
         self.track_contact(step, mid.as_ref(), &now);
         let miss = self.supports.advance(problem, self.times, n, &now);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
-        let (velocity, acceleration) = (now.velocity(), &*acceleration);
-        let simulated = SimulatedStep { step, velocity, acceleration, strain_energy };
-        let BalancedFields { displacement, force, contact } =
-            self.reconstruction.advance(&self.dynamics, &simulated, force);
+        let simulated = SimulatedStep { state, velocity: now.velocity() };
+        let BalancedFields { displacement, force, contact } = self.reconstruction.advance(&self.dynamics, &simulated);
         let level = TimeLevel {
             index: n,
             displacement,

@@ -22,7 +22,7 @@ use corrected::Corrected;
 pub(crate) use corrected::{FacetPressures, Form, MOMENTS, NormalMisfit, OffContact};
 pub(crate) use densities::{Densities, driving_forces, nodal_forces};
 use percute_core::dynamics::Dynamics;
-use percute_core::history::Step;
+use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use published::Published;
@@ -61,12 +61,9 @@ pub(crate) struct StepDensities<const D: usize> {
 /// A step of the simulation with the fields that follow from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SimulatedStep<'a, const D: usize> {
-    pub(crate) step: &'a Step<'a, D>,
-    /// v_n and a_n (m/s, m/s²).
+    pub(crate) state: &'a State<'a, D>,
+    /// u̇_CA at the nodes (m/s).
     pub(crate) velocity: &'a [[f64; D]],
-    pub(crate) acceleration: &'a [[f64; D]],
-    /// ½ u_n·K u_n (J).
-    pub(crate) strain_energy: f64,
 }
 
 /// The fields that are balanced at t_n.
@@ -99,14 +96,10 @@ pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + 
     }
 
     /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the reconstruction
-    /// has its own. `force` holds the forces but those of contact.
-    fn advance(
-        &mut self,
-        _dynamics: &Dynamics<'_, D, N>,
-        simulated: &SimulatedStep<'_, D>,
-        force: Vec<[f64; D]>,
-    ) -> BalancedFields<D> {
-        let step = simulated.step;
+    /// has its own.
+    fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
+        let (state, step) = (simulated.state, &simulated.state.step);
+        let force = state.force_without_contact(dynamics.problem().surface());
         BalancedFields { displacement: step.displacement.to_vec(), force, contact: step.reaction.to_vec() }
     }
 

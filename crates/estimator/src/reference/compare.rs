@@ -4,7 +4,7 @@ use super::locate::Transfer;
 use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
 use crate::inertia::mass_product;
-use percute_core::dynamics::{Kinematics, Stiffness};
+use percute_core::dynamics::{Evaluation, Stiffness};
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -22,7 +22,7 @@ const SAME_INSTANT: f64 = 1e-12;
 pub struct Comparison<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     stiffness: Stiffness<D, N>,
-    kinematics: Kinematics<'p, D, N>,
+    evaluation: Evaluation<'p, D, N>,
     coarse: Vec<Coarse<'p, D, N>>,
     /// The last state of the reference.
     before: Option<State<D>>,
@@ -52,7 +52,7 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
         Self {
             problem,
             stiffness: Stiffness::new(problem),
-            kinematics: Kinematics::new(problem, times),
+            evaluation: Evaluation::new(problem, times),
             coarse: Vec::new(),
             before: None,
         }
@@ -94,8 +94,7 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
 
 impl<const D: usize, const N: usize> StepSink<D> for Comparison<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.kinematics.advance(step)?;
-        let velocity = self.kinematics.velocity();
+        let velocity = self.evaluation.advance(step)?.velocity();
         let now = State { time: step.time, displacement: step.displacement.to_vec(), velocity };
         let before = self.before.replace(now.clone());
         let before = before.as_ref().unwrap_or(&now);

@@ -1,6 +1,6 @@
 //! Displacement and velocity at the instants of a simulation.
 
-use percute_core::dynamics::Kinematics;
+use percute_core::dynamics::Evaluation;
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -19,7 +19,7 @@ pub struct Motion<const D: usize> {
 /// Takes the steps of a simulation and keeps its motion.
 #[derive(Debug)]
 pub struct Recorder<'p, const D: usize, const N: usize> {
-    kinematics: Kinematics<'p, D, N>,
+    evaluation: Evaluation<'p, D, N>,
     motion: Motion<D>,
 }
 
@@ -27,7 +27,7 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
     /// An empty record of a problem over a time grid.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
-        Self { kinematics: Kinematics::new(problem, times), motion: Motion::default() }
+        Self { evaluation: Evaluation::new(problem, times), motion: Motion::default() }
     }
 
     /// What was recorded.
@@ -39,10 +39,10 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
 
 impl<const D: usize, const N: usize> StepSink<D> for Recorder<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.kinematics.advance(step)?;
+        let velocity = self.evaluation.advance(step)?.velocity();
         self.motion.times.push(step.time);
         self.motion.displacement.push(step.displacement.to_vec());
-        self.motion.velocity.push(self.kinematics.velocity());
+        self.motion.velocity.push(velocity);
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::bodies::{fixed, gravity, plane_below, steps, swinging, thrown};
 use crate::estimating::{all_choices, assert_admissible, estimate, history};
-use percute_core::dynamics::Kinematics;
+use percute_core::dynamics::Evaluation;
 use percute_core::history::{History, Step, StepError, StepSink};
 use percute_core::load::{Support, Table};
 use percute_core::problem::TriangleProblem;
@@ -32,10 +32,11 @@ fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
 
 /// v_n and a_n of the scheme.
 fn motion(problem: &TriangleProblem, history: &History<2>, times: &TimeGrid) -> Vec<(Field, Field)> {
-    let mut kinematics = Kinematics::new(problem, times);
+    let mut evaluation = Evaluation::new(problem, times);
     let at = |n: usize| {
-        kinematics.advance(&history.step(n).unwrap()).unwrap();
-        (kinematics.velocity(), kinematics.acceleration())
+        let step = history.step(n).unwrap();
+        let state = evaluation.advance(&step).unwrap();
+        (state.velocity(), state.acceleration())
     };
     (0..history.len()).map(at).collect()
 }

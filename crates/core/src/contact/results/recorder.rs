@@ -4,7 +4,7 @@ use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::Frame;
-use crate::history::{SinkError, Step, StepCheck, StepSink};
+use crate::history::{SinkError, State, Step, StepCheck, StepSink};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 use thiserror::Error;
@@ -121,6 +121,19 @@ impl<const D: usize, const N: usize> StepSink<D> for ContactRecorder<'_, D, N> {
     fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         self.check.check(self.problem, self.times, step)?;
         self.check.accept(step);
+        self.record(step);
+        Ok(())
+    }
+
+    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.record(&state.step);
+        Ok(())
+    }
+}
+
+impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
+    /// Records a checked step.
+    fn record(&mut self, step: &Step<'_, D>) {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
         for at in 0..self.now.len() {
@@ -134,7 +147,6 @@ impl<const D: usize, const N: usize> StepSink<D> for ContactRecorder<'_, D, N> {
         }
         self.results.total.push(total.finish(self.results.total.last(), dt));
         self.results.instants.push(step.time);
-        Ok(())
     }
 }
 

@@ -9,6 +9,8 @@ use crate::pipeline::maps::Maps;
 use crate::reconstruction;
 use crate::request::Request;
 use crate::traction::Equilibration;
+use percute_core::dynamics::Evaluation;
+use percute_core::history::Step;
 
 /// Runs one element at contact through a single step at whose end its nodes touch, with the normal
 /// motion in `track` for all of them.
@@ -27,7 +29,18 @@ fn checked(track: &ContactTrack) -> Residuals {
     let context = ContactSampling { shared: &shared, reconstruction: &*reconstruction, tracks: &tracks };
     let mut near = near_elements(&problem).remove(0);
     let element = &equilibration.elements[near.element.index()];
-    let (_, motion) = FreeMotion::new(&problem).advance(&problem, &times, problem.initial_velocity(), None);
+    let surface = problem.surface().nodes().len();
+    let step = Step {
+        index: 0,
+        time: 0.0,
+        displacement: problem.initial_displacement(),
+        reaction: &vec![[0.0; 2]; surface],
+        touching: &vec![false; surface],
+        velocity: None,
+        acceleration: None,
+    };
+    let mut evaluation = Evaluation::new(&problem, &times);
+    let (_, motion) = FreeMotion::new(&problem).advance(&problem, &times, &evaluation.advance(&step).unwrap());
     let velocities = Velocities { motion, increment: Increment::zero(problem.mesh().node_count()) };
     let mut stop = near.at(element, &velocities, 2, 0.0);
     near.settle(&context, &mut stop);

@@ -5,6 +5,7 @@ use crate::options::ReconstructionChoice;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
 use crate::reconstruction::Densities;
 use crate::time_level::BeforeJump;
+use percute_core::dynamics::Evaluation;
 use percute_core::problem::Initial;
 
 /// The density before t_n.
@@ -35,7 +36,8 @@ fn wrong_initial_conditions_show() {
     for (other, shows) in [(&problem, false), (&faster, true), (&moved, true)] {
         let mut preparation = Preparation::new(&problem, &times, &Options::default());
         preparation.motion = FreeMotion::new(other);
-        preparation.push(&step);
+        let mut evaluation = Evaluation::new(&problem, &times);
+        preparation.push(&evaluation.advance(&step).unwrap());
         let found = preparation.residuals;
         assert_eq!(found.initial_conditions > SHOWS, shows, "{found:?}");
         assert_eq!(Residuals { initial_conditions: 0.0, ..found }, Residuals::default());

@@ -61,7 +61,7 @@ impl<const D: usize> AuxiliarySolution<D> {
 
     /// Takes in the energy of the simulation at a step.
     pub(super) fn watch(&mut self, simulated: &SimulatedStep<'_, D>, mass: &[f64]) {
-        self.peak_energy = self.peak_energy.max(simulated.strain_energy + kinetic_energy(simulated.velocity, mass));
+        self.peak_energy = self.peak_energy.max(simulated.state.strain + kinetic_energy(simulated.velocity, mass));
     }
 
     /// Whether it has become unstable, as it does where a history of another scheme takes steps above the critical one. A
@@ -83,20 +83,14 @@ impl<const D: usize> AuxiliarySolution<D> {
         if n == times.step_count() {
             return;
         }
-        let (h, dt) = (times.velocity_step(n), times.step(n));
         self.reversals += usize::from(reverses(times, n));
         if self.reversals > FEW {
             self.correction.fill([0.0; D]);
         } else if self.corrected {
-            self.correct(problem, dynamics, dt * times.step(n.saturating_sub(1)), acceleration);
+            self.correct(problem, dynamics, times.step(n) * times.step(n.saturating_sub(1)), acceleration);
         }
-        let states = self.half_step.iter_mut().zip(&mut self.displacement).zip(acceleration).zip(&self.correction);
-        for (((v, u), a), correction) in states {
-            for c in 0..D {
-                v[c] += h * (a[c] + correction[c]);
-                u[c] += dt * v[c];
-            }
-        }
+        let corrected = acceleration.iter().zip(&self.correction).map(|(a, b)| std::array::from_fn(|c| a[c] + b[c]));
+        percute_core::dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, corrected);
     }
 
     /// p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã, but for prescribed components, which have the motion they must have.

@@ -105,25 +105,20 @@ impl<const D: usize, const N: usize> Reconstruction<D, N> for Corrected<'_, D, N
     }
 
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
-    fn advance(
-        &mut self,
-        dynamics: &Dynamics<'_, D, N>,
-        simulated: &SimulatedStep<'_, D>,
-        mut force: Vec<[f64; D]>,
-    ) -> BalancedFields<D> {
-        let (step, problem) = (simulated.step, self.problem);
+    fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
+        let (state, step, problem) = (simulated.state, &simulated.state.step, self.problem);
         let contact = match &mut self.impulse_smoothing {
-            Some(smoothing) => {
-                smoothing.advance(problem, self.times, step.index, step.reaction, simulated.acceleration)
-            }
+            Some(smoothing) => smoothing.advance(problem, self.times, step.index, step.reaction, &state.acceleration()),
             None => step.reaction.to_vec(),
         };
         let pull = driving_forces(problem, &self.at(&contact));
         let Some(auxiliary) = &mut self.auxiliary else {
+            let force = state.force_without_contact(problem.surface());
             return BalancedFields { displacement: step.displacement.to_vec(), force, contact };
         };
         auxiliary.watch(simulated, problem.mass());
         let displacement = auxiliary.displacement().to_vec();
+        let mut force = vec![[0.0; D]; displacement.len()];
         dynamics.forces_without_contact(step.index, &displacement, &mut force);
         let acceleration = accelerate(problem, dynamics.inverse_mass(), force.clone(), &pull);
         auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration);
