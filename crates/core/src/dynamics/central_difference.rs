@@ -97,8 +97,7 @@ pub fn simulate<const D: usize, const N: usize>(
     let mut support_reaction = vec![0.0; problem.prescribed().len()];
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
-    let mut done = 0;
-    let mut interrupted = false;
+    let (mut done, mut interrupted) = (0, false);
 
     for n in 0..=times.step_count() {
         let strain = dynamics.forces(n, &displacement, &mut force);

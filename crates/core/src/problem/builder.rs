@@ -143,9 +143,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let mut mass = vec![0.0; mesh.node_count()];
         for e in (0..mesh.element_count()).map(ElementId::new) {
             let share = materials[usize::from(element_material[e.index()])].density() * volume(e) / N as f64;
-            for node in mesh.cells()[e.index()] {
-                mass[node.index()] += share;
-            }
+            mesh.cells()[e.index()].iter().for_each(|node| mass[node.index()] += share);
         }
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
