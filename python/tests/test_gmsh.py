@@ -190,7 +190,7 @@ def bad_truss() -> None:
         (bad_partition, "Mesh > Unpartition"),
         (bad_groups, "Physical Surface"),
         (bad_joint, "BooleanFragments"),
-        (bad_truss, "no edge of any triangle"),
+        (bad_truss, "not an edge of any triangle"),
     ],
 )
 def test_what_percute_cannot_take_is_refused(

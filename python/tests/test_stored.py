@@ -143,7 +143,7 @@ def test_a_number_that_json_cannot_have(good: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("reading", "says"), [("corrected", "In tests"), ("consistent", "With `consistent` it may lie far off"), ("of tomorrow", "contact together.")]
+    ("reading", "says"), [("corrected", "In tests"), ("consistent", "With `consistent` it may be far off"), ("of tomorrow", "mass and contact.")]
 )
 def test_a_report_of_another_version(reading: str, says: str, good: Path, tmp_path: Path) -> None:
     """Older ones do not say what their number means, newer ones may have a reading of which nothing is known here."""

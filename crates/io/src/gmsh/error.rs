@@ -211,7 +211,7 @@ pub enum GmshCause {
 fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {
     let groups = if groups.is_empty() { String::new() } else { format!(", in {},", quoted(groups)) };
     let [what, part, of] = if dimension == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
-    format!("the {what} {element} of nodes {nodes:?}{groups} is not a {part} of any {of}")
+    format!("the {what} {element} of nodes {nodes:?}{groups} is not an {part} of any {of}")
 }
 
 fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {

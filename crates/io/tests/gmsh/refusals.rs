@@ -34,7 +34,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("0 1 0\n7 7 7", "0 1 inf\n7 7 7", &["found `inf` instead of a coordinate of a node"], "0 1 inf"),
         ("0 1 0\n7 7 7", "0 1 0,5\n7 7 7", &["found `0,5` instead of a coordinate of a node"], "0 1 0,5"),
         ("10 30 2", "10 30 9", &["the line 10 of nodes [30, 9]", "\"foot\"", "Coherence"], "10 30"),
-        ("10 30 2", "10 30 6", &["the line 10 of nodes [30, 6]", "no edge of any triangle"], "10 30"),
+        ("10 30 2", "10 30 6", &["the line 10 of nodes [30, 6]", "not an edge of any triangle"], "10 30"),
         ("1 1 1 1\n10 30 2", "1 9 1 1\n10 30 9", &["the line 10", "delete the curve", "Mesh.SaveAll = 0"], "10 30"),
         ("$Entities", "$PartitionedEntities", &["the mesh is partitioned", "Mesh > Unpartition"], "0 1 2 0"),
         ("1 5 2 30", "1 6 2 30", &["found `6` instead of the number of nodes", "another number"], "7 7 7"),
