@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Outcome, Setting
-from percute.verification.impacts import FLAT, KINDS, Case, Found, cases
+from percute.verification.impacts import FLAT, GOOD, KINDS, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, short
-from percute.verification.parallel import Resolution
-
-__all__ = ["compute"]
+from percute.verification.parallel import Resolution, Stop
 
 ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
     "corrected": ({}, "the default with all its parts"),
@@ -68,10 +66,13 @@ def compute(section: Section, resolution: Resolution) -> None:
     bodies = _bodies(resolution)
     on_bodies = resolution.map(lambda case, stop: case.run(CHOICES, stop), bodies, lambda case: case.cost)
     results = list(zip(bodies, on_bodies, strict=True))
+    attempts = Table("ablation-attempts", "The attempts.", [Column("attempt"), Column("difference and effect")])
+    for name, (_, description) in ATTEMPTS.items():
+        attempts.add(name, description)
     section.add(
         "The default `corrected` is made of several parts (see the page on reconstructions). Each is left out in turn here, and the other "
         "reconstructions stand beside it: e/e_Ex on a part of the grid of bars, and e/e_ref on plane bodies.",
-        _attempts(),
+        attempts,
         Figure(
             "ablation",
             "Effectivity index of the largest error [15] over refinement (both axes logarithmic), a panel for each body, a curve for each "
@@ -94,13 +95,6 @@ def _bodies(resolution: Resolution) -> list[Case]:
         chosen += [own[0], own[-1]] if kind == FLAT else own[:1]
     meshes = resolution.either(2, MESHES)
     return [case.at(meshes=meshes, references=REFERENCE) for case in resolution.first(2, chosen)]
-
-
-def _attempts() -> Table:
-    table = Table("ablation-attempts", "The attempts.", [Column("attempt"), Column("difference and effect")])
-    for name, (_, description) in ATTEMPTS.items():
-        table.add(name, description)
-    return table
 
 
 def _bar(outcomes: Sequence[Outcome]) -> Table:
@@ -133,14 +127,10 @@ def _plane(results: Sequence[tuple[Case, list[Found | None]]]) -> Table:
 
 
 def _draw(results: Sequence[tuple[Case, list[Found | None]]]) -> figures.Drawing:
-    def curve(found: list[Found | None], k: int, attempt: str) -> figures.Curve:
-        values = [math.nan if each is None else each.effectivity(k)[0] for each in found[:MESHES]]
-        return figures.Curve(attempt, [2.0**mesh for mesh in range(MESHES)], values, figures.own(k), marked=True)
-
-    panels = [(case.name, [curve(found, k, attempt) for k, attempt in enumerate(ATTEMPTS)]) for case, found in results]
+    panels = [(case.name, [curve(attempt, found[:MESHES], k, 0, k) for k, attempt in enumerate(ATTEMPTS)]) for case, found in results]
     ticks = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
     x, y = "times finer than mesh 1", "e/e_ref"
-    return figures.lines(panels, x, y, log="xy", columns=2, band=(0.9, 1.5), xticks=(1, 2, 4), yticks=ticks)
+    return figures.lines(panels, x, y, log="xy", columns=2, band=GOOD, xticks=(1, 2, 4), yticks=ticks)
 
 
 def _sliding_block() -> tuple[pc.Problem, dict[str, Any]]:
@@ -164,7 +154,7 @@ def _slide(section: Section, resolution: Resolution) -> None:
     history = pc.simulate(problem, **times)
     lengths = [math.floor(part * (len(history) - 1) + 0.5) for part in SLIDE]
 
-    def errors(run: tuple[int, dict[str, Any]], stop: Callable[[pc.Progress], object]) -> float:
+    def errors(run: tuple[int, dict[str, Any]], stop: Stop) -> float:
         count, choice = run
         first = pc.simulate(problem, end=float(history.time[count]), step=float(history.time[count]) / count, progress=stop)
         return 100.0 * pc.estimate(first, threads=1, progress=stop, **choice).relative_mean

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import percute as pc
-
-__all__ = ["BAR", "WHOLE", "Outcome", "Setting"]
+from percute.verification.parallel import Stop
 
 BAR = {"length": 0.1, "young": 70e9, "density": 2700.0, "section": 0.02, "speed": 400.0}
 """The bar of the paper's §7.1.4, but for the gap, which the paper does not state."""
@@ -49,7 +48,7 @@ class Setting:
         """Δt (s); on the uniform bar Δt_c is h/c exactly, eq. [33]."""
         return self.ratio * BAR["length"] / self.elements / math.sqrt(BAR["young"] / BAR["density"])
 
-    def run(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> Outcome:
+    def run(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> Outcome:
         """Simulate, estimate with each choice of arguments of `percute.estimate`, and compare with the exact solution."""
         exact = pc.exact.BarImpact(gap=(WHOLE + self.fraction) * self.step * BAR["speed"], **BAR)
         problem = pc.Problem(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,11 +14,6 @@ from percute.verification.bar import BAR, WHOLE, Outcome, Setting
 from percute.verification.choices import ACCELERATIONS, CHOICES, DEFAULT, RECONSTRUCTIONS, of_default
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-__all__ = ["compute"]
 
 PAPER = (0.7, 1.8)
 """The range of the effectivity that the paper states (§7.1.6)."""
@@ -61,13 +55,13 @@ class Grid:
                 found[at] = value
         return np.array([[found.get((ratio, n), math.nan) for n in self.elements] for ratio in RATIOS])
 
-    def map(self, colours: figures.Colours, values: Callable[[int], np.ndarray]) -> Drawing:
+    def map(self, colours: figures.Colours, values: Callable[[int], np.ndarray]) -> figures.Drawing:
         """Draw a map for each choice: a row for each reconstruction, a column for each Γ_DA."""
         maps = [(f"{choice['reconstruction']}, {choice['acceleration']}", values(c)) for c, choice in enumerate(CHOICES)]
         x, y = ("number of elements", [str(n) for n in self.elements]), ("Δt/Δt_c", [short(ratio, 1) for ratio in RATIOS])
         return figures.heat_maps(maps, x, y, colours, columns=len(ACCELERATIONS))
 
-    def relative(self) -> Drawing:
+    def relative(self) -> figures.Drawing:
         """Draw figure 5: ε in per cent, from the lowest to the highest value."""
 
         def values(choice: int) -> np.ndarray:
@@ -77,7 +71,7 @@ class Grid:
         every = np.stack([values(c) for c in range(len(CHOICES))])
         return self.map(figures.ratio("relative error (%)", every.min(), every.max()), values)
 
-    def effectivity(self, measure: int, wanted: Wanted) -> Drawing:
+    def effectivity(self, measure: int, wanted: Wanted) -> figures.Drawing:
         """Draw figure 6: effectivities, those farthest from 1."""
         return self.map(figures.around_one("effectivity", 4.0), lambda c: self.cells(self.effectivities(c, measure, wanted)))
 
@@ -256,7 +250,7 @@ def _sweep(resolution: Resolution) -> Table:
     return table
 
 
-def _draw_sweep(table: Table) -> Drawing:
+def _draw_sweep(table: Table) -> figures.Drawing:
     """Draw a panel for each measure and step, with a curve for each reconstruction."""
 
     def curve(k: int, name: str, measure: str, ratio: float) -> figures.Curve:

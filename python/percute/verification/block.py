@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import percute as pc
-
-__all__ = ["ALUMINIUM", "Block", "Impact"]
+from percute.verification.parallel import Stop
 
 ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
 """The material of §7.2.1."""
@@ -29,7 +27,7 @@ class Impact:
     arrival: float
     """The instant at which a rigid block would arrive at the plane (s)."""
 
-    def simulate(self, stop: Callable[[pc.Progress], object] | None = None) -> pc.History:
+    def simulate(self, stop: Stop | None = None) -> pc.History:
         """Simulate it."""
         return pc.simulate(self.problem, end=self.step * self.count, step=self.step, progress=stop)
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["ACCELERATIONS", "CHOICES", "DEFAULT", "RECONSTRUCTIONS", "of_default"]
-
 RECONSTRUCTIONS = ("corrected", "consistent", "published")
 ACCELERATIONS = ("closest", "rigid", "weak")
 CHOICES: list[dict[str, Any]] = [{"reconstruction": r, "acceleration": a} for r in RECONSTRUCTIONS for a in ACCELERATIONS]

@@ -13,8 +13,6 @@ from percute.progress import shown
 from percute.verification.parallel import Resolution
 from percute.verification.studies import STUDIES, Study, chosen, run
 
-__all__ = ["main"]
-
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -64,12 +62,9 @@ def main(arguments: Sequence[str]) -> int:
             run(given.output, studies, Resolution(given.small, given.threads, tell=tell), given.force, tell_done)
     except KeyboardInterrupt:
         code = INTERRUPTED
-    except ExistingFileError as error:
-        print(f"error: {_said(error)}", file=sys.stderr)
-        return BAD_INPUT
     except PercuteError as error:
         print(f"error: {_said(error)}", file=sys.stderr)
-        return BAD_INPUT if isinstance(error, InputError) and not done else FAILED
+        return BAD_INPUT if isinstance(error, ExistingFileError | InputError) and not done else FAILED
     if not done:
         print("interrupted: no study is done", file=sys.stderr)
         return code

@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import percute as pc
 from percute.verification import figures, slow, steps
-from percute.verification.impacts import CORNER, CURVED, FLAT, KINDS, MESHES, READINGS, STEP, TILTED, Case, Found, cases
+from percute.verification.choices import RECONSTRUCTIONS as NAMES
+from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, READINGS, STEP, TILTED, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, percent, short
-from percute.verification.parallel import Resolution
-
-__all__ = ["GOOD", "MEASURES", "compute"]
+from percute.verification.parallel import Resolution, Stop
 
 Result = tuple[Case, list[Found | None]]
 MEASURES = ("sup", "mean")
-GOOD = (0.9, 1.5)
-"""The range of a good estimate."""
-NAMES = [reading["reconstruction"] for reading in READINGS]
 
 
 def compute(section: Section, resolution: Resolution) -> None:
     """Compute the study."""
     wanted = cases(resolution.small)
 
-    def work(case: Case, stop: Callable[[pc.Progress], object]) -> list[Found | None]:
+    def work(case: Case, stop: Stop) -> list[Found | None]:
         return case.run(READINGS, stop)
 
     found = resolution.map(work, wanted, lambda case: case.cost)
@@ -221,13 +217,8 @@ def _family(case: Case) -> tuple[int, str]:
 def _draw(results: Sequence[Result]) -> figures.Drawing:
     """Draw a row of panels for each measure, a panel for each reconstruction, a curve for each case."""
 
-    def curve(case: Case, found: Sequence[Found | None], r: int, m: int) -> figures.Curve:
-        colour, name = _family(case)
-        values = [math.nan if each is None else each.effectivity(r)[m] for each in found]
-        return figures.Curve(name, [2.0**mesh for mesh in range(MESHES)], values, figures.own(colour), marked=True)
-
     panels = [
-        (f"{name}, {measure}", [curve(case, found, r, m) for case, found in results])
+        (f"{name}, {measure}", [curve(_family(case)[1], found, r, m, _family(case)[0]) for case, found in results])
         for m, measure in enumerate(MEASURES)
         for r, name in enumerate(NAMES)
     ]

@@ -6,21 +6,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from percute.errors import PercuteError
+from percute.verification.page import short
 
-if TYPE_CHECKING:
-    from matplotlib.colors import Colormap, Normalize
+try:
+    from matplotlib import colormaps, colors, rc_context
     from matplotlib.figure import Figure as Drawing
+    from matplotlib.ticker import NullLocator
+except ImportError:
+    raise PercuteError('the figures need matplotlib: pip install "percute[plot]"')
 
-else:
-    Drawing = object
-
-__all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", "lines", "mesh_maps", "needed", "own", "ordered", "ratio", "save"]
+__all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", "lines", "mesh_maps", "ordered", "own", "ratio", "save"]
 
 PALETTE = ("#2f79c8", "#da6228", "#24966e", "#9b55be", "#c83c64", "#967d1e", "#1496af", "#828791", "#a56450")
 INK, FAINT, GRID = "#282830", "#6e6e78", "#e1e2e8"
@@ -68,8 +69,8 @@ class Colours:
     """The colours of values, with the label of their bar."""
 
     label: str
-    norm: Normalize
-    map: Colormap
+    norm: colors.Normalize
+    map: colors.Colormap
     ticks: Sequence[float] | None = None
 
 
@@ -80,23 +81,16 @@ def own(index: int) -> str:
 
 def ordered(place: float) -> str:
     """Give a colour of an ordered family, from 0 (dark) to 1 (light)."""
-    needed()
-    from matplotlib import colormaps, colors
-
     return colors.to_hex(colormaps["viridis"](0.28 + 0.54 * min(max(place, 0.0), 1.0)))
 
 
 def between(label: str, low: float, high: float) -> Colours:
     """Give colours from dark to light between two values."""
-    from matplotlib import colormaps, colors
-
     return Colours(label, colors.Normalize(low, high if high > low else low + 1.0), colormaps["viridis"])
 
 
 def ratio(label: str, low: float, high: float) -> Colours:
     """Give colours from dark to light between two positive values, in equal ratios."""
-    from matplotlib import colormaps, colors
-
     high = high if high > low else 2.0 * low
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
     ticks = [digit * 10.0**power for power in powers for digit in (1, 2, 5) if low <= digit * 10.0**power <= high]
@@ -105,29 +99,16 @@ def ratio(label: str, low: float, high: float) -> Colours:
 
 def around_one(label: str, factor: float) -> Colours:
     """Give colours that are blue below 1, pale at 1 and red above, from 1/``factor`` to ``factor``: for effectivities."""
-    from matplotlib import colors
-
     ticks = [tick for tick in (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0) if 1 / factor <= tick <= factor]
     return Colours(label, colors.LogNorm(1 / factor, factor), colors.LinearSegmentedColormap.from_list("around", AROUND), ticks)
 
 
-def needed() -> None:
-    """Refuse to go on without matplotlib."""
-    try:
-        import matplotlib.figure  # noqa: F401
-    except ImportError as error:
-        raise PercuteError('the figures need matplotlib: pip install "percute[plot]"') from error
-
-
 def _panels(count: int, columns: int, height: float | None = None, *, shared: bool = True) -> tuple[Drawing, list[Any]]:
     """Give a figure with so many panels, in rows."""
-    needed()
-    from matplotlib.figure import Figure
-
     columns = min(columns, count)
     rows = math.ceil(count / columns)
     size = WIDTHS[columns - 1], rows * (height or HEIGHTS[columns - 1]) + 0.5
-    figure = Figure(figsize=size, layout="constrained")
+    figure = Drawing(figsize=size, layout="constrained")
     axes = list(figure.subplots(rows, columns, sharex=shared, sharey=shared, squeeze=False).flat)
     for unused in axes[count:]:
         unused.set_visible(False)
@@ -135,8 +116,6 @@ def _panels(count: int, columns: int, height: float | None = None, *, shared: bo
 
 
 def _ticks(axis: Any, ticks: Sequence[float]) -> None:
-    from matplotlib.ticker import NullLocator
-
     axis.set_ticks(list(ticks), [f"{tick:g}" for tick in ticks])
     axis.set_minor_locator(NullLocator())
 
@@ -158,9 +137,7 @@ def lines(
     ``panels`` are titles with curves. They have the same axes, unless ``x`` and ``y`` are lists with a label for each.
     ``log`` names the logarithmic axes ("x", "y" or "xy"), ``band`` is a range of y that is marked, ``zero`` lets y begin at 0.
     """
-    import matplotlib as mpl
-
-    with mpl.rc_context(STYLE):
+    with rc_context(STYLE):
         shared = isinstance(x, str) and isinstance(y, str)
         labels = [[x] * len(panels) if isinstance(x, str) else x, [y] * len(panels) if isinstance(y, str) else y]
         figure, all_axes = _panels(len(panels), columns, shared=shared)
@@ -210,11 +187,7 @@ def heat_maps(
     ``maps`` are titles with arrays (rows from below, columns), NaN where there is none; ``x`` and ``y`` are a name and a text
     for each column and row. Values are written where there is room.
     """
-    import matplotlib as mpl
-
-    from percute.verification.page import short
-
-    with mpl.rc_context(STYLE | {"axes.grid": False, "axes.spines.left": False, "axes.spines.bottom": False}):
+    with rc_context(STYLE | {"axes.grid": False, "axes.spines.left": False, "axes.spines.bottom": False}):
         figure, all_axes = _panels(len(maps), columns)
         image = None
         room = len(x[1]) * columns <= 30
@@ -249,9 +222,7 @@ def mesh_maps(
     ``maps`` are titles with a mesh, or any object with ``points`` and ``cells``, and a value for each element; ``plane`` is the
     height of a horizontal rigid plane (m), which is grey.
     """
-    import matplotlib as mpl
-
-    with mpl.rc_context(STYLE | {"axes.grid": False}):
+    with rc_context(STYLE | {"axes.grid": False}):
         corners = 1e3 * np.concatenate([mesh.points for _, mesh, _ in maps])
         room = 0.04 * np.ptp(corners, axis=0).max()
         (left, low), (right, high) = corners.min(axis=0) - room, corners.max(axis=0) + room
@@ -284,8 +255,6 @@ def _bar(figure: Drawing, image: Any, axes: list[Any], colours: Colours) -> None
 
 def save(figure: Drawing, file: Path) -> None:
     """Write a figure as SVG and PNG; ``file`` has no ending."""
-    import matplotlib as mpl
-
-    with mpl.rc_context(STYLE):
+    with rc_context(STYLE):
         figure.savefig(file.with_name(file.name + ".svg"), metadata={"Date": None})
         figure.savefig(file.with_name(file.name + ".png"), dpi=160, metadata={"Software": None})

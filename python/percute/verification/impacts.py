@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import resources
 from typing import Any
 
 import numpy as np
 import percute as pc
+from percute.verification import figures
 from percute.verification.block import ALUMINIUM
+from percute.verification.choices import RECONSTRUCTIONS
+from percute.verification.parallel import Stop
 
-__all__ = ["CORNER", "CURVED", "FEW", "FLAT", "KINDS", "MESHES", "READINGS", "STEP", "TILTED", "Case", "Found", "cases"]
-
-READINGS = [{"reconstruction": name} for name in ("corrected", "consistent", "published")]
+READINGS = [{"reconstruction": name} for name in RECONSTRUCTIONS]
 """The reconstructions of the contact force, as arguments of `percute.estimate`."""
 STEP = 0.9
 """Δt/Δt_c, exactly, of all runs but those for short steps."""
@@ -22,6 +23,8 @@ MESHES = 4
 """Meshes that are estimated, each with four times as many elements as the one before."""
 FEW = 2
 """Meshes of a small study, and of studies of other things than the mesh, which show the last of them."""
+GOOD = (0.9, 1.5)
+"""The range of a good estimate."""
 OBLIQUE, NORMAL = (400.0, -400.0), (0.0, -400.0)
 """Velocity along and across the plane (m/s)."""
 FLAT, TILTED, CURVED, CORNER = KINDS = ("flat", "tilted by 3°", "curved", "corner first")
@@ -127,7 +130,7 @@ class Case:
             obstacles=[pc.Plane(point=normal * lowest, normal=normal, friction=self.friction)],
         )
 
-    def run(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> list[Found | None]:
+    def run(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> list[Found | None]:
         """Estimate on each mesh with each choice, then compare with the references.
 
         A mesh that is not wanted, or on which the body starts too near to the plane, gives None.
@@ -160,9 +163,15 @@ class Case:
                 each.exact.append((true.sup, true.mean))
         return found + [None] * (MESHES - self.meshes)
 
-    def finest(self, choices: Sequence[Mapping[str, Any]], stop: Callable[[pc.Progress], object] | None = None) -> Found:
+    def finest(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> Found:
         """Run it and give the results on the finest of the meshes that are estimated."""
         return [found for found in self.run(choices, stop) if found is not None][-1]
+
+
+def curve(name: str, found: Sequence[Found | None], choice: int, measure: int, colour: int) -> figures.Curve:
+    """Give the effectivity index of a choice over refinement: of the largest error (0) or of the mean (1)."""
+    values = [math.nan if each is None else each.effectivity(choice)[measure] for each in found]
+    return figures.Curve(name, [2.0**mesh for mesh in range(len(found))], values, figures.own(colour), marked=True)
 
 
 def _steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, Any]:

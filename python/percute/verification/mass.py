@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import percute as pc
 from percute.verification import figures
 from percute.verification.page import Column, Figure, Section, Table, percent, short
-from percute.verification.parallel import Resolution
-
-__all__ = ["FEW", "RATIOS", "add"]
+from percute.verification.parallel import Resolution, Stop
 
 RATIOS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 FEW = (1.0, 0.5)
@@ -26,10 +24,8 @@ ENERGY = 0.25 * DENSITY * SECTION * LENGTH * (AMPLITUDE * FREQUENCY) ** 2
 RULE = ((0.112_701_665_379_258_3, 5 / 18), (0.5, 8 / 18), (0.887_298_334_620_741_7, 5 / 18))
 """Points and weights of Gauss's rule on [0, 1], exact to degree 5."""
 
-Bar = tuple[int, float]
 
-
-def _run(bar: Bar, stop: Callable[[pc.Progress], object]) -> tuple[float, float, float]:
+def _run(bar: tuple[int, float], stop: Stop) -> tuple[float, float, float]:
     """Give the largest true error and estimate (% of the norm of the mode), and the error of the frequency (%)."""
     per_wave, ratio = bar
     elements = round(per_wave * WAVE_NUMBER * LENGTH / math.tau)

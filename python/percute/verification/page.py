@@ -14,12 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from percute import _percute
-from percute.verification import figures
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-__all__ = ["Column", "Figure", "Section", "Table", "percent", "short", "write"]
+    from percute.verification.figures import Drawing
 
 Cell = str | float | int | None
 TITLE = "How good percute is"
@@ -160,11 +157,8 @@ def _rich(text: str) -> str:
 class _Html:
     """Items as HTML."""
 
-    def heading(self, text: str) -> str:
-        return f"<h3>{html.escape(text)}</h3>"
-
     def text(self, text: str) -> str:
-        return f"<p>{_rich(text)}</p>"
+        return f"<h3>{_rich(text[4:])}</h3>" if text.startswith("### ") else f"<p>{_rich(text)}</p>"
 
     def figure(self, figure: Figure, number: int, svg: str) -> str:
         data = base64.b64encode(svg.encode()).decode()
@@ -195,9 +189,6 @@ class _Html:
 
 class _Markdown:
     """Items as Markdown, for ``docs/verification.md``."""
-
-    def heading(self, text: str) -> str:
-        return f"### {text}"
 
     def text(self, text: str) -> str:
         return text
@@ -231,8 +222,6 @@ def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, 
             elif isinstance(item, Figure):
                 drawings += 1
                 pieces.append(form.figure(item, drawings, svg.get(item.key, "")))
-            elif item.startswith("### "):
-                pieces.append(form.heading(item[4:]))
             else:
                 pieces.append(form.text(item))
         yield section, pieces, left
@@ -262,6 +251,8 @@ def _markdown(sections: Sequence[Section], origin: str) -> str:
 
 def write(folder: Path, sections: Sequence[Section], resolution: str, missing: Sequence[str]) -> Path:
     """Write the figures and tables of the last section and the pages of all; give the page."""
+    from percute.verification import figures
+
     origin = f"Written by `percute reproduce{' --small' if resolution == 'small' else ''}` of percute {_percute.__version__}."
     if missing:
         origin += f" Not on this page: {', '.join(missing)}."

@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 
 from percute._percute import Progress
 
-__all__ = ["Resolution"]
-
+Stop = Callable[[Progress], object]
+"""The ``progress`` of simulations and estimates through which a study is stopped."""
 T = TypeVar("T")
 R = TypeVar("R")
 POLL = 0.05
@@ -31,7 +31,7 @@ class Resolution:
     threads: int | None = None
     """Runs at once; by default one for each core. No number depends on it."""
     stage: str = "reproducing"
-    tell: Callable[[Progress], object] | None = None
+    tell: Stop | None = None
 
     @property
     def name(self) -> str:
@@ -47,7 +47,7 @@ class Resolution:
         return items[:few] if self.small else items
 
     def map(
-        self, work: Callable[[T, Callable[[Progress], object]], R], items: Sequence[T], cost: Callable[[T], float] | None = None
+        self, work: Callable[[T, Stop], R], items: Sequence[T], cost: Callable[[T], float] | None = None
     ) -> list[R]:
         """Call ``work(item, stop)`` for each item, the costliest first, on several threads; results are in the order of the items.
 

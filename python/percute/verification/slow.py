@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import percute as pc
 from percute.verification.impacts import CORNER, CURVED, FLAT, READINGS, Case, Found, cases
 from percute.verification.page import Column, Section, Table
-from percute.verification.parallel import Resolution
-
-__all__ = ["add"]
+from percute.verification.parallel import Resolution, Stop
 
 SCALES = (1.0, 0.1, 0.01, 0.001)
 """Speed and gap over those of the cases."""
 
 
-def _scaled(run: tuple[Case, float], stop: Callable[[pc.Progress], object]) -> Found:
+def _scaled(run: tuple[Case, float], stop: Stop) -> Found:
     case, scale = run
     slower = case.at(velocity=(scale * case.velocity[0], scale * case.velocity[1]), gap=scale * case.gap)
     return slower.finest(READINGS, stop)

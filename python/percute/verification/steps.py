@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Setting
-from percute.verification.impacts import CORNER, FEW, FLAT, READINGS, Case, cases
+from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, READINGS, Case, cases
 from percute.verification.page import Column, Figure, Section, Table
-from percute.verification.parallel import Resolution
-
-__all__ = ["add"]
+from percute.verification.parallel import Resolution, Stop
 
 RATIOS = (0.9, 0.5, 0.2, 0.1, 0.05, 0.02)
 """Δt/Δt_c."""
@@ -22,7 +20,6 @@ ATTEMPTS: dict[str, dict[str, Any]] = {reading["reconstruction"]: reading for re
 ATTEMPTS["corrected, not spread"] = {"_ablation": "impulse smoothing"}
 """The reconstructions, and the default with reactions that are not spread in time."""
 ENDS = ("lowest, sup", "highest, sup", "lowest, mean", "highest, mean")
-GOOD = (0.9, 1.5)
 
 Subject = Case | None
 """A plane body, or the bar."""
@@ -32,7 +29,7 @@ def _name(subject: Subject) -> str:
     return f"bar, {ELEMENTS} elements" if subject is None else subject.name
 
 
-def _ranges(run: tuple[Subject, float], stop: Callable[[pc.Progress], object]) -> list[list[float]]:
+def _ranges(run: tuple[Subject, float], stop: Stop) -> list[list[float]]:
     """Give lowest and highest of sup and mean for each attempt at one ratio."""
     (subject, ratio), choices = run, list(ATTEMPTS.values())
     if subject is None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +14,7 @@ from percute.verification import figures
 from percute.verification.block import Block
 from percute.verification.choices import DEFAULT, RECONSTRUCTIONS
 from percute.verification.page import Column, Figure, Section, Table, percent, short
-from percute.verification.parallel import Resolution
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-__all__ = ["compute"]
+from percute.verification.parallel import Resolution, Stop
 
 CELLS = (20, 16)
 """The mesh: 640 elements."""
@@ -32,20 +26,12 @@ INSTANTS = 6
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Body:
-    """A deformed mesh."""
-
-    points: Floats
-    cells: NDArray[np.uint32]
-
-
 def compute(section: Section, resolution: Resolution) -> None:
     """Compute the study; a small study has all of it."""
     block = Block(CELLS)
     history = block.impact().simulate()
 
-    def work(name: str, stop: Callable[[pc.Progress], object]) -> pc.Estimate:
+    def work(name: str, stop: Stop) -> pc.Estimate:
         return pc.estimate(history, reconstruction=name, acceleration=DEFAULT, instants=INSTANTS + 1, threads=1, progress=stop)  # type: ignore[arg-type]
 
     estimates = dict(zip(RECONSTRUCTIONS, resolution.map(work, RECONSTRUCTIONS), strict=True))
@@ -58,17 +44,18 @@ def compute(section: Section, resolution: Resolution) -> None:
     times = [each.time for each in estimates["corrected"].maps[1:]]
     steps = [int(np.argmin(abs(history.time - time))) for time in times]
     titles = [f"t = {short(1e6 * time, 3)} µs" for time in times]
-    bodies = [Body(history.problem.mesh.points + history.displacement[n], history.problem.mesh.cells) for n in steps]
+    mesh = history.problem.mesh
+    bodies = [SimpleNamespace(points=mesh.points + history.displacement[n], cells=mesh.cells) for n in steps]
     height = float(np.asarray(history.problem.obstacles[0].point)[1])
 
-    def draw(values: Sequence[Floats], colours: figures.Colours) -> Drawing:
+    def draw(values: Sequence[Floats], colours: figures.Colours) -> figures.Drawing:
         return figures.mesh_maps(list(zip(titles, bodies, values, strict=True)), colours, columns=3, plane=height)
 
     stresses = [1e-9 * field(history, "von_mises", n)[0] for n in steps]
     highest = float(np.max(stresses))
     caption = "Von Mises stress of each element (by its centroid at the start) at each instant."
     table = _table("stress-maps-von-mises", caption, [Column(title, "GPa", "[9]") for title in titles])
-    _fill(table, "all", history.problem.mesh, stresses)
+    _fill(table, "all", mesh, stresses)
     section.add(Figure("figure-8", FIGURE_8.format(short(highest, 3)), draw(stresses, figures.between("von Mises stress (GPa)", 0.0, highest))), table)
 
     errors = {name: [each.error for each in estimate.maps[1:]] for name, estimate in estimates.items()}
@@ -76,7 +63,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     caption = "e_E accumulated from 0 to each instant, √((1/T)∫₀ᵗ η_E dt), of each element (by its centroid at the start)."
     table, summary = _table("stress-maps-error", caption, [Column(title, "J^½", "[20]") for title in titles]), _summary()
     for name, values in errors.items():
-        _fill(table, name, history.problem.mesh, values)
+        _fill(table, name, mesh, values)
         for time, of_elements in zip(times, values, strict=True):
             summary.add(name, 1e6 * time, *_concentration(of_elements))
         share = short(_concentration(values[-1])[-1], 2)

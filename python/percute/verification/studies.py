@@ -10,11 +10,9 @@ from importlib import import_module
 from pathlib import Path
 
 from percute.errors import ExistingFileError, InputError, InputWarning, StorageError
-from percute.verification import figures, page
+from percute.verification import page
 from percute.verification.page import Section
 from percute.verification.parallel import Resolution
-
-__all__ = ["STUDIES", "Study", "chosen", "prepare", "run"]
 
 PAGES = ("index.html", "verification.md", "numbers.json")
 
@@ -89,7 +87,8 @@ def run(
     done: Callable[[Study], object] = lambda study: None,
 ) -> Path:
     """Compute studies and write their folder after each, so that finished studies are never lost; give the page."""
-    figures.needed()
+    # Without matplotlib the import raises an error.
+    import_module("percute.verification.figures")
     prepare(folder, overwrite)
     sections: list[Section] = []
     for study in studies:

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import percute as pc
 from percute.verification import figures
 from percute.verification.block import Block
 from percute.verification.choices import ACCELERATIONS, CHOICES, DEFAULT, RECONSTRUCTIONS, of_default
 from percute.verification.page import Column, Figure, Section, Table, percent, short
-from percute.verification.parallel import Resolution
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-__all__ = ["PAPER", "compute"]
+from percute.verification.parallel import Resolution, Stop
 
 
 @dataclass(frozen=True)
@@ -29,11 +24,6 @@ class Row:
     """ε (%)."""
     absolute: tuple[float, float]
     """e (J^½)."""
-
-    @property
-    def mesh(self) -> str:
-        """The mesh in words."""
-        return Block(self.cells).mesh
 
     @property
     def denominators(self) -> tuple[float, float]:
@@ -60,7 +50,6 @@ VARIANTS: dict[str, list[tuple[str, dict[str, Any]]]] = {
 ABSOLUTE = ("e_sup", "e_mean")
 
 Found = tuple[pc.Estimate, ...]
-Stop = Callable[[pc.Progress], object]
 
 
 def compute(section: Section, resolution: Resolution) -> None:
@@ -129,7 +118,7 @@ def _tables(rows: Sequence[Row], found: Sequence[Found]) -> tuple[Table, Table]:
     for c, choice in enumerate(CHOICES):
         for row, estimates in zip(rows, found, strict=True):
             e = estimates[c]
-            names = choice["reconstruction"], choice["acceleration"], row.mesh, len(e.by_element)
+            names = choice["reconstruction"], choice["acceleration"], Block(row.cells).mesh, len(e.by_element)
             absolute.add(*names, e.sup, row.absolute[0], e.mean, row.absolute[1])
             errors = 100 * e.relative_sup, row.relative[0], 100 * e.relative_mean, row.relative[1]
             relative.add(*names, *errors, e.reference_sup, row.denominators[0], e.reference_mean, row.denominators[1])
@@ -155,7 +144,7 @@ def _conclusions(rows: Sequence[Row], found: Sequence[Found]) -> list[str]:
 
 def _assumptions(rows: Sequence[Row], variants: Sequence[tuple[str, str, Any]], found: Sequence[Found]) -> Table:
     columns = [Column(name) for name in ("contact force", "assumption", "value")]
-    columns += [Column(f"{name} {row.mesh}", "J^½", f"[{15 + k}]") for k, name in enumerate(ABSOLUTE) for row in PAPER]
+    columns += [Column(f"{name} {Block(row.cells).mesh}", "J^½", f"[{15 + k}]") for k, name in enumerate(ABSOLUTE) for row in PAPER]
     caption = (
         f"Absolute errors with Γ_DA `{DEFAULT}`, one assumption changed at a time. The last column is the root mean square of the eight relative "
         "differences from the paper's table."
@@ -189,7 +178,7 @@ def _spreads(table: Table) -> str:
     )
 
 
-def _draw(table: Table) -> Drawing:
+def _draw(table: Table) -> figures.Drawing:
     def curves(measure: str) -> list[figures.Curve]:
         of = [{"contact force": name, "Γ_DA": DEFAULT} for name in RECONSTRUCTIONS]
         elements = table.where("elements", of[0])
@@ -201,13 +190,13 @@ def _draw(table: Table) -> Drawing:
     return figures.lines(panels, "elements", "error (J^½)", log="x", columns=2, xticks=marks, zero=True)
 
 
-def _draw_gap(table: Table, rows: Sequence[Row]) -> Drawing:
+def _draw_gap(table: Table, rows: Sequence[Row]) -> figures.Drawing:
     gaps = [changed["flight"] for _, changed in VARIANTS["gap"]]
 
     def curves(name: str) -> list[figures.Curve]:
-        values = [table.where(f"e_sup {row.mesh}", {"contact force": name, "assumption": "gap"}) for row in rows]
+        values = [table.where(f"e_sup {Block(row.cells).mesh}", {"contact force": name, "assumption": "gap"}) for row in rows]
         hues = [figures.ordered(k / (len(PAPER) - 1)) for k in range(len(rows))]
-        return [figures.Curve(row.mesh, gaps, y, hue, marked=True) for row, y, hue in zip(rows, values, hues, strict=True)]
+        return [figures.Curve(Block(row.cells).mesh, gaps, y, hue, marked=True) for row, y, hue in zip(rows, values, hues, strict=True)]
 
     panels = [(name, curves(name)) for name in RECONSTRUCTIONS]
     return figures.lines(panels, "gap (steps)", "e_sup (J^½)", columns=3, xticks=gaps, zero=True)

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import percute as pc
 from percute.verification import figures, mass
 from percute.verification.block import Block, Impact
-from percute.verification.impacts import READINGS
+from percute.verification.choices import RECONSTRUCTIONS as NAMES
 from percute.verification.page import Column, Figure, Section, Table, percent, short
-from percute.verification.parallel import Resolution
+from percute.verification.parallel import Resolution, Stop
 
-__all__ = ["compute"]
-
-RATIOS, FEW = mass.RATIOS, mass.FEW
-"""Δt/Δt_c, and those of a small study."""
 FRACTION = 0.3
 """The fraction of a step at which the impact falls."""
 MOMENT = 2.0
@@ -24,7 +20,6 @@ DRAWN = (1.0, 0.7, 0.5, 0.2, 0.1)
 """The ratios of which figure (a) has a curve."""
 FRACTIONS, IMPACT_RATIOS, PAST = (0.1, 0.3, 0.5, 0.7, 0.9), (0.8, 0.4, 0.2, 0.1), 1.2e-6
 """Fractions of a step, Δt/Δt_c, and the instant (s) past which runs end, for the impact itself."""
-NAMES = [reading["reconstruction"] for reading in READINGS]
 
 Run = tuple[str, float, Block]
 
@@ -41,7 +36,7 @@ def _block(ratio: float, fraction: float, past: float = 12e-6) -> Block:
     return Block((20, 16), friction=0.0, courant=ratio, gap=0.2e-3, flight=fraction, past=past)
 
 
-def _estimate(run: Run, stop: Callable[[pc.Progress], object]) -> tuple[pc.Estimate, Impact]:
+def _estimate(run: Run, stop: Stop) -> tuple[pc.Estimate, Impact]:
     impact = run[2].impact()
     return pc.estimate(impact.simulate(stop), reconstruction=run[0], threads=1, progress=stop), impact  # type: ignore[arg-type]
 
@@ -55,7 +50,7 @@ def _largest(estimate: pc.Estimate, keep: np.ndarray) -> tuple[float, float]:
 
 def _sweep(section: Section, resolution: Resolution) -> None:
     """Add figures 10 (a) and (b): the error over time, and its largest value over the step."""
-    ratios = resolution.either(FEW, RATIOS)
+    ratios = resolution.either(mass.FEW, mass.RATIOS)
     runs = [(name, ratio, _block(ratio, FRACTION)) for name in NAMES for ratio in ratios]
     found = resolution.map(_estimate, runs, lambda run: 1.0 / run[1])
     first = [Column("contact force"), Column("Δt/Δt_c", digits=1)]

@@ -7,18 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from percute.verification import figures
 from percute.verification.benchmarks import bars, blocks, vibrations
-from percute.verification.benchmarks.trial import Curve, Outcome, Stop
+from percute.verification.benchmarks.trial import Curve, Outcome
 from percute.verification.page import Column, Figure, Section, Table, short
-from percute.verification.parallel import Resolution
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure as Drawing
-
-__all__ = ["BENCHMARKS", "Benchmark", "compute"]
+from percute.verification.parallel import Resolution, Stop
 
 
 @dataclass(frozen=True)
@@ -62,7 +56,7 @@ POINTS = 400
 def compute(section: Section, resolution: Resolution) -> None:
     """Run all cases, also in a small study: it takes seconds."""
     outcomes = resolution.map(lambda case, stop: case.run(stop), BENCHMARKS)
-    cases, rows, runs, curves = _cases(), _rows(), _runs(), _curves()
+    cases, rows, runs, curves = _tables()
     panels = []
     for case, outcome in zip(BENCHMARKS, outcomes, strict=True):
         orders, within = [], []
@@ -94,30 +88,23 @@ CAPTION = (
 )
 
 
-def _cases() -> Table:
-    names = ("case", "subject", "halved from run to run", "source", "observed orders (expected)", "quantities within their bound")
+def _tables() -> tuple[Table, Table, Table, Table]:
+    """Give the tables of cases, quantities, runs and curves, without rows."""
     caption = (
         "The cases, the sources of their solutions, and the results: the mean order of each quantity over all runs, beside the order that "
         "theory predicts, and how many of the quantities without an order are within their bound."
     )
-    return Table("benchmarks-cases", caption, [Column(name) for name in names])
-
-
-def _rows() -> Table:
-    digits = {"exact": 6, "computed": 6, "difference": 2, "order": 2, "expected order": 2, "bound": 2}
-    columns = [Column("case"), Column("quantity"), Column("unit"), *(Column(name, digits=n) for name, n in digits.items()), Column("reason")]
-    return Table("benchmarks", "All quantities: exact, computed by the last run, the difference and its order or bound, with the reason.", columns, on_page=False)
-
-
-def _runs() -> Table:
-    columns = [Column("case"), Column("quantity"), Column("run"), Column("computed", digits=6), Column("difference", digits=3)]
-    return Table("benchmarks-runs", "The same of all runs.", columns, on_page=False)
-
-
-def _curves() -> Table:
-    columns = [Column("case"), Column("quantity"), Column("unit"), Column("time", digits=6), Column("time unit")]
-    columns += [Column("exact", digits=6), Column("computed", digits=6)]
-    return Table("benchmarks-curves", "The curves of the figure.", columns, on_page=False)
+    names = ("case", "subject", "halved from run to run", "source", "observed orders (expected)", "quantities within their bound")
+    cases = Table("benchmarks-cases", caption, [Column(name) for name in names])
+    first = [Column("case"), Column("quantity")]
+    exact, computed = Column("exact", digits=6), Column("computed", digits=6)
+    columns = [*first, Column("unit"), exact, computed, *(Column(name, digits=2) for name in ("difference", "order", "expected order", "bound"))]
+    caption = "All quantities: exact, computed by the last run, the difference and its order or bound, with the reason."
+    rows = Table("benchmarks", caption, [*columns, Column("reason")], on_page=False)
+    columns = [*first, Column("run"), computed, Column("difference", digits=3)]
+    runs = Table("benchmarks-runs", "The same of all runs.", columns, on_page=False)
+    columns = [*first, Column("unit"), Column("time", digits=6), Column("time unit"), exact, computed]
+    return cases, rows, runs, Table("benchmarks-curves", "The curves of the figure.", columns, on_page=False)
 
 
 def _thin(table: Table, key: str, curve: Curve) -> None:
@@ -126,7 +113,7 @@ def _thin(table: Table, key: str, curve: Curve) -> None:
         table.add(key, curve.name, curve.unit, float(t), curve.time_unit, float(exact), float(computed))
 
 
-def _draw(panels: list[tuple[str, Curve]]) -> Drawing:
+def _draw(panels: list[tuple[str, Curve]]) -> figures.Drawing:
     """Draw a panel for each curve, with axes of its own."""
     curves = [
         (key, [figures.Curve("exact", c.time, c.exact, dashed=True), figures.Curve("computed", c.time, c.computed, figures.own(0))])

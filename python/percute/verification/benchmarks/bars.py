@@ -6,9 +6,8 @@ import numpy as np
 
 from percute.exact import BarImpact, BouncingBar, ClampedRod
 from percute.verification.bar import BAR
-from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Stop, Trial, bar, filled, values
-
-__all__ = ["bar_impact", "bouncing_bar", "clamped_rod", "steel_bar"]
+from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Trial, bar, filled, values
+from percute.verification.parallel import Stop
 
 MESHES = (50, 100, 200, 400)
 """Elements of a bar."""
@@ -50,7 +49,7 @@ def _measure_impact(exact: BarImpact, trial: Trial) -> list[float]:
     ]
 
 
-def bar_impact(stop: Stop = None) -> Outcome:
+def bar_impact(stop: Stop | None = None) -> Outcome:
     """Strike a wall, which sends a wave of N = -ρScv through the bar. When it is back, the bar leaves with its velocity.
 
     Of several places of the impact in a step, each value is the one farthest from the exact one.
@@ -77,14 +76,14 @@ def bar_impact(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, worst), curve)
 
 
-def steel_bar(stop: Stop = None) -> Outcome:
+def steel_bar(stop: Stop | None = None) -> Outcome:
     """Creep against a wall: impact after 5e-4 s, contact for 3.8545e-4 s, a force of 1270.8 N."""
     exact = BarImpact(length=1.0, young=210e9, density=7800.0, section=3.14e-4, speed=0.1, gap=5e-5)
     trials = [Trial("steel_bar", stop, bar=bar(exact.length, elements)) for elements in MESHES]
     return Outcome(filled(_impact_quantities(exact, trials[-1].step), [_measure_impact(exact, trial) for trial in trials]))
 
 
-def bouncing_bar(stop: Stop = None) -> Outcome:
+def bouncing_bar(stop: Stop | None = None) -> Outcome:
     """Fall for 1 s, touch for 2/3 s, fly for 2 s: the next bounce is the first one backwards, and all repeats after 16/3 s."""
     exact = BouncingBar(length=10.0, young=900.0, density=1.0, section=1.0, gravity=10.0, height=5.0)
     airborne = 2 * exact.impact_time + exact.contact_duration
@@ -115,7 +114,7 @@ def bouncing_bar(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, runs), curve)
 
 
-def clamped_rod(stop: Stop = None) -> Outcome:
+def clamped_rod(stop: Stop | None = None) -> Outcome:
     """Spring back from (1 - x)/2 and arrive undeformed after 1 s: it touches for 1 s with a force of 1/2, period 3 s, energy 1/8."""
     exact = ClampedRod(length=1.0, young=1.0, density=1.0, section=1.0, distance=0.5)
     runs, curve = [], None

@@ -6,10 +6,9 @@ import numpy as np
 
 import percute as pc
 from percute.exact import RigidSlide
-from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Stop, Trial, filled, rectangle, values
+from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Trial, filled, rectangle, values
 from percute.verification.choices import CHOICES
-
-__all__ = ["oblique", "patch", "patch_contact", "stick_slip", "tilted_plane"]
+from percute.verification.parallel import Stop
 
 STIFFNESS = (3.2e6, 1.28e7, 5.12e7, 2.048e8)
 """Young's moduli (Pa): the wave speed doubles from one to the next."""
@@ -38,7 +37,7 @@ def _pressed(width: float, height: float, nx: int, ny: int, young: float, weight
     return values(np.stack([0 * y, -weight / young * y * (height - 0.5 * y)], axis=1))
 
 
-def tilted_plane(stop: Stop = None) -> Outcome:
+def tilted_plane(stop: Stop | None = None) -> Outcome:
     """Slide with g sin θ − μg cos θ if μ < tan θ, else stick: an elastic block does so as it gets stiffer."""
     runs = []
     for young in STIFFNESS:
@@ -61,7 +60,7 @@ def tilted_plane(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, runs))
 
 
-def stick_slip(stop: Stop = None) -> Outcome:
+def stick_slip(stop: Stop | None = None) -> Outcome:
     """Push to and fro: stick until the push is the friction, slide with ma = P − F, and stop when the velocity is zero."""
     runs, curve = [], None
     for young in STIFFNESS:
@@ -79,7 +78,7 @@ def stick_slip(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, runs), curve)
 
 
-def oblique(stop: Stop = None) -> Outcome:
+def oblique(stop: Stop | None = None) -> Outcome:
     """Strike the ground: without Poisson's effect the normal motion is that of a bar, and friction takes μ times its impulse."""
     speed, friction, height, gap = 10.0, 0.2, 0.04, 2.3e-6
     runs, curve = [], None
@@ -109,7 +108,7 @@ def oblique(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, runs), curve)
 
 
-def patch(stop: Stop = None) -> Outcome:
+def patch(stop: Stop | None = None) -> Outcome:
     """Fly under a uniform stress: with the tractions of its stress nothing swings, and the estimate is zero for all choices."""
     history = Trial("patch", stop).history
     quantities, run = [], []
@@ -120,7 +119,7 @@ def patch(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, [run]))
 
 
-def patch_contact(stop: Stop = None) -> Outcome:
+def patch_contact(stop: Stop | None = None) -> Outcome:
     """Press and shear the same body against the ground: the reactions are those of the uniform stress."""
     trial = Trial("patch_contact", stop)
     estimate, density = trial.estimate, trial.history.contact.density

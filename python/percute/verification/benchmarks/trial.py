@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import percute as pc
-
-__all__ = ["CASES", "Curve", "Outcome", "Quantity", "Stop", "Trial", "bar", "filled", "rectangle", "values"]
+from percute.verification.parallel import Stop
 
 CASES = Path(__file__).with_name("cases")
 Floats = NDArray[np.float64]
-Stop = Callable[[pc.Progress], object] | None
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ def values(array: ArrayLike) -> str:
 class Trial:
     """A run of the case file of this name, with other values for some keys."""
 
-    def __init__(self, name: str, stop: Stop, **settings: object) -> None:
+    def __init__(self, name: str, stop: Stop | None, **settings: object) -> None:
         text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
         for key, value in settings.items():
             text, count = re.subn(rf"(?m)^{key} = .*$", f"{key} = {value}", text)

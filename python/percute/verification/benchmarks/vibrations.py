@@ -8,9 +8,8 @@ import numpy as np
 
 from percute.exact import BarMode, BarRamp, BlockMode
 from percute.statement import Elastic
-from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Stop, Trial, bar, filled, rectangle, values
-
-__all__ = ["bar_mode", "bar_ramp", "block_mode"]
+from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Trial, bar, filled, rectangle, values
+from percute.verification.parallel import Stop
 
 BARS = (10, 20, 40, 80)
 RAMPS = (25, 50, 100, 200)
@@ -29,7 +28,7 @@ AWAY = "the front is near the clamp then; away from it the field is smooth: orde
 KINK_OF_STRESS = "stress and velocity have a kink at the front: s = 3/2, order 1, which is that of linear elements, too"
 
 
-def bar_mode(stop: Stop = None) -> Outcome:
+def bar_mode(stop: Stop | None = None) -> Outcome:
     """Swing in the second mode, u = A sin(kx) cos(ωt), k = 3π/2L: after T the lag of phase is ωT(kh)²(1 − r²)/24, r = Δt/Δt_c."""
     exact = BarMode(**ALUMINIUM, amplitude=1e-4, number=2, fixed="start")
     runs = []
@@ -45,7 +44,7 @@ def bar_mode(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, runs))
 
 
-def block_mode(stop: Stop = None) -> Outcome:
+def block_mode(stop: Stop | None = None) -> Outcome:
     """Swing between rollers in a wave whose field is a gradient (pressure) or free of divergence (shear)."""
     law = Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress", thickness=0.01)
     quantities, runs = [], []
@@ -70,7 +69,7 @@ def block_mode(stop: Stop = None) -> Outcome:
     return Outcome(filled(quantities, list(zip(*runs, strict=True))))
 
 
-def bar_ramp(stop: Stop = None) -> Outcome:
+def bar_ramp(stop: Stop | None = None) -> Outcome:
     """Pull the end of a clamped bar by a traction that grows linearly: the modal series, in d'Alembert's finite form."""
     exact = BarRamp(**ALUMINIUM, rate=1e12)
     runs, curve, largest = [], None, float("nan")
