@@ -33,16 +33,14 @@ def _force(done: Study) -> Figure:
     over_time.plot(main.time[::8] * 1e6, main.force[::8] / 1e6, color=FE, linewidth=2.5, alpha=0.6, label="finite elements")
     over_time.plot(slow.time[::40] * 1e6, slow.force[::40] / 1e6, color=SLOW, linestyle="--", label="Hertz, quasi-static")
     over_time.plot(waves.time[::40] * 1e6, waves.force[::40] / 1e6, color=THEORY, linewidth=1, label="Hertz, vibrating disc")
-    _label(over_time, "time since first touch (µs)", "contact force (MN per metre)")
-    over_time.legend(loc="lower center")
+    _label(over_time, "time since first touch (µs)", "contact force (MN per metre)", legend="lower center")
     speeds = [run.speed for run in done.speeds]
     for cut, colour, label in ((0.0, SLOW, "quasi-static"), (CUT, THEORY, "vibrating disc")):
         values = [100.0 * excess(run, DISC.impact(run.speed, cut)) for run in done.speeds]
         over_speed.plot(speeds, values, "o-", color=colour, label=label)
     over_speed.set_xscale("log", base=2)
     over_speed.set_xticks(speeds, [f"{speed:g}" for speed in speeds])
-    _label(over_speed, "speed of impact (m/s)", "peak force, theory over\nfinite elements, less 1 (%)")
-    over_speed.legend()
+    _label(over_speed, "speed of impact (m/s)", "peak force, theory over\nfinite elements, less 1 (%)", legend="best")
     return figure
 
 
@@ -54,18 +52,15 @@ def _contact(done: Study) -> Figure:
     width.plot(time[some], main.touching_half_width[some] * 1e3, color="tab:green", linewidth=1, label="nodes that touch")
     width.plot(time[some], main.half_width[some] * 1e3, color=FE, linewidth=2.5, alpha=0.6, label="from the pressure")
     width.plot(time[some], main.hertz_half_width[some] * 1e3, color=THEORY, linewidth=1, label="Hertz")
-    _label(width, "time since first touch (µs)", "half-width of contact (mm)")
-    width.legend(loc="lower center")
+    _label(width, "time since first touch (µs)", "half-width of contact (mm)", legend="lower center")
     middle.plot(time[some], main.pressure_in_the_middle[some] / 1e9, color=FE, linewidth=2.5, alpha=0.6, label="finite elements")
     middle.plot(time[some], main.hertz_pressure[some] / 1e9, color=THEORY, linewidth=1, label="Hertz")
-    _label(middle, "time since first touch (µs)", "pressure in the middle (GPa)")
-    middle.legend(loc="lower center")
+    _label(middle, "time since first touch (µs)", "pressure in the middle (GPa)", legend="lower center")
     place, pressure, _ = profile(main)
     near, smooth = np.abs(place) < 1.3, np.linspace(-1.0, 1.0, 201)
     ellipse.plot(place[near], pressure[near], "o", color=FE, markersize=4, label="finite elements, nodes")
     ellipse.plot(smooth, np.sqrt(1.0 - smooth**2), color=THEORY, linewidth=1, label="Hertz")
-    _label(ellipse, "position, $x/b$", "pressure at the largest force, $p/p_0$")
-    ellipse.legend(loc="lower center")
+    _label(ellipse, "position, $x/b$", "pressure at the largest force, $p/p_0$", legend="lower center")
     return figure
 
 
@@ -78,19 +73,17 @@ def _error(done: Study) -> Figure:
         over_time.plot(time, np.sqrt(over.total), color=colour, label=f"{name}, error √η")
         over_time.plot(time, np.sqrt(over.elastic), color=colour, linestyle=":", label=f"{name}, elastic part")
     _label(over_time, "time since first touch (µs)", "error (J$^{1/2}$)")
-    over_time.set_yscale("log")
-    over_time.set_ylim(0.03, 100.0)
+    over_time.set(yscale="log", ylim=(0.03, 100.0))
     over_time.set_xlim(left=0.0)
     over_time.legend(loc="lower right", ncols=2, fontsize="small")
     done.estimates["corrected"].plot_map(axes=near)
-    near.set_xlim(-1.5, 1.5)
-    near.set_ylim(-10.1, -8.6)
-    near.set_title("corrected, near the contact")
+    near.set(xlim=(-1.5, 1.5), ylim=(-10.1, -8.6), title="corrected, near the contact")
     return figure
 
 
-def _label(axes: Axes, x: str, y: str) -> None:
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+def _label(axes: Axes, x: str, y: str, legend: str | None = None) -> None:
+    axes.set(xlabel=x, ylabel=y)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     axes.grid(alpha=0.3)
+    if legend is not None:
+        axes.legend(loc=legend)
