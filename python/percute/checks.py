@@ -14,23 +14,6 @@ from numpy.typing import NDArray
 
 from percute.errors import InputError, InputWarning
 
-__all__ = [
-    "encodable",
-    "flag",
-    "instance",
-    "integers",
-    "items",
-    "number",
-    "numbers",
-    "optional_number",
-    "path",
-    "table",
-    "text",
-    "warn",
-    "whole",
-    "wrong",
-]
-
 T = TypeVar("T")
 
 LARGEST = 2**63 - 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +16,6 @@ from percute.plotting import FIELD, Floats, _axes, _prefix, _pyplot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-__all__ = ["plot_contact"]
 
 COLOURS = {ContactStatus.STICK: "#1f5fa8", ContactStatus.SLIP: "#e8862e"}
 MOST_COLUMNS = 2000
@@ -144,12 +143,7 @@ def _pieces(contact: Contact, rows: NDArray[np.intp]) -> list[slice]:
     """Give the runs of consecutive nodes along the boundary."""
     cells = contact.mesh.cells
     nodes = contact.nodes[rows]
-    beside = {tuple(sorted(pair)) for cell in cells[np.isin(cells, nodes).sum(axis=1) > 1] for pair in _pairs(cell)}
+    beside = {tuple(sorted(pair)) for cell in cells[np.isin(cells, nodes).sum(axis=1) > 1] for pair in combinations(cell.tolist(), 2)}
     joined = [(min(a, b), max(a, b)) in beside for a, b in zip(nodes[:-1].tolist(), nodes[1:].tolist(), strict=True)]
     cuts = [0, *(k + 1 for k, together in enumerate(joined) if not together), len(rows)]
     return [slice(a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
-
-
-def _pairs(cell: NDArray[np.uint32]) -> list[tuple[int, int]]:
-    a, b, c = (int(node) for node in cell)
-    return [(a, b), (b, c), (a, c)]

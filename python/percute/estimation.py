@@ -17,6 +17,7 @@ from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
 from percute.history import History
+from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
@@ -31,7 +32,14 @@ if TYPE_CHECKING:
 __all__ = ["Estimate", "estimate"]
 
 
-class Estimate:
+def _measure(name: str, meaning: str) -> cached_property[float]:
+    """Make a property of an estimate from one of its measures."""
+    made: cached_property[float] = cached_property(lambda estimate: estimate._measures[name])
+    made.__doc__ = meaning
+    return made
+
+
+class Estimate(Immutable):
     """The constitutive relation error of a history.
 
     Made by `estimate`, `run` or `percute.open`. Errors are in J^½, those of a plane body for its thickness. ``meaning`` says
@@ -77,56 +85,25 @@ class Estimate:
     def _measures(self) -> _percute._Measures:
         return cast("_percute._Measures", self._data.measures())
 
-    @property
-    def sup(self) -> float:
-        """e_sup = √(sup η) (J^½), eq. [15]."""
-        return self._measures["sup"]
-
-    @property
-    def mean(self) -> float:
-        """e_mean = √((1/T)∫η dt) (J^½), eq. [16]."""
-        return self._measures["mean"]
-
-    @property
-    def relative_sup(self) -> float:
-        """``sup`` over ``reference_sup``, eq. [22]."""
-        return self._measures["relative_sup"]
-
-    @property
-    def relative_mean(self) -> float:
-        """``mean`` over ``reference_mean``."""
-        return self._measures["relative_mean"]
-
-    @property
-    def reference_sup(self) -> float:
-        """D = √(sup d) (J^½), eq. [23]."""
-        return self._measures["reference_sup"]
-
-    @property
-    def reference_mean(self) -> float:
-        """√((1/T)∫d dt) (J^½)."""
-        return self._measures["reference_mean"]
-
-    @property
-    def time_of_sup(self) -> float:
-        """Time of the largest η (s)."""
-        return self._measures["time_of_sup"]
+    sup = _measure("sup", "e_sup = √(sup η) (J^½), eq. [15].")
+    mean = _measure("mean", "e_mean = √((1/T)∫η dt) (J^½), eq. [16].")
+    relative_sup = _measure("relative_sup", "``sup`` over ``reference_sup``, eq. [22].")
+    relative_mean = _measure("relative_mean", "``mean`` over ``reference_mean``.")
+    reference_sup = _measure("reference_sup", "D = √(sup d) (J^½), eq. [23].")
+    reference_mean = _measure("reference_mean", "√((1/T)∫d dt) (J^½).")
+    time_of_sup = _measure("time_of_sup", "Time of the largest η (s).")
 
     @property
     def steps(self) -> int:
         """The last step that was estimated."""
         return self._measures["steps"]
 
-    @property
-    def end(self) -> float:
-        """Its time T (s)."""
-        return self._measures["end"]
+    end = _measure("end", "Its time T (s).")
 
     @property
     def meaning(self) -> str:
         """The meaning of the error, its limits and its effectivity index in tests."""
-        reconstruction, _, _ = self._data.options()
-        return _percute.meaning(reconstruction)
+        return _percute.meaning(self._data.options()[0])
 
     @property
     def kept_impulse(self) -> float | None:
@@ -172,14 +149,12 @@ class Estimate:
     @property
     def given(self) -> Mapping[str, bool]:
         """Whether the history has its own ``velocity`` and ``acceleration``; otherwise they follow from the scheme."""
-        velocity, acceleration = self._data.given()
-        return MappingProxyType({"velocity": velocity, "acceleration": acceleration})
+        return MappingProxyType(dict(zip(("velocity", "acceleration"), self._data.given(), strict=True)))
 
     @property
     def options(self) -> Mapping[str, str | int]:
         """The options ``reconstruction``, ``acceleration`` and ``every`` of the estimate."""
-        reconstruction, acceleration, every = self._data.options()
-        return MappingProxyType({"reconstruction": reconstruction, "acceleration": acceleration, "every": every})
+        return MappingProxyType(dict(zip(("reconstruction", "acceleration", "every"), self._data.options(), strict=True)))
 
     def effectivity(self, error: TrueError) -> Effectivity:
         """Give the effectivity index: the estimated over the true error, of the largest and of the mean error.
@@ -285,12 +260,6 @@ class Estimate:
         if isinstance(data, StoredEstimate):
             return _reopen, (data.path,)
         return _restore, (self.problem, data.state(self._name), self._name)
-
-    def __copy__(self) -> Estimate:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Estimate:
-        return self
 
 
 def _reopen(path: str) -> Estimate:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -73,6 +73,8 @@ class _Exact:
     """A closed-form solution with checked arguments; the extension has the formulas."""
 
     _data: _percute.ExactData
+    _formulas: ClassVar[str]
+    """The function of the extension that makes the formulas from the arguments."""
 
     def __post_init__(self) -> None:
         for name, unit in UNITS.items():
@@ -90,7 +92,8 @@ class _Exact:
         return [each.name for each in fields(self) if each.init]  # type: ignore[arg-type]
 
     def _make(self, *values: Any) -> _percute.ExactData:
-        raise NotImplementedError
+        made: _percute.ExactData = getattr(_percute.ExactData, self._formulas)(values)
+        return made
 
     def __reduce__(self) -> tuple[Any, ...]:
         return partial(type(self), **{name: getattr(self, name) for name in self._arguments()}), ()
@@ -106,6 +109,7 @@ class _Exact:
         return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(np.broadcast_shapes(*map(np.shape, at.values())))
 
 
+@dataclass(frozen=True, kw_only=True)
 class _Bar(_Exact):
     """An exact solution of a uniform bar on [0, L]. On a wave front, fields have their values behind it."""
 
@@ -182,8 +186,12 @@ class _Bar(_Exact):
         return self._evaluate(name, x=x, t=t)
 
 
+@dataclass(frozen=True, kw_only=True)
 class _StruckBar(_Bar):
     """A bar whose end at x = 0 touches an obstacle."""
+
+    wave_speed: float = field(init=False, repr=False, compare=False)
+    """c = √(E/ρ) (m/s)."""
 
     def contact_force(self, t: ArrayLike) -> NDArray[np.float64]:
         """Force of the obstacle on the bar (N) at the instants ``t`` (s)."""
@@ -199,21 +207,13 @@ class BarImpact(_StruckBar):
     Source: Louf, Gallimard and Pelle, §7.1.
     """
 
-    length: float
-    young: float
-    density: float
-    section: float
     speed: float
     gap: float
-    wave_speed: float = field(init=False, repr=False, compare=False)
-    """c = √(E/ρ) (m/s)."""
     impact_time: float = field(init=False, repr=False, compare=False)
     """Time of impact (s)."""
     release_time: float = field(init=False, repr=False, compare=False)
     """Time of release from the plane, 2L/c later (s)."""
-
-    def _make(self, *values: Any) -> _percute.ExactData:
-        return _percute.ExactData.bar_impact(values)
+    _formulas = "bar_impact"
 
     def error(self, history: History) -> TrueError:
         """Give the true error of a simulation of this bar, eq. [60]; integrals are exact in space.
@@ -237,14 +237,8 @@ class BouncingBar(_StruckBar):
     Source: Doyen, Ern and Piperno (2011), SIAM J. Sci. Comput. 33(1), 223–249; d'Alembert.
     """
 
-    length: float
-    young: float
-    density: float
-    section: float
     gravity: float
     height: float
-    wave_speed: float = field(init=False, repr=False, compare=False)
-    """c = √(E/ρ) (m/s)."""
     impact_time: float = field(init=False, repr=False, compare=False)
     """Time of the first touch (s)."""
     contact_duration: float = field(init=False, repr=False, compare=False)
@@ -270,22 +264,14 @@ class ClampedRod(_StruckBar):
     Source: a benchmark of Dabaghi, Petrov, Pousin and Renard (2016), Appl. Numer. Math. 103; d'Alembert.
     """
 
-    length: float
-    young: float
-    density: float
-    section: float
     distance: float
-    wave_speed: float = field(init=False, repr=False, compare=False)
-    """c = √(E/ρ) (m/s)."""
     passage: float = field(init=False, repr=False, compare=False)
     """L/c (s), the time of the first touch and the duration of contact."""
     period: float = field(init=False, repr=False, compare=False)
     """3L/c (s)."""
     energy: float = field(init=False, repr=False, compare=False)
     """Kinetic plus strain energy (J)."""
-
-    def _make(self, *values: Any) -> _percute.ExactData:
-        return _percute.ExactData.clamped_rod(values)
+    _formulas = "clamped_rod"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -295,10 +281,6 @@ class BarMode(_Bar):
     Source: Timoshenko, Vibration Problems in Engineering.
     """
 
-    length: float
-    young: float
-    density: float
-    section: float
     amplitude: float
     number: int
     fixed: Literal["start", "both", "none"]
@@ -326,16 +308,10 @@ class BarRamp(_Bar):
     Source: Timoshenko, Vibration Problems in Engineering, modal series; here in d'Alembert's form.
     """
 
-    length: float
-    young: float
-    density: float
-    section: float
     rate: float
     wave_speed: float = field(init=False, repr=False, compare=False)
     """c = √(E/ρ) (m/s)."""
-
-    def _make(self, *values: Any) -> _percute.ExactData:
-        return _percute.ExactData.bar_ramp(values)
+    _formulas = "bar_ramp"
 
 
 @dataclass(frozen=True, kw_only=True)

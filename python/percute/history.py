@@ -18,6 +18,7 @@ from percute.checks import encodable, flag, instance, items, numbers, optional_n
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
+from percute.immutable import Immutable
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 
@@ -57,7 +58,7 @@ class Balance:
         return f"<percute.Balance: {len(self.kinetic)} instants, {drifts}>"
 
 
-class History:
+class History(Immutable):
     """The steps of a simulation: displacements, contact reactions and touching status at each instant t_n.
 
     Made by `simulate` or `percute.open`. Its arrays are read-only views without copies, of memory that lives as long as any
@@ -258,28 +259,19 @@ class History:
         arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
         return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options())
 
-    def __copy__(self) -> History:
-        return self
-
-    def __deepcopy__(self, memo: object) -> History:
-        return self
-
 
 def _reopen(path: str) -> History:
     return History._of(_percute.open_history(path), name=path)
 
 
-def _rebuild(
-    problem: Problem,
-    times: list[float],
-    displacement: NDArray[np.float64],
-    reaction: NDArray[np.float64],
-    touching: NDArray[np.bool_],
-    options: tuple[str, str, int],
-) -> History:
-    return History._of(
-        _percute.HistoryData.from_arrays(problem._data, times, displacement, reaction, touching, options), problem
-    )
+def _rebuild(problem: Problem, *contents: Any) -> History:
+    return History._of(_percute.HistoryData.from_arrays(problem._data, *contents), problem)
+
+
+def _times(end: float | None, courant: float | None, step: float | None, steps: ArrayLike | None) -> _percute._Times:
+    """Check the end and the steps of a run."""
+    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
+    return optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths
 
 
 def simulate(
@@ -338,8 +330,7 @@ def simulate(
         After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``; None before the first.
     """
     instance("problem", problem, Problem)
-    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
-    times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
+    times = _times(end, courant, step, steps)
     file = None if store is None else file_name("store", store)
     replace = flag("overwrite", overwrite)
     warn(_percute.plausibility_warnings(problem._data, times, file is None))
@@ -381,8 +372,7 @@ def true_errors(
         An argument is wrong, the meshes are not nested, or the reference ends too early.
     """
     coarse = [history._data for history in items("histories", histories, History)]
-    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
-    times = (optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths)
+    times = _times(end, courant, step, steps)
     with shown(progress) as tell:
         found = _percute.errors_against_simulation(coarse, instance("problem", problem, Problem)._data, times, tell)
     return _errors(found)

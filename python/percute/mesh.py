@@ -15,6 +15,7 @@ from percute import _percute
 from percute.checks import encodable, flag, integers, number, numbers, table, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
+from percute.immutable import Immutable
 from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
 
 __all__ = ["Mesh"]
@@ -24,7 +25,7 @@ MOST, MOST_RINGS = 20_000_000, 1825
 """Largest numbers of elements, and of rings of a disc, in a generated mesh."""
 
 
-class Mesh:
+class Mesh(Immutable):
     """A mesh of 2-node bars or 3-node triangles, checked once at its creation.
 
     Parameters
@@ -244,9 +245,3 @@ class Mesh:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
-
-    def __copy__(self) -> Mesh:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Mesh:
-        return self

@@ -28,8 +28,6 @@ from percute.errors import (
 if TYPE_CHECKING:
     from percute.mesh import Mesh
 
-__all__ = ["is_gmsh", "read_foreign", "tell_of_mesh", "write_foreign"]
-
 _Integers = NDArray[np.int64]
 
 KINDS = {"vertex": 0, "line": 1, "triangle": 2}

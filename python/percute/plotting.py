@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from percute.history import History
     from percute.problem import Problem
 
-__all__ = ["field", "plot_field", "plot_map", "plot_over_time"]
-
 Floats = NDArray[np.float64]
 
 FIELD = "viridis"
@@ -69,10 +67,8 @@ def _draw_body(axes: Axes, points: Floats, cells: Any, values: Floats, label: st
         drawn = axes.tripcolor(
             x, y, values, triangles=cells, cmap=colours, vmin=low, vmax=high, shading="gouraud", rasterized=True
         )
-    axes.set_aspect("equal")
+    axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     axes.margins(0.05)
-    axes.set_xlabel(f"x ({prefix}m)")
-    axes.set_ylabel(f"y ({prefix}m)")
     # As high as the body, for any shape.
     axes.figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
 
@@ -88,8 +84,7 @@ def _draw_bar(axes: Axes, points: Floats, cells: Any, values: Floats, label: str
     else:
         order = np.argsort(x)
         axes.plot(x[order], values[order])
-    axes.set_xlabel(f"x ({prefix}m)")
-    axes.set_ylabel(label)
+    axes.set(xlabel=f"x ({prefix}m)", ylabel=label)
     axes.grid(alpha=0.3)
 
 
@@ -120,8 +115,7 @@ def plot_over_time(estimate: Estimate, axes: Axes | None) -> Axes:
         axes.plot(time, np.sqrt(np.maximum(getattr(over_time, name), 0.0)), linewidth=1.2, label=f"{name} part")
     axes.axhline(estimate.mean, color="black", linestyle=":", linewidth=1, label="mean error")
     axes.plot(estimate.time_of_sup / factor, estimate.sup, "ko", markersize=4, label="sup")
-    axes.set_xlabel(f"t ({prefix}s)")
-    axes.set_ylabel("error (J$^{1/2}$)")
+    axes.set(xlabel=f"t ({prefix}s)", ylabel="error (J$^{1/2}$)")
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.0)
     axes.grid(alpha=0.3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.checks import instance, items, numbers, table
+from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
@@ -28,12 +29,10 @@ def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64
     if field is None:
         return None
     array = numbers(name, field, most=2)
-    one_number_each = mesh.dimension == 1 and array.ndim == 1
-    array = array[:, None] if one_number_each else np.atleast_2d(array)
-    return array
+    return array[:, None] if mesh.dimension == 1 and array.ndim == 1 else np.atleast_2d(array)
 
 
-class Problem:
+class Problem(Immutable):
     """An elastic body that may strike rigid planes, checked at its creation.
 
     Parameters
@@ -168,23 +167,6 @@ class Problem:
         return f"<percute.Problem: {', '.join(parts)}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        arguments = {
-            "material": self.material,
-            "obstacles": self.obstacles,
-            "supports": self.supports,
-            "tractions": self.tractions,
-            "body_forces": self.body_forces,
-            "initial_velocity": self.initial_velocity.copy(),
-            "initial_displacement": self.initial_displacement.copy(),
-        }
-        return _rebuild, (self.mesh, arguments)
-
-    def __copy__(self) -> Problem:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Problem:
-        return self
-
-
-def _rebuild(mesh: Mesh, arguments: dict[str, Any]) -> Problem:
-    return Problem(mesh, **arguments)
+        values = {name: getattr(self, name) for name in ("material", "obstacles", "supports", "tractions", "body_forces")}
+        fields = {name: getattr(self, name).copy() for name in ("initial_velocity", "initial_displacement")}
+        return partial(Problem, self.mesh, **values, **fields), ()

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Protocol
+from typing import Any
 
 from percute._percute import Progress
 from percute.checks import wrong
@@ -19,12 +19,6 @@ ProgressOption = bool | Callable[[Progress], object] | None
 WIDTH = 32
 COUNTED = ("simulating", "estimating")
 """Stages that count steps; others are shown in per cent."""
-
-
-class _Display(Protocol):
-    def __call__(self, progress: Progress) -> None: ...
-
-    def close(self) -> None: ...
 
 
 def _seconds(seconds: float) -> str:
@@ -95,7 +89,7 @@ class _Notebook(_Line):
             self.show(f"{self.last.rsplit('>', 1)[0]}> {_seconds(time.monotonic() - self.begin)}")
 
 
-def _display() -> _Display | None:
+def _display() -> _Notebook | _Terminal | None:
     """Choose a display for the output; none if it would not be visible."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None

@@ -14,9 +14,6 @@ from percute import _percute
 from percute.errors import FileFormatError
 from percute.mesh import Mesh
 
-__all__ = ["StoredEstimate"]
-
-PARTS = ("kinetic", "elastic", "contact")
 MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean")
 FIELDS = {
     "accumulated": "error",
@@ -77,11 +74,11 @@ class StoredEstimate:
         self._measures["steps"] = report.of(int, "steps")
         none = report.part("kept_impulse") is None
         self._measures["kept_impulse"] = None if none else report.number("kept_impulse")
-        self._parts = [report.number("parts", name) for name in PARTS]
+        self._parts = report.number("parts", "kinetic"), report.number("parts", "elastic"), report.number("parts", "contact")
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
-        self._given = [report.of(bool, "given", name) for name in ("velocity", "acceleration")]
-        self._options = [report.of(str, "options", name) for name in ("reconstruction", "acceleration")]
-        self._every: int = report.of(int, "options", "every")
+        self._given: tuple[bool, bool] = report.of(bool, "given", "velocity"), report.of(bool, "given", "acceleration")
+        kinds = ("reconstruction", str), ("acceleration", str), ("every", int)
+        self._options = tuple(report.of(kind, "options", name) for name, kind in kinds)
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -94,8 +91,7 @@ class StoredEstimate:
 
     def parts(self) -> tuple[float, float, float]:
         """Parts of η at the time of the sup (J)."""
-        kinetic, elastic, contact = self._parts
-        return kinetic, elastic, contact
+        return self._parts
 
     def over_time(self) -> dict[str, NDArray[np.float64]]:
         """η, its parts and d at all samples."""
@@ -111,13 +107,12 @@ class StoredEstimate:
 
     def given(self) -> tuple[bool, bool]:
         """Whether the history had its own velocities and accelerations."""
-        velocity, acceleration = self._given
-        return velocity, acceleration
+        return self._given
 
     def options(self) -> tuple[str, str, int]:
         """Its options."""
-        reconstruction, acceleration = self._options
-        return reconstruction, acceleration, self._every
+        options: tuple[str, str, int] = self._options
+        return options
 
     def worst_elements(self, count: int) -> list[tuple[int, float]]:
         """The largest contributions of elements, largest first; equal ones by element number."""
