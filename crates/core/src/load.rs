@@ -4,27 +4,17 @@ use thiserror::Error;
 
 /// Why a table was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum TableError {
     /// No values, or not as many as instants.
     #[error("`time` has {times} entries and `value` has {values}; they must be equally many, and at least one")]
-    Lengths {
-        /// Number of instants.
-        times: usize,
-        /// Number of values.
-        values: usize,
-    },
+    Lengths { times: usize, values: usize },
     /// Instants out of order.
     #[error("`time` entry {index} is {time} s, not after the one before it; instants must increase")]
-    Order {
-        /// Position in the table.
-        index: usize,
-        /// The instant (s).
-        time: f64,
-    },
+    Order { index: usize, time: f64 },
     /// NaN or infinity.
     #[error("entry {index} of the table holds the number {value}; all numbers must be finite")]
     NotFinite {
-        /// Position in the table.
         index: usize,
         /// The number: an instant (s), or part of a value.
         value: f64,

@@ -19,13 +19,13 @@ pub fn is_stable(step: f64, critical: f64) -> bool {
 
 /// Why a time grid was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum TimeError {
     /// A length of time that must be positive.
     #[error("`{name}` is {value} s; it must be positive and finite")]
     NotPositive {
         /// `end`, `step` or `steps[i]`.
         name: String,
-        /// Its value (s).
         value: f64,
     },
     /// No steps at all.
@@ -33,48 +33,26 @@ pub enum TimeError {
     Empty,
     /// Instants that make no step.
     #[error("there are {count} instants; at least 2 make a step")]
-    TooFew {
-        /// How many.
-        count: usize,
-    },
+    TooFew { count: usize },
     /// A first instant that is not 0.
     #[error("the first instant is {time:e} s; it must be 0")]
-    Start {
-        /// The instant (s).
-        time: f64,
-    },
+    Start { time: f64 },
     /// Instants that do not increase.
     #[error("instant {index} is {time:e} s, not after the {before:e} s before it")]
     Order {
         /// Which instant, from 0.
         index: usize,
-        /// The instant (s).
         time: f64,
-        /// The one before (s).
         before: f64,
     },
     /// A step that is lost in the sum, or a sum that is infinite.
     #[error("`steps[{index}]` is {step:e} s, which cannot be added to the {time:e} s before it")]
-    Lost {
-        /// Position in the list.
-        index: usize,
-        /// Its value (s).
-        step: f64,
-        /// Time before it (s).
-        time: f64,
-    },
+    Lost { index: usize, step: f64, time: f64 },
     /// More steps than any run can have.
     #[error(
         "an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps, but at most 1e8 are possible; are both in seconds?"
     )]
-    TooMany {
-        /// End of the run (s).
-        end: f64,
-        /// Step (s).
-        step: f64,
-        /// Number of steps.
-        count: f64,
-    },
+    TooMany { end: f64, step: f64, count: f64 },
 }
 
 /// Increasing instants from 0 to T.

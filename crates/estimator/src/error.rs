@@ -8,61 +8,37 @@ use thiserror::Error;
 
 /// Why an estimate could not be made.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum EstimateError {
     /// An option that must be positive.
     #[error("`{name}` is 0; it must be at least 1")]
-    Zero {
-        /// The option.
-        name: &'static str,
-    },
+    Zero { name: &'static str },
     /// More threads than make sense.
     #[error("`threads` is {threads}; it must be a whole number from 1 to {MOST_THREADS}")]
-    TooManyThreads {
-        /// How many were asked for.
-        threads: usize,
-    },
+    TooManyThreads { threads: usize },
     /// Maps that cannot be kept.
     #[error(transparent)]
     Request(#[from] RequestError),
     /// No threads to work with.
     #[error("the threads of the estimate could not be started: {cause}")]
-    Threads {
-        /// Why.
-        cause: String,
-    },
+    Threads { cause: String },
     /// Not even one whole step.
     #[error("the history holds {count} instants; an estimate needs at least 2")]
-    TooFewSteps {
-        /// How many it holds.
-        count: usize,
-    },
+    TooFewSteps { count: usize },
     /// A step that does not fit.
     #[error(transparent)]
     Step(#[from] StepError),
     /// A first step that is not the initial state.
     #[error("the displacement of node {node} at step 0 is not the initial displacement of the problem")]
-    Start {
-        /// The node.
-        node: usize,
-    },
+    Start { node: usize },
     /// A first velocity that is not the initial one.
     #[error("the velocity of node {node} at step 0 is not the initial velocity of the problem")]
-    StartVelocity {
-        /// The node.
-        node: usize,
-    },
+    StartVelocity { node: usize },
     /// A node that is said to touch at t = 0, but does not rest on its plane.
     #[error(
         "node {node} touches at step 0, but its gap is {gap:e} m and its normal velocity {speed:e} m/s; both must be zero"
     )]
-    StartsTouching {
-        /// The node.
-        node: usize,
-        /// Its gap (m).
-        gap: f64,
-        /// Its normal velocity (m/s).
-        speed: f64,
-    },
+    StartsTouching { node: usize, gap: f64, speed: f64 },
     /// Numbers too large to be squared and summed.
     #[error(
         "the error measure is not finite: some value of the problem (friction, load, stiffness) is far out of range"
@@ -73,27 +49,13 @@ pub enum EstimateError {
         "node {node} starts {gap:.6e} m from its plane and touches at step 1; no admissible motion exists \
          below a gap of {smallest_gap:.6e} m"
     )]
-    StartsTooNear {
-        /// The node.
-        node: usize,
-        /// Its gap (m).
-        gap: f64,
-        /// The smallest gap that will do (m).
-        smallest_gap: f64,
-    },
+    StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
         "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the history are too long \
          for its central differences (the longest is {longest_step:.4e} s); estimate this history with reconstruction = \"consistent\", or store shorter steps"
     )]
-    AuxiliarySolution {
-        /// The step.
-        step: usize,
-        /// Its time (s).
-        time: f64,
-        /// Longest step of the history (s).
-        longest_step: f64,
-    },
+    AuxiliarySolution { step: usize, time: f64, longest_step: f64 },
 }
 
 /// Why a simulation with its estimate, or the estimate of a history, failed.

@@ -16,42 +16,23 @@ pub struct Request {
 
 /// Why maps cannot be kept as requested.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum RequestError {
     /// A step beyond the last.
     #[error("a map was requested at step {step}, but the run has the steps 0 to {last}")]
-    Beyond {
-        /// The step.
-        step: usize,
-        /// The last step of the time grid.
-        last: usize,
-    },
+    Beyond { step: usize, last: usize },
     /// Steps that do not increase.
     #[error("a map was requested at step {step} after one at step {before}; name each step once, in increasing order")]
-    Order {
-        /// The step.
-        step: usize,
-        /// The one named before it.
-        before: usize,
-    },
+    Order { step: usize, before: usize },
     /// A step at which the error is not sampled.
     #[error(
         "a map was requested at step {step}, but the error is sampled at every {every}th step and at the last only; \
          request one of these, or sample every step"
     )]
-    NotSampled {
-        /// The step.
-        step: usize,
-        /// Steps between samples.
-        every: usize,
-    },
+    NotSampled { step: usize, every: usize },
     /// More than memory can hold.
     #[error("{bytes} bytes for maps at {steps} steps cannot be allocated in memory; request fewer steps, or no fields")]
-    Memory {
-        /// Bytes wanted.
-        bytes: usize,
-        /// Steps requested.
-        steps: usize,
-    },
+    Memory { bytes: usize, steps: usize },
 }
 
 impl Request {

@@ -20,6 +20,7 @@ pub struct FileError {
 
 /// What is wrong.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum FileCause {
     /// No such file.
     #[error("there is no such file")]
@@ -35,43 +36,22 @@ pub enum FileCause {
     InUse,
     /// The file cannot be created.
     #[error("the file cannot be created: {source}; is the folder there, and may it be written to?")]
-    Create {
-        /// Why.
-        source: io::Error,
-    },
+    Create { source: io::Error },
     /// Not enough space.
     #[error("the file needs {needed} bytes, but only {free} are free there; make room, or store it elsewhere")]
-    NoSpace {
-        /// Bytes needed.
-        needed: u64,
-        /// Bytes free.
-        free: u64,
-    },
+    NoSpace { needed: u64, free: u64 },
     /// Writing failed during the run.
     #[error("step {step} could not be written: {source}; all steps before it are in the file")]
-    Write {
-        /// The step.
-        step: usize,
-        /// Why.
-        source: io::Error,
-    },
+    Write { step: usize, source: io::Error },
     /// The file could not be completed.
     #[error("the file could not be completed: {detail}; it has its {steps} steps, and `percute recover` completes it")]
-    Finish {
-        /// Why.
-        detail: String,
-        /// Instants written.
-        steps: usize,
-    },
+    Finish { detail: String, steps: usize },
     /// The file of a run disappeared during the run.
     #[error("the file was moved, removed or replaced during the run")]
     Lost,
     /// The file cannot be read.
     #[error("the file cannot be read: {source}")]
-    Read {
-        /// Why.
-        source: io::Error,
-    },
+    Read { source: io::Error },
     /// The file was replaced by another one.
     #[error("the file was replaced since it was opened; open it again")]
     Replaced,
@@ -83,115 +63,46 @@ pub enum FileCause {
     NotHdf5,
     /// HDF5 cannot read the file.
     #[error("the file is truncated or damaged: {detail}; copy or create it again")]
-    Damaged {
-        /// The message of the library.
-        detail: String,
-    },
+    Damaged { detail: String },
     /// An HDF5 file of another program.
     #[error("this HDF5 file is not one of percute's: {holds}; docs/history.md describes the layout")]
-    Foreign {
-        /// Its contents.
-        holds: String,
-    },
+    Foreign { holds: String },
     /// A file of percute, of another kind.
     #[error("this is {found}, but {wanted} is needed here")]
-    WrongKind {
-        /// Its kind.
-        found: Kind,
-        /// What it should be.
-        wanted: Kind,
-    },
+    WrongKind { found: Kind, wanted: Kind },
     /// Written by a later percute.
     #[error("the file has layout {found}, but this version of percute reads {known} only; use a newer percute")]
-    NewerLayout {
-        /// Layout of the file.
-        found: i64,
-        /// The latest one known.
-        known: i64,
-    },
+    NewerLayout { found: i64, known: i64 },
     /// A missing part.
     #[error("`{name}` is missing; the layout of the file requires it")]
-    MissingPart {
-        /// Path inside the file.
-        name: String,
-    },
+    MissingPart { name: String },
     /// A part of the wrong type.
     #[error("`{name}` holds {given}; it must be {needed}")]
-    Type {
-        /// Path inside the file.
-        name: String,
-        /// Its type.
-        given: String,
-        /// The right one.
-        needed: &'static str,
-    },
+    Type { name: String, given: String, needed: &'static str },
     /// A part of the wrong shape.
     #[error("`{name}` has the shape {given:?}; it must be {needed}")]
-    Shape {
-        /// Path inside the file.
-        name: String,
-        /// Its shape.
-        given: Vec<usize>,
-        /// The right one.
-        needed: String,
-    },
+    Shape { name: String, given: Vec<usize>, needed: String },
     /// A value that is not allowed.
     #[error("`{name}`: {detail}")]
-    Value {
-        /// Path inside the file.
-        name: String,
-        /// What is wrong.
-        detail: String,
-    },
+    Value { name: String, detail: String },
     /// A shape that the stored bytes cannot fill.
     #[error("`{name}` has the shape {given:?}, but only {stored} bytes are stored in this file for it")]
-    Hollow {
-        /// Path inside the file.
-        name: String,
-        /// Its shape.
-        given: Vec<usize>,
-        /// Bytes stored.
-        stored: u64,
-    },
+    Hollow { name: String, given: Vec<usize>, stored: u64 },
     /// More than memory can hold.
     #[error("`{name}` needs {bytes} bytes, which cannot be allocated in memory")]
-    TooLarge {
-        /// Path inside the file.
-        name: String,
-        /// Bytes wanted.
-        bytes: u64,
-    },
+    TooLarge { name: String, bytes: u64 },
     /// NaN or infinity in a field over time.
     #[error("`{name}` is {value} at step {step}, node {node}; all values must be finite")]
-    NotFinite {
-        /// Path inside the file.
-        name: String,
-        /// The step.
-        step: usize,
-        /// Node of the mesh.
-        node: usize,
-        /// The value.
-        value: f64,
-    },
+    NotFinite { name: String, step: usize, node: usize, value: f64 },
     /// Contact at a node that cannot touch.
     #[error(
         "node {node} touches or has a reaction at step {step}, but no obstacle of the problem can touch it; \
          `percute/contact` and the statement of the problem must agree"
     )]
-    Contact {
-        /// The step.
-        step: usize,
-        /// Node of the mesh.
-        node: usize,
-    },
+    Contact { step: usize, node: usize },
     /// Invalid instants.
     #[error("`{name}`: {cause}")]
-    Times {
-        /// The data set.
-        name: String,
-        /// What is wrong.
-        cause: TimeError,
-    },
+    Times { name: String, cause: TimeError },
     /// An invalid mesh.
     #[error("the mesh: {0}")]
     Mesh(#[from] MeshError),
@@ -203,7 +114,6 @@ pub enum FileCause {
     Problem {
         /// Nodes or elements.
         what: &'static str,
-        /// How many the problem has.
         given: usize,
         /// How many the history or the estimate has.
         needed: usize,

@@ -11,18 +11,14 @@ use thiserror::Error;
 
 /// Why something could not be done.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum Failure {
     /// The case file is wrong.
     #[error(transparent)]
     Case(#[from] CaseError),
     /// The case file cannot be read.
     #[error("{file}: cannot read the case file: {cause}", file = .file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        cause: std::io::Error,
-    },
+    Unreadable { file: PathBuf, cause: std::io::Error },
     /// An argument that cannot be met.
     #[error("{0}")]
     Argument(String),
@@ -31,7 +27,6 @@ pub enum Failure {
     Exists {
         /// The argument or key that names it.
         what: &'static str,
-        /// The file.
         file: PathBuf,
     },
     /// Simulation or estimate failed.
@@ -42,12 +37,7 @@ pub enum Failure {
     File(#[from] FileError),
     /// A history that does not fit its own problem.
     #[error("{file}: {cause}", file = .file.display())]
-    History {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        cause: EstimateError,
-    },
+    History { file: PathBuf, cause: EstimateError },
     /// A problem that cannot be written down.
     #[error(transparent)]
     NotRepresentable(#[from] NotRepresentable),
@@ -59,9 +49,7 @@ pub enum Failure {
     Unwritable {
         /// The argument or key that names it.
         what: &'static str,
-        /// The file.
         file: PathBuf,
-        /// Why.
         cause: String,
     },
     /// Standard output or standard error cannot be written.

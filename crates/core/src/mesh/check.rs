@@ -17,80 +17,46 @@ const DEGENERATE: f64 = 1e-9;
 
 /// Why a mesh was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum MeshError {
     /// No nodes or no elements.
     #[error("the mesh is empty: {nodes} nodes and {elements} elements; it needs at least one element")]
-    Empty {
-        /// Number of nodes given.
-        nodes: usize,
-        /// Number of elements given.
-        elements: usize,
-    },
+    Empty { nodes: usize, elements: usize },
     /// More entities than 32-bit indices can count.
     #[error("the mesh has {count} {what}; at most {most} can be counted")]
     TooLarge {
         /// Nodes or elements.
         what: &'static str,
-        /// Their number.
         count: usize,
         /// Largest number allowed.
         most: usize,
     },
     /// A generator was given an impossible value.
     #[error("`{name}` is {value}; it must be {allowed}")]
-    Generator {
-        /// The parameter.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What is allowed.
-        allowed: &'static str,
-    },
+    Generator { name: &'static str, value: f64, allowed: &'static str },
     /// A coordinate is NaN or infinite.
     #[error("node {node} has the coordinate {value} m; coordinates must be finite")]
-    NotFinite {
-        /// The node.
-        node: usize,
-        /// The coordinate.
-        value: f64,
-    },
+    NotFinite { node: usize, value: f64 },
     /// An element refers to a node that does not exist.
     #[error("element {element} names node {node}, but the mesh has nodes 0 to {last}, counted from 0")]
-    NoSuchNode {
-        /// The element.
-        element: usize,
-        /// The missing node.
-        node: usize,
-        /// Largest node number.
-        last: usize,
-    },
+    NoSuchNode { element: usize, node: usize, last: usize },
     /// Nodes that no element uses.
     #[error("node {first} belongs to no element ({count} in all); remove it from the points, or name it in a cell")]
     UnusedNodes {
         /// The first of them.
         first: usize,
-        /// Number of unused nodes.
         count: usize,
     },
     /// Two nodes at the same place.
     #[error("nodes {first} and {second} lie at one place ({} m apart): merge duplicate nodes into one", short(*.distance))]
-    DuplicateNodes {
-        /// One node.
-        first: usize,
-        /// The other.
-        second: usize,
-        /// Their distance (m).
-        distance: f64,
-    },
+    DuplicateNodes { first: usize, second: usize, distance: f64 },
     /// An element without volume.
     #[error(
         "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a diameter of {} m); move one of \
          them, or leave the element out", short(*.volume), short(*.diameter)
     )]
     Degenerate {
-        /// The element.
         element: usize,
-        /// Its nodes.
         nodes: Vec<usize>,
         /// Length or area.
         volume: f64,
@@ -99,34 +65,22 @@ pub enum MeshError {
     },
     /// A facet shared by more than two elements.
     #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), list(.elements))]
-    NonManifoldFacet {
-        /// Its nodes.
-        nodes: Vec<usize>,
-        /// The elements.
-        elements: Vec<usize>,
-    },
+    NonManifoldFacet { nodes: Vec<usize>, elements: Vec<usize> },
     /// Two elements on the same side of a facet.
     #[error("elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave one out", .elements[0], .elements[1])]
-    Overlap {
-        /// The elements.
-        elements: [usize; 2],
-    },
+    Overlap { elements: [usize; 2] },
     /// Two parts of the mesh that touch or overlap without a common node.
     #[error(
         "elements {} and {} touch or overlap, but the parts of the mesh they belong to share no node: each would move through the other; \
          let them share the nodes where they meet (mesh them as one, merge the nodes), or keep them apart", .elements[0], .elements[1]
     )]
-    PartsTouch {
-        /// One element of each part.
-        elements: [usize; 2],
-    },
+    PartsTouch { elements: [usize; 2] },
     /// A node where parts of the body touch at a point only.
     #[error(
         "at node {node} the body is connected by a point only ({reached} of its {elements} elements are joined by edges); \
          split the node or fill the gap"
     )]
     NonManifoldNode {
-        /// The node.
         node: usize,
         /// Elements around it.
         elements: usize,
@@ -138,22 +92,10 @@ pub enum MeshError {
         "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) of the \
          boundary, nodes are counted from 0", facet(.nodes)
     )]
-    NoSuchFacet {
-        /// The group.
-        group: String,
-        /// Nodes of the facet.
-        nodes: Vec<usize>,
-    },
+    NoSuchFacet { group: String, nodes: Vec<usize> },
     /// A group refers to an element that does not exist.
     #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}, counted from 0")]
-    NoSuchElement {
-        /// The group.
-        group: String,
-        /// The missing element.
-        element: usize,
-        /// Largest element number.
-        last: usize,
-    },
+    NoSuchElement { group: String, element: usize, last: usize },
 }
 
 fn list(numbers: &[usize]) -> String {

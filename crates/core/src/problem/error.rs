@@ -45,6 +45,7 @@ pub struct InputError {
 
 /// What is wrong.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum Cause {
     /// A material out of range.
     #[error(transparent)]
@@ -57,55 +58,22 @@ pub enum Cause {
     Table(#[from] TableError),
     /// A name that the mesh does not know.
     #[error("there is no group of {of} \"{name}\"; the mesh has {}", list(*.of, .known))]
-    UnknownGroup {
-        /// The name.
-        name: String,
-        /// What should be in it.
-        of: GroupOf,
-        /// The names that exist.
-        known: Vec<String>,
-    },
+    UnknownGroup { name: String, of: GroupOf, known: Vec<String> },
     /// A group of elements where one of the boundary is needed, or the other way round.
     #[error("\"{name}\" is a group of {found}; a group of {of} is needed here: the mesh has {}", list(*.of, .known))]
-    OtherGroup {
-        /// The name.
-        name: String,
-        /// What is in it.
-        found: GroupOf,
-        /// What should be in it.
-        of: GroupOf,
-        /// The names of such groups.
-        known: Vec<String>,
-    },
+    OtherGroup { name: String, found: GroupOf, of: GroupOf, known: Vec<String> },
     /// A group without members.
     #[error("group \"{name}\" is empty; give it {of}, or remove the reference to it")]
-    EmptyGroup {
-        /// The name.
-        name: String,
-        /// What should be in it.
-        of: GroupOf,
-    },
+    EmptyGroup { name: String, of: GroupOf },
     /// Waves faster than light.
     #[error(
         "is {density:?} kg/m³; with a Young's modulus of {} Pa waves would run at {speed:.3e} m/s, faster than light: did you \
          mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa", short(*.young)
     )]
-    FasterThanLight {
-        /// Density (kg/m³).
-        density: f64,
-        /// Young's modulus (Pa).
-        young: f64,
-        /// Wave speed (m/s).
-        speed: f64,
-    },
+    FasterThanLight { density: f64, young: f64, speed: f64 },
     /// More materials or body forces than can be told apart.
     #[error("there are {count} of them; at most {most} are possible")]
-    TooMany {
-        /// How many were given.
-        count: usize,
-        /// How many are allowed.
-        most: usize,
-    },
+    TooMany { count: usize, most: usize },
     /// No material at all, or not on all elements.
     #[error(
         "element {element} has no material ({count} such elements); give a material without a group, or one for each group"
@@ -113,7 +81,6 @@ pub enum Cause {
     NoMaterial {
         /// First element without.
         element: usize,
-        /// How many there are.
         count: usize,
     },
     /// Two materials on one element.
@@ -123,35 +90,20 @@ pub enum Cause {
         else { "; groups of materials must not overlap: take it out of one of them" }
     )]
     TwoMaterials {
-        /// The element.
         element: usize,
         /// The earlier material, from 1.
         first: usize,
-        /// Whether the earlier one is for all elements.
         everywhere: bool,
     },
     /// A nodal field of the wrong length.
     #[error("the field has {given} values, but the mesh has {nodes} nodes; give a value for each node, or one for all")]
-    FieldLength {
-        /// Values given.
-        given: usize,
-        /// Nodes of the mesh.
-        nodes: usize,
-    },
+    FieldLength { given: usize, nodes: usize },
     /// A nodal field with NaN or infinity.
     #[error("the value at node {node} is {value}; all values must be finite numbers")]
-    FieldNotFinite {
-        /// The node.
-        node: usize,
-        /// The value.
-        value: f64,
-    },
+    FieldNotFinite { node: usize, value: f64 },
     /// A number in a load that is NaN or infinite.
     #[error("holds the number {value}; all numbers must be finite")]
-    NotFinite {
-        /// The number.
-        value: f64,
-    },
+    NotFinite { value: f64 },
     /// A support of nothing.
     #[error("no component is given; give at least one, as in components = [\"x\"]")]
     NoComponent,
@@ -167,7 +119,6 @@ pub enum Cause {
          agree, or take the node out of one of the groups"
     )]
     ConflictingSupports {
-        /// The node.
         node: usize,
         /// x, y or z.
         component: char,
@@ -180,13 +131,10 @@ pub enum Cause {
          make the two agree, by the initial velocity or by the velocity of the support"
     )]
     InconsistentStart {
-        /// The node.
         node: usize,
         /// x, y or z.
         component: char,
-        /// Initial velocity (m/s).
         initial: f64,
-        /// Prescribed velocity (m/s).
         prescribed: f64,
     },
     /// A load on a supported component.
@@ -197,17 +145,11 @@ pub enum Cause {
     LoadedSupport {
         /// x, y or z.
         component: char,
-        /// Nodes of the facet.
         nodes: Vec<usize>,
     },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
     #[error("the {} is {by} and cannot touch a plane too; take it out of one of the two groups", facet(.nodes))]
-    NotFree {
-        /// Nodes of the facet.
-        nodes: Vec<usize>,
-        /// What holds it.
-        by: HeldBy,
-    },
+    NotFree { nodes: Vec<usize>, by: HeldBy },
     /// The facets that face a plane are all supported or loaded.
     #[error(
         "nothing can touch the plane: the {} faces it but is {by}, and no other part of the boundary is free; \
@@ -216,7 +158,6 @@ pub enum Cause {
     AllHeld {
         /// Nodes of the first facet.
         nodes: Vec<usize>,
-        /// What holds it.
         by: HeldBy,
     },
     /// The nodes that face a plane cannot move towards it.
@@ -233,23 +174,13 @@ pub enum Cause {
         "nothing in group \"{group}\" faces the plane: the outward normal of the group is {}, and the normal of the plane, from the plane to the body, \
          is {}; groups that face the plane: {}", vector(.outward), vector(.normal), named(.facing)
     )]
-    NothingFaces {
-        /// The group that the plane names.
-        group: String,
-        /// Mean outward normal of the group.
-        outward: Box<[f64]>,
-        /// The plane's unit normal.
-        normal: Box<[f64]>,
-        /// Groups that face it.
-        facing: Box<[String]>,
-    },
+    NothingFaces { group: String, outward: Box<[f64]>, normal: Box<[f64]>, facing: Box<[String]> },
     /// A facet or node that could touch two planes.
     #[error(
         "node {node} could touch obstacle {first} as well as this one; \
          name for each obstacle a `group` so that no node lies in two"
     )]
     TwoPlanes {
-        /// The node.
         node: usize,
         /// The earlier obstacle, from 1.
         first: usize,
@@ -259,40 +190,19 @@ pub enum Cause {
         "the whole body lies behind the plane, node {node} by {} m; the normal must point from the plane to the body: \
          should it be {}?", short(*.depth), vector(.reversed)
     )]
-    Behind {
-        /// The deepest node.
-        node: usize,
-        /// How far behind (m).
-        depth: f64,
-        /// The opposite of the normal that was given.
-        reversed: Vec<f64>,
-    },
+    Behind { node: usize, depth: f64, reversed: Vec<f64> },
     /// A node behind the plane.
     #[error(
         "the plane cuts through the body: node {node} starts {} m behind it; move the plane by more than that against its \
          normal, to {} or beyond", short(*.depth), vector(.clear)
     )]
-    Penetrates {
-        /// The deepest node.
-        node: usize,
-        /// How far behind (m).
-        depth: f64,
-        /// Where a point of the plane through that node lies (m).
-        clear: Vec<f64>,
-    },
+    Penetrates { node: usize, depth: f64, clear: Vec<f64> },
     /// A node on the plane that moves into it.
     #[error(
         "node {node} starts on the plane (gap {} m) and moves into it at {speed} m/s; leave a gap before the impact, of more than a \
          quarter of this speed times the first time step", short(*.gap)
     )]
-    StrikesAtStart {
-        /// The node.
-        node: usize,
-        /// Its gap (m).
-        gap: f64,
-        /// Its speed towards the plane (m/s).
-        speed: f64,
-    },
+    StrikesAtStart { node: usize, gap: f64, speed: f64 },
 }
 
 impl Cause {

@@ -5,29 +5,20 @@ use thiserror::Error;
 
 /// Why a simulation could not be compared with its reference.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum ReferenceError {
     /// A step that does not fit.
     #[error(transparent)]
     Step(#[from] StepError),
     /// Fields of another problem.
     #[error("{field} has {given} values, but the problem needs {needed}")]
-    Length {
-        /// Which field.
-        field: &'static str,
-        /// Its length.
-        given: usize,
-        /// The right one.
-        needed: usize,
-    },
+    Length { field: &'static str, given: usize, needed: usize },
     /// Meshes that are not nested.
     #[error(
         "element {fine} of the reference mesh does not lie in one element of the mesh that is compared; \
          the reference must be made by cutting each element into smaller ones"
     )]
-    NotNested {
-        /// The element of the reference.
-        fine: usize,
-    },
+    NotNested { fine: usize },
     /// Nested, but another body.
     #[error("the reference mesh covers {fine:.6e}, the mesh that is compared {coarse:.6e} (m in 1D, m² in 2D)")]
     DifferentBodies {
@@ -46,12 +37,5 @@ pub enum ReferenceError {
     },
     /// A simulation that is not the one the exact solution is for.
     #[error("`{name}` is {given:.9e} in the simulation and {exact:.9e} in the exact solution")]
-    AnotherBar {
-        /// The quantity.
-        name: &'static str,
-        /// Its value in the simulation.
-        given: f64,
-        /// Its value in the exact solution.
-        exact: f64,
-    },
+    AnotherBar { name: &'static str, given: f64, exact: f64 },
 }

@@ -43,6 +43,7 @@ fn at(place: Option<Place>) -> String {
 
 /// What is wrong.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum GmshCause {
     /// The file cannot be read or created.
     #[error(transparent)]
@@ -52,16 +53,12 @@ pub enum GmshCause {
         "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, \
          1e-3 for millimetres"
     )]
-    Scale {
-        /// The factor.
-        value: f64,
-    },
+    Scale { value: f64 },
     /// Not a mesh file.
     #[error("this is not a Gmsh mesh: it begins with {found}; {advice}")]
     NotMsh {
         /// Its first bytes.
         found: String,
-        /// What to do.
         advice: &'static str,
     },
     /// Another version of the format.
@@ -69,40 +66,19 @@ pub enum GmshCause {
         "the file has version {found} of the MSH format; percute reads 2.2 and 4.1: \
          `gmsh old.msh -save -format msh41 -o new.msh` converts it"
     )]
-    Version {
-        /// The version.
-        found: String,
-    },
+    Version { found: String },
     /// An unexpected entry.
     #[error("found {found} instead of {what}; {advice}")]
-    Unexpected {
-        /// The entry.
-        found: String,
-        /// The expected entry.
-        what: &'static str,
-        /// The probable cause.
-        advice: &'static str,
-    },
+    Unexpected { found: String, what: &'static str, advice: &'static str },
     /// The end of the file.
     #[error("the file ends where {what} should be: it was cut off, or its writer has not finished")]
-    Cut {
-        /// The missing entry.
-        what: &'static str,
-    },
+    Cut { what: &'static str },
     /// A number of entries that the file cannot hold.
     #[error("{what} is {count}, more than the rest of the file can hold: the file was cut off or damaged")]
-    Count {
-        /// What it counts.
-        what: &'static str,
-        /// The number.
-        count: u64,
-    },
+    Count { what: &'static str, count: u64 },
     /// A missing section.
     #[error("there is no section ${section}; in Gmsh, mesh the surfaces (2D) before saving")]
-    NoSection {
-        /// Its name.
-        section: &'static str,
-    },
+    NoSection { section: &'static str },
     /// A partitioned mesh.
     #[error(
         "the mesh is partitioned; in Gmsh, choose Mesh > Unpartition (in Python `gmsh.model.mesh.unpartition()`) and save again"
@@ -113,7 +89,6 @@ pub enum GmshCause {
     Kind {
         /// Tag of the element, or of the first of a block.
         element: u64,
-        /// Its kind.
         kind: ElementKind,
     },
     /// Neither triangles nor lines.
@@ -133,38 +108,20 @@ pub enum GmshCause {
     Twice {
         /// Nodes or elements.
         what: &'static str,
-        /// The tag.
         tag: u64,
     },
     /// An invalid tag.
     #[error("the tag of {what} is {tag}; tags are whole numbers from 1")]
-    Tag {
-        /// Its owner.
-        what: &'static str,
-        /// The number.
-        tag: i64,
-    },
+    Tag { what: &'static str, tag: i64 },
     /// An element on a missing node.
     #[error("element {element} names node {node}, which is not in $Nodes; in Gmsh, save the mesh again")]
-    NoSuchNode {
-        /// Tag of the element.
-        element: u64,
-        /// Tag of the missing node.
-        node: u64,
-    },
+    NoSuchNode { element: u64, node: u64 },
     /// Triangles in space.
     #[error(
         "the mesh is not in a plane z = const: node {} has z = {} m and node {} has z = {} m; {advice}",
         .nodes[0], .values[0], .nodes[1], .values[1]
     )]
-    NotPlane {
-        /// Tags of a lowest and a highest node.
-        nodes: [u64; 2],
-        /// Their z (m).
-        values: [f64; 2],
-        /// The rotation in Gmsh.
-        advice: &'static str,
-    },
+    NotPlane { nodes: [u64; 2], values: [f64; 2], advice: &'static str },
     /// Lines that are not a bar along x.
     #[error(
         "the file has lines but no triangles, and the lines are not a bar along x: node {} has {axis} = {} m and node {} has \
@@ -175,9 +132,7 @@ pub enum GmshCause {
     NotOnAxis {
         /// y or z.
         axis: char,
-        /// Tags of two nodes.
         nodes: [u64; 2],
-        /// Their coordinates (m).
         values: [f64; 2],
     },
     /// A line that bounds no triangle, or a point that bounds no line.
@@ -185,27 +140,20 @@ pub enum GmshCause {
     Lone {
         /// Dimension of the mesh: 2 for a line, 1 for a point.
         dimension: usize,
-        /// Its tag.
         element: u64,
-        /// Tags of its nodes.
         nodes: Vec<u64>,
-        /// Names of its physical groups.
         groups: Vec<String>,
     },
     /// An invalid mesh, in the tags of the file.
     #[error("{error} (numbers are the tags in Gmsh){advice}")]
     Mesh {
-        /// What is wrong.
         error: Box<MeshError>,
         /// What to do in Gmsh, after a semicolon.
         advice: &'static str,
     },
     /// A name that the format does not allow.
     #[error("the group {name:?} cannot be written: names in MSH files have no quotes and no line breaks")]
-    Name {
-        /// The name.
-        name: String,
-    },
+    Name { name: String },
 }
 
 fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {

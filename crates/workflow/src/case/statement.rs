@@ -21,6 +21,7 @@ const BESIDE: [&str; 4] = ["mesh", "initial", "time", "output"];
 
 /// A problem that the language of the case files has no words for.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum NotRepresentable {
     /// A law for a body of another dimension.
     #[error(
@@ -31,9 +32,7 @@ pub enum NotRepresentable {
     Law {
         /// Which material, from 1.
         index: usize,
-        /// What it supposes.
         hypothesis: Hypothesis,
-        /// Dimension of the mesh.
         dimension: usize,
     },
 }
