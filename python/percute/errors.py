@@ -4,19 +4,6 @@ All exceptions are `PercuteError`; each is also the built-in exception that fits
 percute can catch it. Messages name the argument, its value, its unit and what is allowed.
 """
 
-__all__ = [
-    "EstimateError",
-    "ExistingFileError",
-    "FileFormatError",
-    "InputError",
-    "InputWarning",
-    "MeshWarning",
-    "MissingFileError",
-    "PercuteError",
-    "SimulationError",
-    "StorageError",
-]
-
 
 class PercuteError(Exception):
     """The root of all exceptions of percute."""
