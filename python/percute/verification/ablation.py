@@ -36,8 +36,8 @@ ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "no normal work": (
         {"_ablation": "normal work"},
-        "the normal law at displacement level alone: the loss when a node is brought to rest is felt at that instant only, while its waves "
-        "are missing from then on",
+        "the normal law at displacement level alone: the loss when a node is brought to rest enters at that instant only; the waves that "
+        "it causes are missing afterwards",
     ),
     "twice the normal work": (
         {"_ablation": "doubled work"},
@@ -76,7 +76,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         Figure(
             "ablation",
             "Effectivity index of the largest error [15] over refinement (both axes logarithmic), a panel for each body, a curve for each "
-            "attempt. A rising curve loses track as the mesh becomes finer.",
+            "attempt. A rising curve exceeds the true error more and more as the mesh becomes finer.",
             _draw(results),
         ),
     )
@@ -168,8 +168,8 @@ def _slide(section: Section, resolution: Resolution) -> None:
     waves = times["end"] * problem.wave_speed / 0.2
     section.add(
         "### Errors that accumulate",
-        f"A block slides down a plane for {short(times['end'], 2)} s, about {short(waves, 2)} times as long as a wave needs through its height. "
-        "The energy of its motion grows like the square of the time and its error does not, so that ε falls. Where ε stays, a force is "
-        "missing that accelerates the admissible fields as long as the block slides.",
+        f"A block slides down a plane for {short(times['end'], 2)} s, about {short(waves, 2)} times as long as a wave needs through its "
+        "height. The energy of its motion grows like the square of the time and its error does not, so that ε falls. Where ε stays, a "
+        "force is missing that accelerates the admissible fields as long as the block slides.",
         table,
     )

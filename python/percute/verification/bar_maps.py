@@ -77,7 +77,7 @@ class Grid:
 
     def table(self) -> Table:
         """Give all numbers."""
-        columns = [Column("contact force"), Column("Γ_DA"), Column("elements"), Column("Δt/Δt_c", digits=2)]
+        columns = [Column("reconstruction"), Column("Γ_DA"), Column("elements"), Column("Δt/Δt_c", digits=2)]
         columns += [Column("fraction", "steps", digits=2), Column("T − t_c", "L/c", digits=2)]
         columns += [Column("e sup", "J^½", "[15]"), Column("e mean", "J^½", "[16]"), Column("ε sup", "", "[22]"), Column("ε mean", "", "[22]")]
         columns += [Column(f"true error {measure}", "J^½", "[60]") for measure in MEASURES]
@@ -143,17 +143,16 @@ def compute(section: Section, resolution: Resolution) -> None:
 
 INTRODUCTION = (
     f"An aluminium bar (E = {1e-9 * BAR['young']:g} GPa, L = {BAR['length']} m, S = {BAR['section']} m², ρ = {BAR['density']:g} kg/m³) flies at "
-    f"{BAR['speed']:g} m/s against a rigid plane. The exact solution is known: contact lasts 2L/c, and then the bar flies back. The true error "
-    "e_Ex [60] is measured against it at the instants t_n. The effectivity is the estimate over it, of the largest values over time (`sup`) or "
-    "of the means (`mean`). Steps are fractions of the critical one, Δt_c = h/c [33]. "
-    f"The paper states neither the gap nor the end of its runs. Here the impact falls {WHOLE:g} + f steps after the start, for several fractions f. "
-    f"Runs end {ENDS[0]:g} L/c after the impact t_c, when contact ends, or {ENDS[1]:g} L/c after it, in the flight back; up to a step is added, so that "
-    "the number of steps is whole."
+    f"{BAR['speed']:g} m/s against a rigid plane. The exact solution is known: contact lasts 2L/c, and then the bar flies back. The true error e_Ex "
+    "[60] is measured against it at the instants t_n. The effectivity is the estimate over it, of the largest values over time (`sup`) or of the "
+    "means (`mean`). Steps are fractions of the critical one, Δt_c = h/c [33]. The paper states neither the gap nor the end of its runs. Here the "
+    f"impact falls {WHOLE:g} + f steps after the start, for several fractions f. Runs end {ENDS[0]:g} L/c after the impact t_c, when contact ends, "
+    f"or {ENDS[1]:g} L/c after it, in the flight back; up to a step is added, so that the number of steps is whole."
 )
 FIGURE_5 = (
     "The paper's figure 5: relative error ε of the largest values [22] (%, colours logarithmic) over the number of elements and Δt/Δt_c, for each "
-    f"reconstruction (rows) and each Γ_DA (columns); impact at {MIDDLE} of a step, T = t_c + {ENDS[1]:g} L/c. As the paper states, smaller steps "
-    "hardly improve the solution: the mesh does."
+    f"reconstruction (rows) and each Γ_DA (columns); impact at {MIDDLE} of a step, T = t_c + {ENDS[1]:g} L/c. As the paper states, smaller "
+    "steps hardly improve the solution; a finer mesh does."
 )
 MAPS = (
     f" over the number of elements and Δt/Δt_c, for each reconstruction (rows) and each Γ_DA (columns); impact at {MIDDLE} of a step, "
@@ -188,20 +187,20 @@ def _ranges(grid: Grid) -> str:
     below = [Summary(grid.effectivities(of_default("corrected"), m, lambda s: s.after_impact == ENDS[1] and s.ratio < 1)) for m in (0, 1)]
     ranges = " and ".join(f"{short(s.low, 3)} to {short(s.high, 3)} (`{name}`)" for s, name in zip(below, MEASURES, strict=True))
     return (
-        f"The paper finds effectivities from {PAPER[0]} to {PAPER[1]} and does not state of which measure. Over all runs and both measures, with Γ_DA "
-        f"`{DEFAULT}`, they are {', '.join(spans)}. The highest means are of runs that stop with the contact, at Δt = Δt_c: there the solution is exact but "
-        "for the step of the impact. The low ends of `consistent` and `published` come from fine meshes and small steps, where dispersion adds up behind "
-        "the front: a measure whose balance is that of the simulation's own displacements does not contain the accumulated error. "
-        "`corrected` balances an auxiliary solution with less dispersion instead, and its values come near 1 just there. Its own low end is at Δt = Δt_c "
-        "in the runs that go on beyond the contact. There the simulation is at its limit of stability, and its shortest wave, once the release has excited "
-        "it, grows with time. That of the auxiliary solution does not grow, but the release excites it as well, and about half of that is missing in the "
-        f"estimate. The highest over the lowest value is with `corrected` at most half of that with either other reconstruction{but}. With all shorter "
-        f"steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c."
+        f"The paper finds effectivities from {PAPER[0]} to {PAPER[1]} and does not state of which measure. Over all runs and both measures, with "
+        f"Γ_DA `{DEFAULT}`, they are {', '.join(spans)}. The highest means are of runs that stop with the contact, at Δt = Δt_c: there the solution "
+        "is exact except in the step of the impact. The low ends of `consistent` and `published` come from fine meshes and small steps, where "
+        "dispersion adds up behind the front: a measure whose balance is that of the simulation's own displacements does not contain the "
+        "accumulated error. `corrected` balances an auxiliary solution with less dispersion instead, and its values come near 1 just there. Its own "
+        "low end is at Δt = Δt_c in the runs that go on beyond the contact. There the simulation is at its limit of stability, and its shortest "
+        "wave, once the release has excited it, grows with time. That of the auxiliary solution does not grow, but the release excites it as well, "
+        "and about half of that is missing in the estimate. The highest over the lowest value is with `corrected` at most half of that with either "
+        f"other reconstruction{but}. With all shorter steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c."
     )
 
 
 def _effectivities(grid: Grid) -> Table:
-    columns = [Column("contact force"), Column("measure"), Column("elements"), *(Column(f"Δt/Δt_c = {short(ratio, 1)}", digits=3) for ratio in RATIOS)]
+    columns = [Column("reconstruction"), Column("measure"), Column("elements"), *(Column(f"Δt/Δt_c = {short(ratio, 1)}", digits=3) for ratio in RATIOS)]
     table = Table("bar-maps-effectivity", f"The effectivities of the paper's figure 6 with Γ_DA `{DEFAULT}`.", columns, on_page=False)
     for name, (m, measure) in product(RECONSTRUCTIONS, enumerate(MEASURES)):
         cells = grid.cells(grid.effectivities(of_default(name), m, _middle))
@@ -216,7 +215,7 @@ def _by_choice(grid: Grid) -> Table:
         f"{', '.join(map(str, FRACTIONS))} of a step: its range, the places of its ends, and the part of it in the range that the paper states; on the "
         f"page of the largest error with Γ_DA `{DEFAULT}`."
     )
-    columns = [Column("contact force"), Column("Γ_DA"), Column("measure"), Column("T − t_c", "L/c", digits=2), Column("runs"), *Summary.COLUMNS]
+    columns = [Column("reconstruction"), Column("Γ_DA"), Column("measure"), Column("T − t_c", "L/c", digits=2), Column("runs"), *Summary.COLUMNS]
     table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT})
     for (c, choice), (m, measure), end in product(enumerate(CHOICES), enumerate(MEASURES), ENDS):
         summary = Summary(grid.effectivities(c, m, _until(end)))
@@ -226,10 +225,10 @@ def _by_choice(grid: Grid) -> Table:
 
 def _by_fraction(grid: Grid) -> Table:
     caption = (
-        f"Range of the effectivity of the largest error with Γ_DA `{DEFAULT}` and runs until t_c + {ENDS[1]:g} L/c, for each fraction of a step at which "
-        "the impact falls."
+        f"Range of the effectivity of the largest error with Γ_DA `{DEFAULT}` and runs until t_c + {ENDS[1]:g} L/c, for each fraction of a step at "
+        "which the impact falls."
     )
-    columns = [Column("contact force"), Column("fraction", "steps", digits=1), *Summary.COLUMNS]
+    columns = [Column("reconstruction"), Column("fraction", "steps", digits=1), *Summary.COLUMNS]
     table = Table("bar-maps-fractions", caption, columns, on_page=False)
     for name, fraction in product(RECONSTRUCTIONS, FRACTIONS):
         wanted = grid.effectivities(of_default(name), 0, lambda s, f=fraction: s.fraction == f and s.after_impact == ENDS[1])  # type: ignore[misc]
@@ -241,7 +240,7 @@ def _sweep(resolution: Resolution) -> Table:
     """Run over the fraction of a step at which the impact falls, with the default Γ_DA."""
     settings = [Setting(SWEEP, ratio, k / TWENTIETHS, ENDS[1]) for ratio in SWEEP_RATIOS for k in range(1, TWENTIETHS + 1)]
     outcomes = _run(settings, [CHOICES[of_default(name)] for name in RECONSTRUCTIONS], resolution)
-    columns = [Column("contact force"), Column("Δt/Δt_c"), Column("fraction", "steps", digits=2), *(Column(name, digits=3) for name in MEASURES)]
+    columns = [Column("reconstruction"), Column("Δt/Δt_c"), Column("fraction", "steps", digits=2), *(Column(name, digits=3) for name in MEASURES)]
     caption = f"Effectivity on {SWEEP} elements over the fraction of a step at which the impact falls."
     table = Table("bar-maps-instants", caption, columns, on_page=False)
     for r, name in enumerate(RECONSTRUCTIONS):
@@ -254,7 +253,7 @@ def _draw_sweep(table: Table) -> figures.Drawing:
     """Draw a panel for each measure and step, with a curve for each reconstruction."""
 
     def curve(k: int, name: str, measure: str, ratio: float) -> figures.Curve:
-        of: dict[str, str | float | int | None] = {"contact force": name, "Δt/Δt_c": ratio}
+        of: dict[str, str | float | int | None] = {"reconstruction": name, "Δt/Δt_c": ratio}
         return figures.Curve(name, table.where("fraction", of), table.where(measure, of), figures.own(k), marked=True)
 
     panels = [

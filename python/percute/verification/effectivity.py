@@ -39,8 +39,8 @@ def compute(section: Section, resolution: Resolution) -> None:
             "effectivity",
             "Effectivity index e/e_ref over refinement (both axes logarithmic), of the largest error ([15], above) and of the mean ([16], "
             "below), for each reconstruction: one curve for each case, in the colour of its family. The band is from "
-            f"{GOOD[0]} to {GOOD[1]}. A good curve falls to the band and stays there; a rising curve shows that the estimate loses track as "
-            "meshes become finer.",
+            f"{GOOD[0]} to {GOOD[1]}. A good curve falls to the band and stays there; a rising curve shows an estimate that exceeds the "
+            "true error more and more as meshes become finer.",
             _draw(results),
         ),
     )
@@ -69,7 +69,7 @@ def _effectivities(results: Iterable[Result]) -> Table:
         "Effectivity index e/e_ref of the largest error and of the mean, on four meshes from the coarsest to the finest, each with four times "
         "as many elements as the one before, against the finest reference. Empty cells: the body starts too near to its plane."
     )
-    columns = [Column("kind"), Column("case"), Column("contact force"), *_measured(digits=3)]
+    columns = [Column("kind"), Column("case"), Column("reconstruction"), *_measured(digits=3)]
     table = Table("effectivity", caption, columns, on_page=False)
     for case, found in results:
         for r, name in enumerate(NAMES):
@@ -80,7 +80,7 @@ def _effectivities(results: Iterable[Result]) -> Table:
 def _kinds(results: Sequence[Result]) -> Table:
     """Give the range of each kind with each reconstruction, and how it moves under refinement."""
     names = ("lowest", "highest", "lowest, meshes 3 and 4", "highest, meshes 3 and 4")
-    columns = [Column(name) for name in ("kind", "contact force", "measure")] + [Column(name, digits=3) for name in names]
+    columns = [Column(name) for name in ("kind", "reconstruction", "measure")] + [Column(name, digits=3) for name in names]
     table = Table(
         "effectivity-kinds",
         "The effectivity indices of all cases of a kind: their range on all meshes and on the two finer ones, and the largest ratio of the "
@@ -104,8 +104,9 @@ def _outside(results: Sequence[Result]) -> str:
     least = min(found[-1].contact(0) for case, found in results if case.kind == CORNER and found[-1] is not None)
     return (
         "Where a corner touches alone, the estimate of `corrected` stays about twice too large. Its force is a density, linear along the "
-        f"edges beside the corner, and those are off the plane: on mesh 4 at least {percent(least)} of η, where it is largest, is the energy "
-        "gap·F_n of this and the work of the arriving mass. A point force would have no gap, but no stress of finite energy balances it. "
+        "two edges beside the corner. These edges are off the plane. On mesh 4 at least {percent(least)} of the largest η is the energy "
+        "gap·F_n of this force and the work of the arriving mass. A point force would have no gap, but no stress of finite energy "
+        "balances it. "
         f"With the curved bodies each edge that comes into contact is such a corner for some steps. {_growth(results)}"
     )
 
@@ -121,7 +122,7 @@ def _growth(results: Iterable[Result]) -> str:
     falls = ", ".join(short(a.exact[-1][0] / b.exact[-1][0], 3) for a, b in zip(meshes, meshes[1:], strict=False))
     return (
         f"The largest growth from mesh 2 to mesh 4 is that of the largest error for {case.name}: by {percent(growth - 1.0)}, of which the "
-        f"references may lack {percent(_moves(meshes)[-1])} (below). Its part of contact falls faster than the rest, from "
+        f"error of the references may explain {percent(_moves(meshes)[-1])} (below). Its part of contact falls faster than the rest, from "
         f"{percent(meshes[1].contact(0))} of η to {percent(meshes[3].contact(0))}. The parts of inertia and stress hold the accumulated "
         f"dispersion and fall more slowly. The true error falls by {falls} from mesh to mesh."
     )
@@ -160,7 +161,7 @@ def _references(results: Iterable[Result]) -> Table:
 
 
 def _runs(results: Iterable[Result]) -> Table:
-    columns = [Column("case"), Column("contact force"), Column("elements"), Column("steps")]
+    columns = [Column("case"), Column("reconstruction"), Column("elements"), Column("steps")]
     columns += [Column("e sup", "J^½", "[15]"), Column("e mean", "J^½", "[16]"), Column("ε sup", "", "[22]"), Column("ε mean", "", "[22]")]
     columns += [Column("impulse kept"), Column("contact part at the sup", "%", digits=3), Column("e_ref sup", "J^½"), Column("e_ref mean", "J^½")]
     caption = "All runs: estimate, relative error, the part of the contact impulse that the admissible force keeps, and true error."

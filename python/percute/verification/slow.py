@@ -24,7 +24,7 @@ def add(section: Section, resolution: Resolution) -> None:
     bodies = [[case for case in with_friction if case.kind == kind][-1 if kind == CURVED else 0].few() for kind in (FLAT, CURVED, CORNER)]
     bodies = list(resolution.first(1, bodies))
     found = iter(resolution.map(_scaled, [(case, scale) for case in bodies for scale in SCALES]))
-    columns = [Column("body"), Column("contact force"), Column("speed across the plane", "m/s", digits=1)]
+    columns = [Column("body"), Column("reconstruction"), Column("speed across the plane", "m/s", digits=1)]
     columns += [Column("over the wave speed", digits=2), Column("sup", digits=3), Column("mean", digits=3)]
     caption = (
         "Effectivity index over the speed of the impact, on mesh 2 against the first reference; the gap shrinks with the speed, so that all "
@@ -39,12 +39,12 @@ def add(section: Section, resolution: Resolution) -> None:
                 table.add(case.name, reading["reconstruction"], speed, speed / wave_speed, *one.effectivity(r))
     section.add(
         "### Slow impacts",
-        "Where all touching edges lie in the plane, a slower impact is the same at another scale, and the effectivity index does not change. "
-        "Where a corner or a curve touches, an edge beside the first node is off the plane by its slope, for any speed: a less deformed body "
-        "touches with a smaller part than the mesh resolves. The force on such an edge costs gap·F_n, which falls like the force, while the "
-        "square of the true error falls like the square of the force. So `corrected` grows like 1/√v at corners and points, and a mesh that "
-        "resolves a slow impact must be as fine as its zone of contact. `consistent` and `published`, which drop that force, come to a limit, "
-        "because they lack its impulse in any case.",
+        "Where all touching edges lie in the plane, a slower impact is the same on another scale, and the effectivity index does not "
+        "change. Where a corner or a curve touches, an edge beside the first node is off the plane by its slope, at any speed. A slower "
+        "body deforms less, and its zone of contact becomes smaller than an edge. The force on such an edge costs gap·F_n, which falls "
+        "like the force, while the square of the true error falls like the square of the force. The effectivity index of `corrected` "
+        "therefore grows like 1/√v at corners and points. A mesh that resolves a slow impact must be as fine as its zone of contact. "
+        "`consistent` and `published`, which drop that force, come to a limit, because they lack its impulse in any case.",
         _summary(table, bodies),
         table,
     )
@@ -52,10 +52,10 @@ def add(section: Section, resolution: Resolution) -> None:
 
 def _summary(table: Table, bodies: list[Case]) -> Table:
     speeds = [f"sup at {400 * scale:g} m/s" for scale in SCALES] + [f"mean at {400 * scale:g} m/s" for scale in SCALES]
-    columns = [Column("body"), Column("contact force"), *(Column(name, digits=3) for name in speeds)]
+    columns = [Column("body"), Column("reconstruction"), *(Column(name, digits=3) for name in speeds)]
     summary = Table("effectivity-speeds-summary", "Effectivity index over the speed across the plane, largest error and mean.", columns)
     for case in bodies:
         for reading in READINGS:
-            of = {"body": case.name, "contact force": reading["reconstruction"]}
+            of = {"body": case.name, "reconstruction": reading["reconstruction"]}
             summary.add(*of.values(), *table.where("sup", of), *table.where("mean", of))
     return summary

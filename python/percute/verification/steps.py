@@ -47,7 +47,7 @@ def add(section: Section, resolution: Resolution) -> None:
     subjects = resolution.first(1, [None, *(case.few() for case in bodies)])
     runs = [(subject, ratio) for subject in subjects for ratio in RATIOS]
     found = resolution.map(_ranges, runs, lambda run: (0.0 if run[0] is None else 1.0) + 1.0 / run[1])
-    columns = [Column("body"), Column("contact force"), Column("Δt/Δt_c", digits=2), *(Column(end, digits=3) for end in ENDS)]
+    columns = [Column("body"), Column("reconstruction"), Column("Δt/Δt_c", digits=2), *(Column(end, digits=3) for end in ENDS)]
     caption = "Effectivity index over Δt/Δt_c: for the bar the lowest and the highest over the fractions of a step, for a plane body one value."
     table = Table("effectivity-steps", caption, columns, on_page=False)
     for (subject, ratio), ranges in zip(runs, found, strict=True):
@@ -72,18 +72,18 @@ def add(section: Section, resolution: Resolution) -> None:
 
 
 def _summary(table: Table, subjects: Sequence[Subject]) -> Table:
-    columns = [Column("body"), Column("contact force"), *(Column(end, digits=3) for end in ENDS)]
+    columns = [Column("body"), Column("reconstruction"), *(Column(end, digits=3) for end in ENDS)]
     summary = Table("effectivity-steps-range", f"The range of the effectivity index over Δt/Δt_c from {RATIOS[-1]} to {RATIOS[0]}.", columns)
     for subject in subjects:
         for attempt in ATTEMPTS:
-            of = {"body": _name(subject), "contact force": attempt}
+            of = {"body": _name(subject), "reconstruction": attempt}
             summary.add(*of.values(), *((min if end.startswith("lowest") else max)(table.where(end, of)) for end in ENDS))
     return summary
 
 
 def _draw(table: Table, subjects: Sequence[Subject]) -> figures.Drawing:
     def curve(subject: Subject, k: int, attempt: str, measure: str) -> figures.Curve:
-        of = {"body": _name(subject), "contact force": attempt}
+        of = {"body": _name(subject), "reconstruction": attempt}
         values, dashed = table.where(f"highest, {measure}", of), measure == "mean"
         return figures.Curve(f"{attempt}, {measure}", RATIOS, values, figures.own(k), dashed=dashed, marked=True)
 

@@ -75,7 +75,7 @@ def compute(section: Section, resolution: Resolution) -> None:
 FIGURE_8 = (
     f"The paper's figure 8: von Mises stress of the finite-element solution at {INSTANTS} instants, from 0 to {{}} GPa in all maps. The body is drawn "
     "in its place, at true scale; grey is the rigid plane. The compression wave runs up from the plane, is reflected at the top and at the sides, and "
-    "friction makes it lean."
+    "friction tilts it."
 )
 FIGURE_9 = (
     "The paper's figure 9, with the reconstruction `{}`: the contribution of each element to the mean error until the instant, √((1/T)∫₀ᵗ η_E dt) "
@@ -86,7 +86,7 @@ FIGURE_9 = (
 
 def _table(key: str, caption: str, instants: Sequence[Column]) -> Table:
     """Give a table with a row for each element and a column for each instant."""
-    return Table(key, caption, [Column("contact force"), Column("element"), Column("x", "mm"), Column("y", "mm"), *instants], on_page=False)
+    return Table(key, caption, [Column("reconstruction"), Column("element"), Column("x", "mm"), Column("y", "mm"), *instants], on_page=False)
 
 
 def _fill(table: Table, name: str, mesh: pc.Mesh, values: Sequence[Floats]) -> None:
@@ -96,7 +96,7 @@ def _fill(table: Table, name: str, mesh: pc.Mesh, values: Sequence[Floats]) -> N
 
 
 def _summary() -> Table:
-    columns = [Column("contact force"), Column("t", "µs"), Column("all elements", "J^½", "[20]"), Column("largest element", "J^½", "[20]")]
+    columns = [Column("reconstruction"), Column("t", "µs"), Column("all elements", "J^½", "[20]"), Column("largest element", "J^½", "[20]")]
     caption = "The accumulated error at the instants of the maps: of all elements, the largest of one, and the part of the elements that holds half of its square."
     return Table("stress-maps-summary", caption, [*columns, Column("half of it in", "% of the elements", digits=3)], on_page=False)
 

@@ -70,10 +70,10 @@ def compute(section: Section, resolution: Resolution) -> None:
     absolute, relative = _tables(rows, own)
     base = Block(rows[0].cells)
     section.add(
-        f"An aluminium block of 50 × 40 mm strikes a plane at 400 m/s along it and 400 m/s towards it, with friction (μ = {base.friction}). The "
-        f"step is {base.courant} of the critical one. The table has the largest error over time, e_sup [15], and the mean, e_mean [16], for "
-        "each reconstruction of the contact force and each Γ_DA, beside the paper's values. The paper's method is `published`; the default is "
-        f"`corrected` with `{DEFAULT}`.",
+        "An aluminium block of 50 × 40 mm strikes a plane at 400 m/s along it and 400 m/s towards it, with friction (μ = "
+        f"{base.friction}). The step is {base.courant} of the critical one. The table has the largest error over time, e_sup [15], and the "
+        "mean, e_mean [16], for each reconstruction of the contact force and each Γ_DA, beside the paper's values. The paper's method is "
+        f"`published`; the default is `corrected` with `{DEFAULT}`.",
         "The paper does not state the distance from which the block starts, the end T of the interval, and whether the block is in plane "
         "stress or plane strain. Taken here: plane stress, a gap that the block crosses in 1.3 steps, and the first whole step past "
         f"{short(1e6 * base.past, 3)} µs. The influence of each is below.",
@@ -104,7 +104,7 @@ def deviation(errors: Sequence[tuple[float, float]]) -> float | None:
 
 
 def _tables(rows: Sequence[Row], found: Sequence[Found]) -> tuple[Table, Table]:
-    first = [Column(name) for name in ("contact force", "Γ_DA", "mesh", "elements")]
+    first = [Column(name) for name in ("reconstruction", "Γ_DA", "mesh", "elements")]
     named = {"e_sup": "[15]", "paper's e_sup": "", "e_mean": "[16]", "paper's e_mean": ""}
     caption = f"Absolute errors of the four meshes, beside the paper's; on the page those with Γ_DA `{DEFAULT}`."
     columns = [*first, *(Column(name, "J^½", equation) for name, equation in named.items())]
@@ -137,17 +137,17 @@ def _conclusions(rows: Sequence[Row], found: Sequence[Found]) -> list[str]:
     return [
         *pieces,
         f"The relative errors differ by their denominator. D_sup by [22]–[24] as printed is {short(min(ours), 4)} to {short(max(ours), 4)} J^½ "
-        f"here; absolute over relative error of the paper's table gives {theirs} J^½. That is another norm than that of [22]–[24]; the absolute "
-        "errors do not depend on it.",
+        f"here; absolute over relative error of the paper's table gives {theirs} J^½. The paper's table therefore uses another norm than "
+        "[22]–[24]. The absolute errors do not depend on it.",
     ]
 
 
 def _assumptions(rows: Sequence[Row], variants: Sequence[tuple[str, str, Any]], found: Sequence[Found]) -> Table:
-    columns = [Column(name) for name in ("contact force", "assumption", "value")]
+    columns = [Column(name) for name in ("reconstruction", "assumption", "value")]
     columns += [Column(f"{name} {Block(row.cells).mesh}", "J^½", f"[{15 + k}]") for k, name in enumerate(ABSOLUTE) for row in PAPER]
     caption = (
-        f"Absolute errors with Γ_DA `{DEFAULT}`, one assumption changed at a time. The last column is the root mean square of the eight relative "
-        "differences from the paper's table."
+        f"Absolute errors with Γ_DA `{DEFAULT}`, one assumption changed at a time. The last column is the root mean square of the eight "
+        "relative differences from the paper's table."
     )
     table = Table("table1-assumptions", caption, [*columns, Column("from the paper", "%", digits=3)], on_page=False)
     empty = [None] * (len(PAPER) - len(rows))
@@ -164,7 +164,7 @@ def _spreads(table: Table) -> str:
     """State by how much each assumption moves the errors."""
 
     def spread(name: str, assumption: str) -> str:
-        of = {"contact force": name, "assumption": assumption}
+        of = {"reconstruction": name, "assumption": assumption}
         columns = [table.where(column.name, of) for column in table.columns if column.unit == "J^½"]
         return percent(max(max(errors) / min(errors) - 1 for errors in columns if errors[0] == errors[0]))
 
@@ -180,9 +180,9 @@ def _spreads(table: Table) -> str:
 
 def _draw(table: Table) -> figures.Drawing:
     def curves(measure: str) -> list[figures.Curve]:
-        of = [{"contact force": name, "Γ_DA": DEFAULT} for name in RECONSTRUCTIONS]
+        of = [{"reconstruction": name, "Γ_DA": DEFAULT} for name in RECONSTRUCTIONS]
         elements = table.where("elements", of[0])
-        ours = [figures.Curve(each["contact force"], elements, table.where(measure, each), figures.own(k), marked=True) for k, each in enumerate(of)]
+        ours = [figures.Curve(each["reconstruction"], elements, table.where(measure, each), figures.own(k), marked=True) for k, each in enumerate(of)]
         return [*ours, figures.Curve("the paper's table", elements, table.where(f"paper's {measure}", of[0]), dashed=True, marked=True)]
 
     marks = sorted(set(table.where("elements")))
@@ -194,7 +194,7 @@ def _draw_gap(table: Table, rows: Sequence[Row]) -> figures.Drawing:
     gaps = [changed["flight"] for _, changed in VARIANTS["gap"]]
 
     def curves(name: str) -> list[figures.Curve]:
-        values = [table.where(f"e_sup {Block(row.cells).mesh}", {"contact force": name, "assumption": "gap"}) for row in rows]
+        values = [table.where(f"e_sup {Block(row.cells).mesh}", {"reconstruction": name, "assumption": "gap"}) for row in rows]
         hues = [figures.ordered(k / (len(PAPER) - 1)) for k in range(len(rows))]
         return [figures.Curve(Block(row.cells).mesh, gaps, y, hue, marked=True) for row, y, hue in zip(rows, values, hues, strict=True)]
 

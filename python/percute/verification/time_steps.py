@@ -53,7 +53,7 @@ def _sweep(section: Section, resolution: Resolution) -> None:
     ratios = resolution.either(mass.FEW, mass.RATIOS)
     runs = [(name, ratio, _block(ratio, FRACTION)) for name in NAMES for ratio in ratios]
     found = resolution.map(_estimate, runs, lambda run: 1.0 / run[1])
-    first = [Column("contact force"), Column("Δt/Δt_c", digits=1)]
+    first = [Column("reconstruction"), Column("Δt/Δt_c", digits=1)]
     over_time = Table(
         "time-steps-over-time",
         "The error over time for each step. Where the contact zone changes, an instant has two values.",
@@ -99,7 +99,7 @@ def _sweep(section: Section, resolution: Resolution) -> None:
 
 def _draw_over_time(table: Table, drawn: Sequence[float]) -> figures.Drawing:
     def curve(name: str, k: int, ratio: float) -> figures.Curve:
-        of: dict[str, str | float] = {"contact force": name, "Δt/Δt_c": ratio}
+        of: dict[str, str | float] = {"reconstruction": name, "Δt/Δt_c": ratio}
         colour = figures.ordered(1.0 - k / (len(DRAWN) - 1))
         return figures.Curve(f"Δt/Δt_c = {ratio:g}", table.where("t − t_impact", of), table.where("√η", of), colour)
 
@@ -110,7 +110,7 @@ def _draw_over_time(table: Table, drawn: Sequence[float]) -> figures.Drawing:
 def _draw_sup(table: Table, ratios: Sequence[float]) -> figures.Drawing:
     curves = []
     for k, name in enumerate(NAMES):
-        of = {"contact force": name}
+        of = {"reconstruction": name}
         for label, column in (("e_sup", "e_sup"), ("without the impact", "largest later")):
             curves.append(figures.Curve(f"{name}, {label}", ratios, table.where(column, of), figures.own(k), label != "e_sup", True))
     return figures.lines([("", curves)], "Δt/Δt_c", "error (J^½)", log="x", xticks=(0.1, 0.2, 0.3, 0.5, 0.7, 1.0), zero=True)
@@ -121,7 +121,7 @@ def _conclusion(table: Table, ratios: Sequence[float]) -> str:
     before, least = ratios[-2:]
 
     def at(name: str, column: str, ratio: float) -> float:
-        return float(table.where(column, {"contact force": name, "Δt/Δt_c": ratio})[0])
+        return float(table.where(column, {"reconstruction": name, "Δt/Δt_c": ratio})[0])
 
     def change(name: str, column: str) -> str:
         now = at(name, column, least)
@@ -143,7 +143,7 @@ def _impact(section: Section, resolution: Resolution) -> None:
     ratios = resolution.first(2, IMPACT_RATIOS)
     runs = [(name, ratio, _block(ratio, fraction, PAST)) for name in NAMES for fraction in FRACTIONS for ratio in ratios]
     found = resolution.map(_estimate, runs)
-    columns = [Column("contact force"), Column("fraction", "steps", digits=1), Column("Δt/Δt_c", digits=1)]
+    columns = [Column("reconstruction"), Column("fraction", "steps", digits=1), Column("Δt/Δt_c", digits=1)]
     columns += [Column("largest error", "J^½", "[15]"), Column("at t − t_impact", "µs", digits=3)]
     caption = (
         f"The largest error of runs that end at {short(1e6 * PAST, 2)} µs, shortly after the impact, for several fractions of a step at which "
@@ -156,7 +156,7 @@ def _impact(section: Section, resolution: Resolution) -> None:
     def panel(name: str) -> tuple[str, list[figures.Curve]]:
         curves = []
         for k, fraction in enumerate(FRACTIONS):
-            values = table.where("largest error", {"contact force": name, "fraction": fraction})
+            values = table.where("largest error", {"reconstruction": name, "fraction": fraction})
             colour = figures.ordered(k / (len(FRACTIONS) - 1))
             curves.append(figures.Curve(f"at {fraction:g} of a step", ratios, values, colour, marked=True))
         return name, curves
@@ -177,13 +177,13 @@ def _impact(section: Section, resolution: Resolution) -> None:
 
 def _range(table: Table, ratios: Sequence[float]) -> str:
     def ends(name: str, ratio: float) -> str:
-        values = table.where("largest error", {"contact force": name, "Δt/Δt_c": ratio})
+        values = table.where("largest error", {"reconstruction": name, "Δt/Δt_c": ratio})
         return f"{short(min(values), 3)} to {short(max(values), 3)} J^½"
 
     large, small = max(ratios), min(ratios)
     each = [f"with `{name}` {ends(name, large)} at Δt/Δt_c = {large:g} and {ends(name, small)} at {small:g}" for name in NAMES]
     return (
-        "In the step before contact, nodes must be braked so that they end on the plane. This force acts before contact and is not "
+        "In the step before contact, nodes are decelerated so that they end on the plane. This force acts before contact and is not "
         "admissible. The velocity that it takes away does not shrink with the step, and its part before contact depends on the place of the "
         f"impact inside a step. Over the fractions {FRACTIONS[0]:g} to {FRACTIONS[-1]:g} the largest error around the impact is {'; '.join(each)}."
     )
