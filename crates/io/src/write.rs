@@ -8,6 +8,7 @@ use hdf5::dataset::{AllocTime, FillTime, Layout};
 use hdf5::plist::link_create::CharEncoding;
 use hdf5::types::{FixedUnicode, TypeDescriptor};
 use hdf5::{Dataset, Group, H5Type, Location};
+use serde::Serialize;
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
@@ -22,7 +23,7 @@ pub struct Case {
 }
 
 /// Writer of a file, and its machine; empty if unknown.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Provenance {
     /// Program and version.
     pub program: String,

@@ -9,24 +9,6 @@ pub enum ByDimension<B, P> {
     Plane(P),
 }
 
-impl<B, P> ByDimension<B, P> {
-    /// The bar, unless it is a plane body.
-    pub fn bar(self) -> Option<B> {
-        match self {
-            Self::Bar(bar) => Some(bar),
-            Self::Plane(_) => None,
-        }
-    }
-
-    /// The plane body, unless it is a bar.
-    pub fn plane(self) -> Option<P> {
-        match self {
-            Self::Bar(_) => None,
-            Self::Plane(plane) => Some(plane),
-        }
-    }
-}
-
 /// Does the same with a [`ByDimension`](crate::simplex::ByDimension) in each dimension: `each_dimension!(any, it => it.count())`.
 #[macro_export]
 macro_rules! each_dimension {

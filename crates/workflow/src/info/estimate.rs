@@ -1,8 +1,9 @@
 //! What an estimate file holds.
 
-use super::{Info, WrittenBy};
+use super::{Info, writer};
 use crate::message::{bytes, short, trimmed};
 use crate::report::{FORMAT, Versions};
+use percute_io::Provenance;
 use percute_io::estimate_file::EstimateFile;
 use serde::Serialize;
 use serde_json::Value;
@@ -15,7 +16,7 @@ pub struct EstimateInfo {
     pub format: u32,
     pub versions: Versions,
     pub file: String,
-    pub written_by: WrittenBy,
+    pub written_by: Provenance,
     pub case: Option<String>,
     pub dimension: usize,
     pub nodes: usize,
@@ -33,7 +34,7 @@ pub fn of_estimate(path: &Path, file: &EstimateFile) -> Info {
         format: FORMAT,
         versions: Versions::of_this_program(),
         file: path.display().to_string(),
-        written_by: WrittenBy::new(&file.provenance),
+        written_by: file.provenance.clone(),
         case: file.case.as_ref().map(|case| case.name.clone()),
         dimension: file.dimension,
         nodes: file.nodes,
@@ -50,7 +51,7 @@ impl EstimateInfo {
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
         let kind = if self.dimension == 1 { "bar elements" } else { "triangles" };
         let mut lines =
-            vec![("estimate", format!("{}, {}", self.file, bytes(self.bytes))), ("written", self.written_by.line())];
+            vec![("estimate", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", format!("{} {kind}, {} nodes", self.elements, self.nodes)));
         let ends = self.instants.first().zip(self.instants.last());

@@ -61,7 +61,7 @@ pub struct HistoryInfo {
     pub format: u32,
     pub versions: Versions,
     pub file: String,
-    pub written_by: WrittenBy,
+    pub written_by: Provenance,
     pub case: Option<String>,
     pub problem: ProblemSummary,
     pub time: TimeInfo,
@@ -82,15 +82,6 @@ pub struct TimeInfo {
     pub end: f64,
 }
 
-/// The program that wrote a file; empty where the file does not say.
-#[derive(Clone, Debug, Serialize)]
-#[allow(missing_docs)]
-pub struct WrittenBy {
-    pub program: String,
-    pub architecture: String,
-    pub system: String,
-}
-
 impl TimeInfo {
     fn new(times: &TimeGrid, critical_step: f64) -> Self {
         Self {
@@ -109,17 +100,10 @@ impl TimeInfo {
     }
 }
 
-impl WrittenBy {
-    fn new(provenance: &Provenance) -> Self {
-        let Provenance { program, architecture, system } = provenance.clone();
-        Self { program, architecture, system }
-    }
-
-    fn line(&self) -> String {
-        let known: Vec<_> =
-            [&self.program, &self.architecture, &self.system].into_iter().filter(|s| !s.is_empty()).cloned().collect();
-        if known.is_empty() { "an unknown program".to_string() } else { known.join(", ") }
-    }
+/// The writer of a file, in words.
+fn writer(Provenance { program, architecture, system }: &Provenance) -> String {
+    let known: Vec<_> = [program, architecture, system].into_iter().filter(|s| !s.is_empty()).cloned().collect();
+    if known.is_empty() { "an unknown program".to_string() } else { known.join(", ") }
 }
 
 /// What a case holds and what its run will take.
@@ -155,7 +139,7 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         format: FORMAT,
         versions: Versions::of_this_program(),
         file: stored.name.clone(),
-        written_by: WrittenBy::new(file.provenance()),
+        written_by: file.provenance().clone(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
         time: TimeInfo::new(file.times(), subject.critical_step),
@@ -211,7 +195,7 @@ impl CaseInfo {
 impl HistoryInfo {
     fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines =
-            vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", self.written_by.line())];
+            vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", body(&self.problem)));
         lines.extend(self.time.lines());
