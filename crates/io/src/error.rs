@@ -111,13 +111,7 @@ pub enum FileCause {
     Step(#[from] StepError),
     /// A problem on another mesh.
     #[error("the mesh of the problem has {given} {what}, but {needed} are needed")]
-    Problem {
-        /// Nodes or elements.
-        what: &'static str,
-        given: usize,
-        /// How many the history or the estimate has.
-        needed: usize,
-    },
+    Problem { what: &'static str, given: usize, needed: usize },
 }
 
 impl FileCause {

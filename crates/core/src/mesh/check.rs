@@ -24,13 +24,7 @@ pub enum MeshError {
     Empty { nodes: usize, elements: usize },
     /// More entities than 32-bit indices can count.
     #[error("the mesh has {count} {what}; at most {most} can be counted")]
-    TooLarge {
-        /// Nodes or elements.
-        what: &'static str,
-        count: usize,
-        /// Largest number allowed.
-        most: usize,
-    },
+    TooLarge { what: &'static str, count: usize, most: usize },
     /// A generator was given an impossible value.
     #[error("`{name}` is {value}; it must be {allowed}")]
     Generator { name: &'static str, value: f64, allowed: &'static str },
@@ -42,11 +36,7 @@ pub enum MeshError {
     NoSuchNode { element: usize, node: usize, last: usize },
     /// Nodes that no element uses.
     #[error("node {first} belongs to no element ({count} in all); remove it from the points, or name it in a cell")]
-    UnusedNodes {
-        /// The first of them.
-        first: usize,
-        count: usize,
-    },
+    UnusedNodes { first: usize, count: usize },
     /// Two nodes at the same place.
     #[error("nodes {first} and {second} lie at one place ({} m apart): merge duplicate nodes into one", short(*.distance))]
     DuplicateNodes { first: usize, second: usize, distance: f64 },
@@ -55,14 +45,7 @@ pub enum MeshError {
         "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a diameter of {} m); move one of \
          them, or leave the element out", short(*.volume), short(*.diameter)
     )]
-    Degenerate {
-        element: usize,
-        nodes: Vec<usize>,
-        /// Length or area.
-        volume: f64,
-        /// Largest distance between its nodes (m).
-        diameter: f64,
-    },
+    Degenerate { element: usize, nodes: Vec<usize>, volume: f64, diameter: f64 },
     /// A facet shared by more than two elements.
     #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), list(.elements))]
     NonManifoldFacet { nodes: Vec<usize>, elements: Vec<usize> },

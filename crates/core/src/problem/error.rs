@@ -78,11 +78,7 @@ pub enum Cause {
     #[error(
         "element {element} has no material ({count} such elements); give a material without a group, or one for each group"
     )]
-    NoMaterial {
-        /// First element without.
-        element: usize,
-        count: usize,
-    },
+    NoMaterial { element: usize, count: usize },
     /// Two materials on one element.
     #[error(
         "element {element} already has material {first}{}",
@@ -120,7 +116,6 @@ pub enum Cause {
     )]
     ConflictingSupports {
         node: usize,
-        /// x, y or z.
         component: char,
         /// The earlier support, from 1.
         first: usize,
@@ -130,23 +125,13 @@ pub enum Cause {
         "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s by a support at t = 0; \
          make the two agree, by the initial velocity or by the velocity of the support"
     )]
-    InconsistentStart {
-        node: usize,
-        /// x, y or z.
-        component: char,
-        initial: f64,
-        prescribed: f64,
-    },
+    InconsistentStart { node: usize, component: char, initial: f64, prescribed: f64 },
     /// A load on a supported component.
     #[error(
         "the {} is loaded along {component}, where a support prescribes its motion; take it out of one of the two groups, or \
          leave {component} to the load or to the support", facet(.nodes)
     )]
-    LoadedSupport {
-        /// x, y or z.
-        component: char,
-        nodes: Vec<usize>,
-    },
+    LoadedSupport { component: char, nodes: Vec<usize> },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
     #[error("the {} is {by} and cannot touch a plane too; take it out of one of the two groups", facet(.nodes))]
     NotFree { nodes: Vec<usize>, by: HeldBy },
@@ -165,10 +150,7 @@ pub enum Cause {
         "nothing can touch the plane: supports prescribe the motion towards it of all nodes that face it, as of node {node}; \
          leave that component free, or remove the plane"
     )]
-    HeldNodes {
-        /// The first of them.
-        node: usize,
-    },
+    HeldNodes { node: usize },
     /// A plane that nothing can touch.
     #[error(
         "nothing in group \"{group}\" faces the plane: the outward normal of the group is {}, and the normal of the plane, from the plane to the body, \

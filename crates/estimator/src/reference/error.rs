@@ -21,20 +21,10 @@ pub enum ReferenceError {
     NotNested { fine: usize },
     /// Nested, but another body.
     #[error("the reference mesh covers {fine:.6e}, the mesh that is compared {coarse:.6e} (m in 1D, m² in 2D)")]
-    DifferentBodies {
-        /// Length or area of the reference.
-        fine: f64,
-        /// Length or area of the mesh that is compared.
-        coarse: f64,
-    },
+    DifferentBodies { fine: f64, coarse: f64 },
     /// A reference that stops too early.
     #[error("the reference ends at {reference:.6e} s, before the end of the simulation at {end:.6e} s")]
-    EndsEarly {
-        /// Last instant of the reference (s).
-        reference: f64,
-        /// Last instant compared (s).
-        end: f64,
-    },
+    EndsEarly { reference: f64, end: f64 },
     /// A simulation that is not the one the exact solution is for.
     #[error("`{name}` is {given:.9e} in the simulation and {exact:.9e} in the exact solution")]
     AnotherBar { name: &'static str, given: f64, exact: f64 },

@@ -56,11 +56,7 @@ pub enum GmshCause {
     Scale { value: f64 },
     /// Not a mesh file.
     #[error("this is not a Gmsh mesh: it begins with {found}; {advice}")]
-    NotMsh {
-        /// Its first bytes.
-        found: String,
-        advice: &'static str,
-    },
+    NotMsh { found: String, advice: &'static str },
     /// Another version of the format.
     #[error(
         "the file has version {found} of the MSH format; percute reads 2.2 and 4.1: \
@@ -105,11 +101,7 @@ pub enum GmshCause {
     NoTriangles,
     /// A tag given twice.
     #[error("{what} {tag} is given twice; tags must differ: in Gmsh, open the mesh and save it again")]
-    Twice {
-        /// Nodes or elements.
-        what: &'static str,
-        tag: u64,
-    },
+    Twice { what: &'static str, tag: u64 },
     /// An invalid tag.
     #[error("the tag of {what} is {tag}; tags are whole numbers from 1")]
     Tag { what: &'static str, tag: i64 },
@@ -129,12 +121,7 @@ pub enum GmshCause {
          the body by `Physical Surface(\"body\") = {{…}};` and mesh in 2D",
         .nodes[0], .values[0], .nodes[1], .values[1]
     )]
-    NotOnAxis {
-        /// y or z.
-        axis: char,
-        nodes: [u64; 2],
-        values: [f64; 2],
-    },
+    NotOnAxis { axis: char, nodes: [u64; 2], values: [f64; 2] },
     /// A line that bounds no triangle, or a point that bounds no line.
     #[error("{}: {}", lone(*.dimension, *.element, .nodes, .groups), lone_advice(*.dimension, .groups))]
     Lone {
@@ -146,11 +133,7 @@ pub enum GmshCause {
     },
     /// An invalid mesh, in the tags of the file.
     #[error("{error} (numbers are the tags in Gmsh){advice}")]
-    Mesh {
-        error: Box<MeshError>,
-        /// What to do in Gmsh, after a semicolon.
-        advice: &'static str,
-    },
+    Mesh { error: Box<MeshError>, advice: &'static str },
     /// A name that the format does not allow.
     #[error("the group {name:?} cannot be written: names in MSH files have no quotes and no line breaks")]
     Name { name: String },
