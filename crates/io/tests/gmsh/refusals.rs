@@ -71,7 +71,7 @@ fn a_body_in_no_physical_group_is_missed() {
     assert!(message.contains("neither triangles nor lines") && message.contains("mesh the surfaces"), "{message}");
     let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 1 1 0\n$EndNodes\n$Elements\n1\n1 1 2 0 1 1 2\n$EndElements\n";
     let (message, _) = said(old);
-    assert!(message.contains("no bar along x: node 1 has y = 0 m and node 2 has y = 1 m"), "{message}");
+    assert!(message.contains("not a bar along x: node 1 has y = 0 m and node 2 has y = 1 m"), "{message}");
     assert!(message.contains("Physical Surface"), "{message}");
 }
 
@@ -113,7 +113,7 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
         ("// a block\nlc = 1;\n", "gmsh -2 block.geo"),
         ("# vtk DataFile Version 5.1\n", "the extra `mesh`"),
         ("<VTKFile type=\"UnstructuredGrid\">\n<PointData>\n<Points>\n", "the extra `mesh`"),
-        ("$ NASTRAN, mesh of a block\nGRID,1,,0.,0.,0.\n", "no Gmsh mesh: it begins with `$ NASTRAN"),
+        ("$ NASTRAN, mesh of a block\nGRID,1,,0.,0.,0.\n", "not a Gmsh mesh: it begins with `$ NASTRAN"),
         ("$ NASTRAN\n$ GRID Point(1)\n", "the extra `mesh`"),
         ("$NOD\n3\n", "version 1 of the MSH format"),
     ] {
@@ -172,5 +172,5 @@ fn places_in_binary_files_are_bytes() {
     let mut spoilt = whole;
     spoilt[20..24].copy_from_slice(&[7, 7, 7, 7]);
     let error = of_bytes(&spoilt).unwrap_err().to_string();
-    assert!(error.contains("order of bytes") && error.contains("sent as a text"), "{error}");
+    assert!(error.contains("byte order") && error.contains("sent as a text"), "{error}");
 }
