@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Dynamics, critical_time_step, simulate};
 use percute_core::history::{SinkError, Step, StepSink};
-use percute_core::material::Elastic;
+use percute_core::material::{Elastic, Law};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};

@@ -1,6 +1,7 @@
 //! The data of an element, computed once.
 
 use percute_core::ids::{ElementId, NodeId};
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 
 /// Elements or nodes in a block of parallel work: small enough to share the work, large enough to be worth a task.

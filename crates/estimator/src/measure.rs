@@ -11,7 +11,7 @@ use crate::stress::{Loading, StressMap, facet_node, facet_position};
 use crate::time_level::Side;
 use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
-use percute_core::material::Elastic;
+use percute_core::material::{Elastic, Law};
 use percute_core::problem::Problem;
 
 /// The part of one element in η and d at one sample (J), contact apart.

@@ -15,6 +15,7 @@ use crate::reconstruction::Densities;
 use crate::time_level::TimeLevel;
 pub(crate) use equilibrated::{Equilibrated, FemStress};
 use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::material::Law;
 use percute_core::mesh::Star;
 use percute_core::problem::Problem;
 use star_solver::{Ends, StarSolver};

@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Traction};
-use percute_core::material::{Elastic, Hypothesis};
+use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, InputError, Problem};
 use percute_core::simplex::ByDimension;

@@ -3,7 +3,7 @@
 use crate::errors;
 use percute_core::contact::{Obstacle, ObstacleError};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
-use percute_core::material::{Elastic, Hypothesis, MaterialError};
+use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 

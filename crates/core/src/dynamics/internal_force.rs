@@ -1,7 +1,7 @@
 //! Internal forces of the P1 elements, ∫σ_h ∇φ_i.
 
 use crate::ids::{ElementId, NodeId};
-use crate::material::Elastic;
+use crate::material::{Elastic, Law, LinearLaw};
 use crate::problem::Problem;
 
 /// One element, in the 48 bytes (in 2D) that its internal forces need: the sweep over a large
@@ -14,11 +14,11 @@ struct Cell<const D: usize, const N: usize> {
     gradients: [[f64; D]; D],
 }
 
-/// The stiffness of a problem, applied element by element.
+/// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
 #[derive(Clone, Debug)]
-pub struct Stiffness<const D: usize, const N: usize> {
+pub struct Stiffness<const D: usize, const N: usize, L: LinearLaw = Elastic> {
     cells: Vec<Cell<D, N>>,
-    laws: Vec<Elastic>,
+    laws: Vec<L>,
 }
 
 impl<const D: usize, const N: usize> Stiffness<D, N> {
@@ -40,7 +40,9 @@ impl<const D: usize, const N: usize> Stiffness<D, N> {
             laws: problem.materials().to_vec(),
         }
     }
+}
 
+impl<const D: usize, const N: usize, L: LinearLaw> Stiffness<D, N, L> {
     /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
     pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
         let mut energy = 0.0;
@@ -103,7 +105,7 @@ impl<const D: usize, const N: usize> Stiffness<D, N> {
         let force = |j: usize, c: usize, i: usize, a: usize| -> f64 {
             let mut gradient = [[0.0; D]; D];
             gradient[c] = all[j];
-            (0..D).map(|b| law.stress(&gradient)[a][b] * all[i][b]).sum()
+            (0..D).map(|b| law.tangent(&[[0.0; D]; D], &gradient)[a][b] * all[i][b]).sum()
         };
         let stiffness = nalgebra::DMatrix::from_fn(N * D, N * D, |r, s| force(s / D, s % D, r / D, r % D));
         stiffness.symmetric_eigenvalues().max()

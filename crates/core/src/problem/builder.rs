@@ -6,7 +6,7 @@ use super::{Cause, InputError, Problem, candidates};
 use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId};
 use crate::load::{BodyForce, Support, Traction};
-use crate::material::Elastic;
+use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 
 /// An initial field.

@@ -15,7 +15,7 @@ pub use plausibility::{PlausibilityWarning, plausibility_warnings};
 use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
-use crate::material::Elastic;
+use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 
 /// One component of a node's motion that is prescribed.

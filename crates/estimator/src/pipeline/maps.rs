@@ -10,6 +10,7 @@ use crate::options::Acceleration;
 use crate::request::{Request, RequestError};
 use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use rayon::prelude::*;
 

@@ -2,6 +2,7 @@
 
 use super::{Motion, ReferenceError, TrueError, TrueErrorSample};
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::BarProblem;
 use percute_exact::BarImpact;
 

@@ -7,6 +7,7 @@ use crate::inertia::mass_product;
 use percute_core::dynamics::{Evaluation, Stiffness};
 use percute_core::history::{SinkError, Step, StepSink};
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 

@@ -2,7 +2,7 @@
 
 use super::{Loading, StressResiduals};
 use crate::residual::worse;
-use percute_core::material::Elastic;
+use percute_core::material::LinearLaw;
 
 /// A bar element of given length.
 #[derive(Clone, Copy, Debug)]
@@ -13,8 +13,9 @@ pub(crate) struct BarStress {
 }
 
 impl BarStress {
-    pub(super) fn new(length: f64, law: &Elastic) -> Self {
-        Self { length, compliance: law.complementary_form(&[[1.0]]) }
+    pub(super) fn new(length: f64, law: &impl LinearLaw) -> Self {
+        let (alpha, beta) = law.compliance::<1>();
+        Self { length, compliance: alpha - beta }
     }
 
     /// Stress at both ends and in the middle: σ(0) = −F̂_0 and σ' = Γ_DA − f_d.
@@ -70,6 +71,7 @@ impl BarStress {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use percute_core::material::Elastic;
 
     /// Against Gauss points: σ = 1 + 2x + 3x² on [0, 2] with E = 5.
     #[test]

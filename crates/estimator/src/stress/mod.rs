@@ -6,7 +6,7 @@ mod reference;
 mod triangle;
 
 use bar::BarStress;
-use percute_core::material::Elastic;
+use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
 use triangle::TriangleStress;
 
@@ -51,7 +51,7 @@ impl StressMap {
     pub(crate) fn new<const D: usize, const N: usize>(
         simplex: &dyn Simplex<D, N>,
         points: &[[f64; D]; N],
-        law: &Elastic,
+        law: &impl LinearLaw,
     ) -> Self {
         match simplex.shape() {
             Shape::Bar => Self::Bar(BarStress::new(simplex.signed_volume(points), law)),

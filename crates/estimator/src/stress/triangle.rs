@@ -7,7 +7,7 @@ use super::reference::{
 use super::{Loading, StressResiduals};
 use crate::residual::worse;
 use nalgebra::{Matrix2, Matrix3};
-use percute_core::material::Elastic;
+use percute_core::material::LinearLaw;
 
 /// The map of one triangle.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub(crate) struct TriangleStress {
 }
 
 impl TriangleStress {
-    pub(super) fn new(points: &[[f64; 2]; 3], law: &Elastic) -> Self {
+    pub(super) fn new(points: &[[f64; 2]; 3], law: &impl LinearLaw) -> Self {
         let map = Matrix2::from_fn(|c, k| points[k + 1][c] - points[0][c]);
         // Elements are not degenerate.
         let (jacobian, inverse) = (map.determinant(), map.try_inverse().unwrap_or_else(Matrix2::zeros));
@@ -235,8 +235,8 @@ fn traction_at(stress: &[f64; COEFFICIENTS], sub: usize, node: usize, normal: [f
 
 /// The energy form α σ:σ − β (tr σ)² of σ = B σ̂ Bᵀ in the components of σ̂; with C = BᵀB it is
 /// α tr(Cσ̂Cσ̂) − β (C:σ̂)².
-fn reference_compliance(map: &Matrix2<f64>, law: &Elastic) -> [[f64; 3]; 3] {
-    let (alpha, beta) = law.compliance(2);
+fn reference_compliance(map: &Matrix2<f64>, law: &impl LinearLaw) -> [[f64; 3]; 3] {
+    let (alpha, beta) = law.compliance::<2>();
     let metric = |i: usize, j: usize| map[(0, i)] * map[(0, j)] + map[(1, i)] * map[(1, j)];
     let (c11, c22, c12) = (metric(0, 0), metric(1, 1), metric(0, 1));
     let trace = [c11, c22, 2.0 * c12];

@@ -5,6 +5,7 @@ use crate::element::{BLOCK, Element};
 use crate::residual::worse;
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, NodeId};
+use percute_core::material::Law;
 use rayon::prelude::*;
 
 /// σ_h of a level.

@@ -4,6 +4,7 @@ use crate::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, swingi
 use crate::estimating::{all_choices, estimate_with_maps, history};
 use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
+use percute_core::material::Law;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -115,7 +116,7 @@ fn fields_belong_to_their_contributions() {
             for (e, (s, c)) in fields.stress.iter().zip(&fields.compatible_stress).enumerate() {
                 let id = percute_core::ids::ElementId::new(e);
                 let difference = [0, 1].map(|a| [0, 1].map(|b| s[a][b] - c[a][b]));
-                let least = 0.5 * problem.volume(id) * problem.material(id).complementary_form(&difference);
+                let least = problem.volume(id) * problem.material(id).complementary_energy(&difference);
                 let elastic = map.elastic[e];
                 assert!(least <= elastic * (1.0 + 1e-12), "step {}, element {e}: {least} > {elastic}", map.step);
                 sharpest = sharpest.max(if elastic > 0.0 { least / elastic } else { 0.0 });

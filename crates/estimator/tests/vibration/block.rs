@@ -3,7 +3,7 @@
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::ids::ElementId;
 use percute_core::load::Support;
-use percute_core::material::Elastic;
+use percute_core::material::{Elastic, Law};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
@@ -70,7 +70,7 @@ fn square(problem: &TriangleProblem, mode: &BlockMode, t: f64, u: &[[f64; 2]], v
                 let (exact_stress, exact_velocity) = (mode.stress(point, t), mode.velocity(point, t));
                 let difference = [0, 1].map(|a| [0, 1].map(|b| stress[a][b] - exact_stress[a][b]));
                 let speed: f64 = (0..2).map(|c| (mean(&v, c) - exact_velocity[c]).powi(2)).sum();
-                let density = law.complementary_form(&difference) + law.density() * speed;
+                let density = 2.0 * law.complementary_energy(&difference) + law.density() * speed;
                 sum += 0.5 * law.extent() * geometry.volume * weight * density;
             }
         }

@@ -8,7 +8,7 @@ use super::text::{Writer, list, quoted, vector};
 use super::{AXES, estimate, parsed, problem};
 use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
-use percute_core::material::{Elastic, Hypothesis};
+use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_estimator::Options;

@@ -1,6 +1,7 @@
 //! What a case is about: materials, and planes with their gaps, so that a slip shows before the run.
 
 use crate::message::trimmed;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use serde::Serialize;
 

@@ -9,6 +9,7 @@ use super::{
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
 use percute_estimator::{Estimate, Options, Sample};

@@ -2,6 +2,7 @@
 
 use super::{PlausibilityWarning, at, plausibility_warning, short};
 use crate::contact::dot;
+use crate::material::Law;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 

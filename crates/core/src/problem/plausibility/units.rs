@@ -2,7 +2,7 @@
 
 use super::{PlausibilityWarning, at, plausibility_warning, short};
 use crate::load::BodyForce;
-use crate::material::{Elastic, Hypothesis};
+use crate::material::{Elastic, Hypothesis, Law};
 use crate::problem::Problem;
 
 /// Less dense than any solid but foams (kg/m³).

@@ -14,6 +14,7 @@
 use crate::reconstruction::SimulatedStep;
 use percute_core::dynamics::Dynamics;
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 

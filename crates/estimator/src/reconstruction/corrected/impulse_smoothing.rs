@@ -7,6 +7,7 @@
 //! follows. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;

@@ -1,6 +1,7 @@
 //! The three equations of the stress of a triangle, each broken alone.
 
 use super::*;
+use percute_core::material::Elastic;
 
 /// Far above rounding, 1e-14, and far below the 1 % that fields are changed by.
 const SHOWS: f64 = 1e-6;

@@ -1,20 +1,6 @@
 //! Isotropic linear elasticity in 1D and 2D, eq. \[9\].
 
-use thiserror::Error;
-
-/// Why a material was refused.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("`{name}` is {value} {unit}; it must be {allowed}")]
-pub struct MaterialError {
-    /// The parameter.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// Its unit.
-    pub unit: &'static str,
-    /// What is allowed.
-    pub allowed: &'static str,
-}
+use super::{Law, LinearLaw, MaterialError, Tensor, contract};
 
 /// What the dimensions that the mesh leaves out do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,30 +100,27 @@ impl Elastic {
     pub fn young(&self) -> f64 {
         self.young
     }
+}
 
-    /// Density ρ (kg/m³).
-    #[must_use]
-    pub fn density(&self) -> f64 {
+impl Law for Elastic {
+    #[inline]
+    fn density(&self) -> f64 {
         self.density
     }
 
-    /// Section (m²) of a bar, thickness (m) of a plane body: what turns a length or area of the
-    /// mesh into a volume, and a facet into an area.
-    #[must_use]
-    pub fn extent(&self) -> f64 {
+    #[inline]
+    fn extent(&self) -> f64 {
         self.extent
     }
 
-    /// Largest wave speed in the mesh's dimension, √((λ + 2G)/ρ) (m/s).
-    #[must_use]
-    pub fn wave_speed(&self) -> f64 {
+    /// √((λ + 2G)/ρ).
+    fn wave_speed(&self) -> f64 {
         ((self.lambda + 2.0 * self.shear) / self.density).sqrt()
     }
 
-    /// Stress σ = Kε (Pa) from a displacement gradient ∂u_a/∂x_b.
+    /// σ = K ε.
     #[inline]
-    #[must_use]
-    pub fn stress<const D: usize>(&self, gradient: &[[f64; D]; D]) -> [[f64; D]; D] {
+    fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D> {
         let trace = self.lambda * (0..D).map(|a| gradient[a][a]).sum::<f64>();
         let mut stress = [[0.0; D]; D];
         for a in 0..D {
@@ -149,21 +132,25 @@ impl Elastic {
         stress
     }
 
-    /// The factors (α, β) of the energy form τ : K⁻¹ : τ = α τ:τ − β (tr τ)² (1/Pa), in D dimensions.
-    #[inline]
-    #[must_use]
-    pub fn compliance(&self, dimension: usize) -> (f64, f64) {
-        let alpha = 0.5 / self.shear;
-        (alpha, alpha * self.lambda / (dimension as f64 * self.lambda + 2.0 * self.shear))
+    fn tangent<const D: usize>(&self, _: &Tensor<D>, change: &Tensor<D>) -> Tensor<D> {
+        self.stress(change)
     }
 
-    /// The energy form τ : K⁻¹ : τ of a stress (J/m³).
-    #[inline]
-    #[must_use]
-    pub fn complementary_form<const D: usize>(&self, stress: &[[f64; D]; D]) -> f64 {
-        let (alpha, beta) = self.compliance(D);
+    fn strain_energy<const D: usize>(&self, gradient: &Tensor<D>) -> f64 {
+        0.5 * contract(&self.stress(gradient), gradient)
+    }
+
+    fn complementary_energy<const D: usize>(&self, stress: &Tensor<D>) -> f64 {
+        let (alpha, beta) = self.compliance::<D>();
         let trace = (0..D).map(|a| stress[a][a]).sum::<f64>();
-        alpha * stress.iter().flatten().map(|s| s * s).sum::<f64>() - beta * trace * trace
+        0.5 * (alpha * contract(stress, stress) - beta * trace * trace)
+    }
+}
+
+impl LinearLaw for Elastic {
+    fn compliance<const D: usize>(&self) -> (f64, f64) {
+        let alpha = 0.5 / self.shear;
+        (alpha, alpha * self.lambda / (D as f64 * self.lambda + 2.0 * self.shear))
     }
 }
 
@@ -171,21 +158,58 @@ impl Elastic {
 mod tests {
     use super::*;
 
-    /// Half the complementary form is the strain energy ½ σ:ε, for every law.
-    #[test]
-    fn compliance_inverts_the_law() {
-        let laws = [
+    fn laws() -> [Elastic; 4] {
+        [
             Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap(),
             Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap(),
+            Elastic::plane_strain(3.0, 0.45, 1.0, 2.0).unwrap(),
             Elastic::plane_stress(1.0, -0.4, 1.0, 1.0).unwrap(),
-        ];
-        let gradient = [[1e-3, 4e-4], [-7e-4, 2e-3]];
-        for law in laws {
-            let stress = law.stress(&gradient);
-            let work: f64 =
-                (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| stress[a][b] * gradient[a][b]).sum();
-            let form = law.complementary_form(&stress);
-            assert!((form - work).abs() <= 1e-13 * work, "{form} against {work}");
+        ]
+    }
+
+    proptest::proptest! {
+        /// Legendre–Fenchel: φ(ε) + φ*(σ) − σ:ε is 0 for σ = Kε, and is positive by ½ Δσ:K⁻¹Δσ for σ = Kε + Δσ. The
+        /// tolerance allows for the rounding of about ten operations on terms as large as the energy.
+        #[test]
+        fn energies_are_conjugate(entries in proptest::array::uniform8(-1e-3..1e-3)) {
+            let [a, b, c, d, xx, xy, yy, _] = entries;
+            let gradient = [[a, b], [c, d]];
+            for law in laws() {
+                let stress = law.stress(&gradient);
+                let gap = |stress: &Tensor<2>| {
+                    law.strain_energy(&gradient) + law.complementary_energy(stress) - contract(stress, &gradient)
+                };
+                let change = [[xx * law.young(), xy * law.young()], [xy * law.young(), yy * law.young()]];
+                let other: Tensor<2> = std::array::from_fn(|i| std::array::from_fn(|j| stress[i][j] + change[i][j]));
+                let scale = law.strain_energy(&gradient) + law.complementary_energy(&change);
+                proptest::prop_assert!(gap(&stress).abs() <= 1e-13 * scale);
+                proptest::prop_assert!((gap(&other) - law.complementary_energy(&change)).abs() <= 1e-13 * scale);
+            }
+        }
+
+        /// Stress is the derivative of the strain energy, and the tangent that of the stress. A central difference is exact
+        /// for a quadratic and a linear function.
+        #[test]
+        fn stress_and_tangent_are_derivatives(entries in proptest::array::uniform8(-1e-3..1e-3)) {
+            let [a, b, c, d, e, f, g, h] = entries;
+            let (gradient, change) = ([[a, b], [c, d]], [[e, f], [g, h]]);
+            let moved = |s: f64| -> Tensor<2> {
+                std::array::from_fn(|i| std::array::from_fn(|j| gradient[i][j] + s * change[i][j]))
+            };
+            for law in laws() {
+                let (after, before) = (moved(0.5), moved(-0.5));
+                let work = contract(&law.stress(&gradient), &change);
+                let scale = law.strain_energy(&after) + law.strain_energy(&before);
+                let slope = law.strain_energy(&after) - law.strain_energy(&before);
+                proptest::prop_assert!((slope - work).abs() <= 1e-13 * scale);
+                let (tangent, after, before) = (law.tangent(&gradient, &change), law.stress(&after), law.stress(&before));
+                for i in 0..2 {
+                    for j in 0..2 {
+                        let difference = after[i][j] - before[i][j];
+                        proptest::prop_assert!((tangent[i][j] - difference).abs() <= 1e-14 * law.young());
+                    }
+                }
+            }
         }
     }
 
