@@ -1,11 +1,20 @@
 //! Kinds of elements by their numbers in Gmsh.
 
+use percute_core::simplex::Shape;
 use std::fmt;
 
 /// Numbers of the kinds that are read.
 pub(super) const POINT: i64 = 15;
 pub(super) const LINE: i64 = 1;
 pub(super) const TRIANGLE: i64 = 2;
+
+/// Numbers of the facets and of the elements of a mesh.
+pub(super) fn numbers(shape: Shape) -> [i64; 2] {
+    match shape {
+        Shape::Bar => [POINT, LINE],
+        Shape::Triangle => [LINE, TRIANGLE],
+    }
+}
 
 /// An unsupported kind of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::in_space;
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
-use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
+use crate::gmsh::kind::numbers;
 use percute_core::mesh::Mesh;
 
 /// An element in one of its groups.
@@ -30,7 +30,7 @@ pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<
     let facets = entries(&parts.facets, &mut next, |_| None, facet);
     out.line("$Elements");
     out.line(&(cells.len() + facets.len()).to_string());
-    let [of_facets, of_cells] = if D == 1 { [POINT, LINE] } else { [LINE, TRIANGLE] };
+    let [of_facets, of_cells] = numbers(mesh.simplex().shape());
     for (kind, entries) in [(of_facets, facets), (of_cells, cells)] {
         if out.is_binary() && !entries.is_empty() {
             [kind as usize, entries.len(), 2].into_iter().for_each(|number| out.int(number));

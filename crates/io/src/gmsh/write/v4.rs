@@ -3,7 +3,7 @@
 use super::in_space;
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
-use crate::gmsh::kind::{LINE, POINT, TRIANGLE};
+use crate::gmsh::kind::numbers;
 use percute_core::mesh::Mesh;
 
 pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
@@ -75,7 +75,7 @@ fn elements<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, p
     let facets: usize = parts.facets.iter().map(|part| part.members.len()).sum();
     let total = mesh.element_count() + facets;
     row(out, &[parts.facets.len() + parts.cells.len(), total, 1, total]);
-    let [of_facets, of_cells] = if D == 1 { [POINT, LINE] } else { [LINE, TRIANGLE] };
+    let [of_facets, of_cells] = numbers(mesh.simplex().shape());
     let mut tag = mesh.element_count();
     for (at, part) in parts.facets.iter().enumerate() {
         head(out, [D - 1, at + 1, of_facets as usize], part.members.len());
