@@ -9,10 +9,8 @@ use hdf5::types::FixedAscii;
 use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::simplex::{Element, Simplex};
 
-/// Bars and triangles as VTK numbers them.
-pub(crate) const fn vtk_type(dimension: usize) -> u8 {
-    if dimension == 1 { 3 } else { 5 }
-}
+/// Numbers and names of the elements in VTK, by dimension from 1.
+const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
 
 /// Nodal vectors with three components each, for ParaView.
 pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
@@ -39,7 +37,7 @@ pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Me
     numbers(&vtk, "Connectivity", &[cells * N], &connectivity)?;
     let offsets: Vec<i64> = (0..=cells).map(|e| (e * N) as i64).collect();
     numbers(&vtk, "Offsets", &[cells + 1], &offsets)?;
-    numbers(&vtk, "Types", &[cells], &vec![vtk_type(D); cells])?;
+    numbers(&vtk, "Types", &[cells], &vec![VTK_TYPES[D - 1].0; cells])?;
     Ok(vtk)
 }
 
@@ -112,9 +110,8 @@ fn cells<const N: usize>(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Resu
     connectivity.expect(&[count * N], &format!("{N} nodes for each element"))?;
     let types = vtk.data("Types")?;
     types.expect(&[count], "one type for each element")?;
-    let needed = i64::from(vtk_type(dimension));
-    if let Some(other) = types.integers()?.into_iter().find(|&t| t != needed) {
-        let shape = if dimension == 1 { "VTK_LINE" } else { "VTK_TRIANGLE" };
+    let (needed, shape) = VTK_TYPES[dimension - 1];
+    if let Some(other) = types.integers()?.into_iter().find(|&t| t != i64::from(needed)) {
         let detail =
             format!("an element has the type {other}; in dimension {dimension} all must be {needed} ({shape})");
         return Err(FileCause::Value { name: types.name, detail });
