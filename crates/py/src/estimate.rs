@@ -12,12 +12,12 @@ use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
-use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, Sample, UnknownName};
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, UnknownName};
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
-use percute_workflow::report::{Report, Subject};
+use percute_workflow::report::{PARTS, Report, Subject};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -258,7 +258,7 @@ impl EstimateData {
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        columns(py, each_dimension!(&self.made, m => &m.estimate.over_time))
+        view::columns(py, each_dimension!(&self.made, m => &m.estimate.over_time), &PARTS)
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -324,23 +324,6 @@ impl EstimateData {
         });
         text.map_err(|message| errors::percute_error(py, &message))
     }
-}
-
-/// Samples as arrays, by name.
-pub(crate) fn columns<'py>(py: Python<'py>, samples: &[Sample]) -> PyResult<Bound<'py, PyDict>> {
-    let quantities: view::Columns<Sample, 6> = [
-        ("time", |s| s.time),
-        ("kinetic", |s| s.parts.kinetic),
-        ("elastic", |s| s.parts.elastic),
-        ("contact", |s| s.parts.contact),
-        ("total", |s| s.parts.total()),
-        ("reference", |s| s.reference),
-    ];
-    let columns = PyDict::new(py);
-    for (name, quantity) in quantities {
-        columns.set_item(name, view::column(py, samples, quantity))?;
-    }
-    Ok(columns)
 }
 
 /// One map.

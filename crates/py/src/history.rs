@@ -14,6 +14,7 @@ use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
+use percute_workflow::report::Named;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::Range;
@@ -188,7 +189,7 @@ fn read<const D: usize, const N: usize, T: Send + 'static>(
 
 /// An array for each quantity of the balance.
 fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyDict>> {
-    let quantities: view::Columns<Balance, 8> = [
+    let numbers: [Named<Balance>; 8] = [
         ("kinetic", |b| b.kinetic),
         ("strain", |b| b.strain),
         ("work_of_loads", |b| b.work_of_loads),
@@ -198,11 +199,7 @@ fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyD
         ("energy_drift", |b| b.energy_drift),
         ("impulse_drift", |b| b.impulse_drift),
     ];
-    let columns = PyDict::new(py);
-    for (name, quantity) in quantities {
-        columns.set_item(name, view::column(py, balance, quantity))?;
-    }
-    Ok(columns)
+    view::columns(py, balance, &numbers)
 }
 
 /// Arrays of a history.

@@ -13,6 +13,7 @@ use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Recorder, TrueError, TrueErrorSample};
+use percute_workflow::report::Named;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -120,11 +121,8 @@ fn text(error: impl ToString) -> String {
 
 /// A true error as Python takes it.
 pub(crate) fn told<'py>(py: Python<'py>, error: &TrueError) -> PyResult<TrueErrorColumns<'py>> {
-    let quantities: view::Columns<TrueErrorSample, 4> =
+    let numbers: [Named<TrueErrorSample>; 4] =
         [("time", |s| s.time), ("kinetic", |s| s.kinetic), ("elastic", |s| s.elastic), ("total", |s| s.total())];
-    let columns = PyDict::new(py);
-    for (name, quantity) in quantities {
-        columns.set_item(name, view::column(py, &error.over_time, quantity))?;
-    }
+    let columns = view::columns(py, &error.over_time, &numbers)?;
     Ok((error.sup, error.mean, columns))
 }

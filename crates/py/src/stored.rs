@@ -2,12 +2,13 @@
 
 use crate::any::AnyMesh;
 use crate::mesh::MeshData;
-use crate::{bridge, contact, errors, estimate, view};
+use crate::{bridge, contact, errors, view};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Sample;
 use percute_io::estimate_file::{self, Field};
 use percute_io::{Kind, kind};
+use percute_workflow::report::PARTS;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -46,7 +47,7 @@ impl EstimateFileData {
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        estimate::columns(py, &self.over_time)
+        view::columns(py, &self.over_time, &PARTS)
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {

@@ -9,8 +9,10 @@
 use numpy::ndarray::ArrayViewD;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods};
 use percute_core::ids::NodeId;
+use percute_workflow::report::Named;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::any::Any;
 use std::sync::Arc;
 
@@ -45,8 +47,14 @@ where
     Ok(array)
 }
 
-/// Numbers of a record, by name.
-pub(crate) type Columns<R, const C: usize> = [(&'static str, fn(&R) -> f64); C];
+/// An array for each of these numbers of the records, by name.
+pub(crate) fn columns<'py, R>(py: Python<'py>, records: &[R], numbers: &[Named<R>]) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for (name, number) in numbers {
+        columns.set_item(name, column(py, records, *number))?;
+    }
+    Ok(columns)
+}
 
 /// One number of each record as a read-only array of its own.
 pub(crate) fn column<'py, R, T: Element>(

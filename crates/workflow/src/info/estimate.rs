@@ -2,6 +2,7 @@
 
 use super::{Info, writer};
 use crate::message::{bytes, short, trimmed};
+use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions};
 use percute_io::Provenance;
 use percute_io::estimate_file::EstimateFile;
@@ -49,11 +50,10 @@ pub fn of_estimate(path: &Path, file: &EstimateFile) -> Info {
 
 impl EstimateInfo {
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
-        let kind = if self.dimension == 1 { "bar elements" } else { "triangles" };
         let mut lines =
             vec![("estimate", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
-        lines.push(("body", format!("{} {kind}, {} nodes", self.elements, self.nodes)));
+        lines.push(("body", counts(self.dimension, self.elements, self.nodes)));
         let ends = self.instants.first().zip(self.instants.last());
         let ends = ends.map_or_else(String::new, |(a, b)| format!(" from {} to {} s", trimmed(*a, 5), trimmed(*b, 5)));
         let fields = if self.fields { ", with the admissible fields" } else { "" };

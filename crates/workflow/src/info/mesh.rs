@@ -1,6 +1,7 @@
 //! What a mesh file holds.
 
 use crate::message::short;
+use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions, Warning, reported};
 use percute_core::each_dimension;
 use percute_core::mesh::Mesh;
@@ -64,9 +65,8 @@ fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshI
 impl MeshInfo {
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
         let plane = self.dimension == 2;
-        let kind = if plane { "triangles" } else { "bar elements" };
-        let mut lines =
-            vec![("mesh", self.file.clone()), ("body", format!("{} {kind}, {} nodes", self.elements, self.nodes))];
+        let body = counts(self.dimension, self.elements, self.nodes);
+        let mut lines = vec![("mesh", self.file.clone()), ("body", body)];
         let corner = |corner: &[f64]| corner.iter().map(|x| short(*x, 4)).collect::<Vec<_>>().join(", ");
         let (lower, upper) = (corner(&self.lower_corner), corner(&self.upper_corner));
         lines.push(("box", format!("({lower}) to ({upper}): metres, unless the case has a `scale`")));

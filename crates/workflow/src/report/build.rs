@@ -1,6 +1,6 @@
 //! From the results of a run to its report.
 
-use super::columns::{Columns, Named};
+use super::columns::{Columns, Named, PARTS};
 use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Report, Subject, Versions,
@@ -12,7 +12,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
-use percute_estimator::{Estimate, Options, Sample};
+use percute_estimator::{Estimate, Options};
 
 /// Names of the energies over time.
 const ENERGIES: [Named<(f64, Balance)>; 7] = [
@@ -23,16 +23,6 @@ const ENERGIES: [Named<(f64, Balance)>; 7] = [
     ("work_of_supports", |(_, b)| b.work_of_supports),
     ("work_of_contact", |(_, b)| b.work_of_contact),
     ("friction", |(_, b)| b.friction),
-];
-
-/// Names of the parts of η over time.
-const PARTS: [Named<Sample>; 6] = [
-    ("time", |s| s.time),
-    ("kinetic", |s| s.parts.kinetic),
-    ("elastic", |s| s.parts.elastic),
-    ("contact", |s| s.parts.contact),
-    ("total", |s| s.parts.total()),
-    ("reference", |s| s.reference),
 ];
 
 /// How many elements the report names.

@@ -1,10 +1,21 @@
 //! Records over time as one array for each of their numbers.
 
+use percute_estimator::Sample;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 /// A number of a record, with its name.
-pub(super) type Named<R> = (&'static str, fn(&R) -> f64);
+pub type Named<R> = (&'static str, fn(&R) -> f64);
+
+/// The parts of η over time.
+pub const PARTS: [Named<Sample>; 6] = [
+    ("time", |s| s.time),
+    ("kinetic", |s| s.parts.kinetic),
+    ("elastic", |s| s.parts.elastic),
+    ("contact", |s| s.parts.contact),
+    ("total", |s| s.parts.total()),
+    ("reference", |s| s.reference),
+];
 
 /// Records, of which the named numbers are serialised, each as an array.
 #[derive(Clone, Debug)]

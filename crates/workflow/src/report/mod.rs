@@ -9,7 +9,7 @@ mod simulated;
 pub(crate) mod summary;
 mod warnings;
 
-pub use columns::Columns;
+pub use columns::{Columns, Named, PARTS};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
 pub use simulated::simulated;

@@ -35,10 +35,15 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
 
 /// Elements, nodes and size of a body.
 pub(crate) fn body(problem: &ProblemSummary) -> String {
-    let kind = if problem.dimension == 1 { "bar elements" } else { "triangles" };
     let size = problem.upper_corner.iter().zip(&problem.lower_corner).map(|(u, l)| trimmed(u - l, 4));
     let size = size.collect::<Vec<_>>().join(" x ");
-    format!("{} {kind}, {} nodes, {size} m", problem.elements, problem.nodes)
+    format!("{}, {size} m", counts(problem.dimension, problem.elements, problem.nodes))
+}
+
+/// Elements and nodes.
+pub(crate) fn counts(dimension: usize, elements: usize, nodes: usize) -> String {
+    let kind = ["bar elements", "triangles"][dimension - 1];
+    format!("{elements} {kind}, {nodes} nodes")
 }
 
 /// The longest step beside the critical one (s).
