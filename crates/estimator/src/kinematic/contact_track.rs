@@ -1,6 +1,7 @@
 //! The normal motion of a candidate node over the whole run: contact phases and the windows
 //! between them.
 
+use super::shape::solve;
 use super::window::{FlightWindow, Path, least_of_parabola};
 use crate::residual::{Residuals, worse};
 
@@ -83,7 +84,7 @@ impl ContactTrack {
         let (velocity, gap) = self.last();
         let window = FlightWindow { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
         // A prescribed node cannot be moved out of the way.
-        let path = if self.free { window.solve(tolerance) } else { window.integrate(&self.wanted) };
+        let path = if self.free { solve(&window, tolerance) } else { window.integrate(&self.wanted) };
         self.record(path, arrives);
     }
 

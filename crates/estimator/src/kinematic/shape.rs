@@ -5,7 +5,7 @@
 //! found (an exchange method) and dropped when they are no longer active, until nothing penetrates. The
 //! distance from the wanted velocities grows with every exchange, so that none comes back.
 
-use super::window::FlightWindow;
+use super::window::{Cut, FlightWindow, Path};
 use nalgebra::{DMatrix, DVector};
 
 /// Exchanges after which the search ends; a penetration that is left shows in the residuals.
@@ -14,15 +14,6 @@ const MOST_EXCHANGES: usize = 200;
 /// Cuts nearer to each other than this fraction of a half step are one. The parabola between two
 /// such cuts is deeper than at them by 1e-13 of its height, and their rows differ by enough digits.
 const SAME_CUT: f64 = 1e-6;
-
-/// A point of a window at which the gap must not be negative.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cut {
-    /// Which half step.
-    pub(super) half_step: usize,
-    /// Time since its beginning (s).
-    pub(super) offset: f64,
-}
 
 /// One linear condition on the free velocities x: row · x ≥ or = bound.
 struct Condition {
@@ -36,9 +27,20 @@ thread_local! {
     static SHAPED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
+/// The motion over a window: the velocity nearest to the wanted one that respects the onset and does not penetrate by more
+/// than `tolerance` (m).
+pub(super) fn solve(window: &FlightWindow<'_>, tolerance: f64) -> Path {
+    let velocity = window.shifted();
+    let path = window.integrate(&velocity);
+    if window.deepest(&path).1 >= -tolerance {
+        return path;
+    }
+    window.integrate(&shape(window, &velocity, 0.1 * tolerance))
+}
+
 /// The velocities nearest to the wanted ones under the onset and a non-negative gap.
 /// `start` is the solution without the gap condition.
-pub(super) fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
+fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
     #[cfg(test)]
     SHAPED.set(SHAPED.get() + 1);
     let free = window.free_instants();

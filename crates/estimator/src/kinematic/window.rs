@@ -1,6 +1,4 @@
-//! Problem P_CA on one window: the normal velocity of a node between two contacts.
-
-use super::shape::{Cut, shape};
+//! A window of the normal motion of a node between two contacts, and the gap along it.
 
 /// A window of half steps: from the start or the end of a contact phase to the beginning of the
 /// next one, or to the end of the run.
@@ -17,21 +15,19 @@ pub(super) struct FlightWindow<'a> {
     pub(super) arrives: bool,
 }
 
+/// A point of a window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut {
+    /// Which half step.
+    pub(super) half_step: usize,
+    /// Time since its beginning (s).
+    pub(super) offset: f64,
+}
+
 /// Velocity (m/s) and gap (m) at the instants after the first.
 pub(super) type Path = Vec<(f64, f64)>;
 
 impl FlightWindow<'_> {
-    /// The velocity nearest to the wanted one that respects the onset and does not penetrate
-    /// by more than `tolerance` (m).
-    pub(super) fn solve(&self, tolerance: f64) -> Path {
-        let velocity = self.shifted();
-        let path = self.integrate(&velocity);
-        if self.deepest(&path).1 >= -tolerance {
-            return path;
-        }
-        self.integrate(&shape(self, &velocity, 0.1 * tolerance))
-    }
-
     /// Number of instants whose velocity is free.
     pub(super) fn free_instants(&self) -> usize {
         self.wanted.len() - usize::from(self.arrives)
@@ -111,32 +107,4 @@ pub(super) fn least_of_parabola(before: (f64, f64), after: (f64, f64), length: f
         return (Cut { half_step: m, offset }, g0 + 0.5 * v0 * offset);
     }
     if g1 < g0 { (Cut { half_step: m, offset: length }, g1) } else { (Cut { half_step: m, offset: 0.0 }, g0) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> FlightWindow<'a> {
-        FlightWindow { start, lengths, wanted, arrives: true }
-    }
-
-    /// A step has two half steps, so that tracks never make a window without a free instant; should one
-    /// come, it is rest, and the way that is missing shows at its end.
-    #[test]
-    fn without_free_instants() {
-        assert_eq!(window((0.0, 0.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.0)]);
-        assert_eq!(window((2.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, 0.5)]);
-        // One that cannot but penetrate is left as it is.
-        assert_eq!(window((0.0, -3.0), &[1.0], &[5.0]).solve(1e-12), [(0.0, -1.5)]);
-    }
-
-    /// Between two contacts with nothing between them but one instant, only rest is left.
-    #[test]
-    fn with_one_free_instant() {
-        for wanted in [-3.0, 0.0, 4.0] {
-            let path = window((0.0, 0.0), &[1.0, 1.0], &[wanted, 0.0]).solve(1e-12);
-            assert_eq!(path, [(0.0, 0.0), (0.0, 0.0)]);
-        }
-    }
 }

@@ -1,7 +1,6 @@
 //! Windows at random, against a general solver of quadratic programs.
 
 use super::*;
-use crate::kinematic::window::Path;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use percute_core::contact::Obstacle;
@@ -103,7 +102,7 @@ fn nearest_of_all_that_do_not_penetrate() {
     for case in 0..400 {
         let drawn = Drawn::new(&mut random, 12);
         let window = drawn.window();
-        let path = window.solve(TOLERANCE);
+        let path = solve(&window, TOLERANCE);
         assert!(penetration(&window, &path) <= TOLERANCE, "case {case}: {:e}", penetration(&window, &path));
         if window.arrives {
             let (velocity, gap) = path[path.len() - 1];
@@ -129,7 +128,7 @@ fn long_windows() {
     for case in 0..40 {
         let drawn = Drawn::new(&mut random, 80);
         let window = drawn.window();
-        let path = window.solve(TOLERANCE);
+        let path = solve(&window, TOLERANCE);
         let depth = penetration(&window, &path);
         assert!(depth <= TOLERANCE, "case {case}, {} half steps: {depth:e}", drawn.lengths.len());
     }
@@ -169,5 +168,28 @@ fn chatter_meets_windows_that_penetrate() {
         assert!(SHAPED.get() > before, "case {k}: no window was solved again");
         // What the method allows.
         assert!(estimate.residuals.penetration_between_instants <= 1e-12, "case {k}");
+    }
+}
+
+fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> FlightWindow<'a> {
+    FlightWindow { start, lengths, wanted, arrives: true }
+}
+
+/// A step has two half steps, so that tracks never make a window without a free instant; should one
+/// come, it is rest, and the way that is missing shows at its end.
+#[test]
+fn without_free_instants() {
+    assert_eq!(solve(&window((0.0, 0.0), &[1.0], &[5.0]), 1e-12), [(0.0, 0.0)]);
+    assert_eq!(solve(&window((2.0, -3.0), &[1.0], &[5.0]), 1e-12), [(0.0, 0.5)]);
+    // One that cannot but penetrate is left as it is.
+    assert_eq!(solve(&window((0.0, -3.0), &[1.0], &[5.0]), 1e-12), [(0.0, -1.5)]);
+}
+
+/// Between two contacts with nothing between them but one instant, only rest is left.
+#[test]
+fn with_one_free_instant() {
+    for wanted in [-3.0, 0.0, 4.0] {
+        let path = solve(&window((0.0, 0.0), &[1.0, 1.0], &[wanted, 0.0]), 1e-12);
+        assert_eq!(path, [(0.0, 0.0), (0.0, 0.0)]);
     }
 }
