@@ -5,7 +5,6 @@ use crate::increment::ElementIncrement;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
-use crate::reconstruction::{Form, MOMENTS};
 use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node, facet_position};
 use crate::time_level::Side;
@@ -13,6 +12,12 @@ use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law};
 use percute_core::problem::Problem;
+
+/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
+pub(crate) const MOMENTS: usize = 12;
+
+/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
+pub(crate) type Form = [[f64; MOMENTS]; MOMENTS];
 
 /// The part of one element in η and d at one sample (J), contact apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

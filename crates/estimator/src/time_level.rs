@@ -4,15 +4,25 @@
 //! that over the step that begins there ([`ForcesKnown`]). Stress and tractions make it an
 //! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying them.
 
+use crate::contact_density::{Densities, OffContact};
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
-use crate::reconstruction::{Densities, OffContact, SurfaceStep};
 
 /// Which value at an instant where contact changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Before,
     After,
+}
+
+/// The state of the contact surface at t_n.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfaceStep<const D: usize> {
+    /// Reactions of the simulation (N).
+    pub(crate) reaction: Vec<[f64; D]>,
+    /// The forces of which densities are made (N).
+    pub(crate) force: Vec<[f64; D]>,
+    pub(crate) touching: Vec<bool>,
 }
 
 /// The fields that do not change from state to state.

@@ -9,9 +9,9 @@
 mod equilibrated;
 mod star_solver;
 
+use crate::contact_density::Densities;
 use crate::element::Element;
 use crate::loaded::LoadedFacets;
-use crate::reconstruction::Densities;
 use crate::time_level::TimeLevel;
 pub(crate) use equilibrated::{Equilibrated, FemStress};
 use percute_core::ids::{ElementId, FacetId, NodeId};

@@ -3,10 +3,11 @@
 
 use super::maps::Contribution;
 use super::sampling::{Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling};
+use crate::contact_density::{FacetPressures, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
 use crate::measure::Balanced;
-use crate::reconstruction::{FacetPressures, NormalMisfit, Reconstruction};
+use crate::reconstruction::Reconstruction;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
 use crate::traction::Equilibrated;

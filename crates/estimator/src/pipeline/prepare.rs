@@ -4,15 +4,16 @@ mod impulse;
 mod interval;
 mod supports;
 
+use crate::contact_density::OffContact;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, NodalMotion, NormalStep};
 use crate::loaded::LoadedFacets;
 use crate::options::Options;
-use crate::reconstruction::{self, BalancedFields, OffContact, Reconstruction, SimulatedStep, SurfaceStep};
+use crate::reconstruction::{self, BalancedFields, Reconstruction, SimulatedStep};
 use crate::residual::{Residuals, worse};
-use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, TimeLevel};
+use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, SurfaceStep, TimeLevel};
 pub(crate) use impulse::Impulse;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};

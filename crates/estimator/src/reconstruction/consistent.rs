@@ -1,6 +1,7 @@
 //! Densities on the facets that touch throughout a step, statically equivalent to the reactions.
 
-use super::{Densities, Reconstruction, StepDensities, SurfaceSteps};
+use super::{Reconstruction, StepDensities, SurfaceSteps};
+use crate::contact_density::Densities;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
@@ -86,12 +87,9 @@ impl BoundaryMass {
         reaction: &[[f64; D]],
     ) -> Densities<D> {
         let nodal = self.solve(reaction);
-        let mut densities = Densities::none(problem);
-        for ((facet, density), _) in
-            problem.surface().facets().iter().zip(&mut densities.0).zip(live).filter(|(_, l)| **l)
-        {
-            *density = facet.nodes.map(|k| problem.obstacles()[facet.obstacle].project_into_cone(&nodal[k]));
-        }
-        densities
+        Densities::new(problem, |f, facet| match live[f] {
+            true => facet.nodes.map(|k| problem.obstacles()[facet.obstacle].project_into_cone(&nodal[k])),
+            false => [[0.0; D]; D],
+        })
     }
 }

@@ -5,38 +5,25 @@
 
 mod admissibility;
 mod consistent;
-mod contact_law;
 mod corrected;
-mod densities;
 mod published;
 
+use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::options::{Acceleration, Options, ReconstructionChoice};
+use crate::time_level::SurfaceStep;
 use crate::traction::{Equilibrated, Equilibration};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
-pub(crate) use contact_law::misfit_power;
 use corrected::Corrected;
-pub(crate) use corrected::{FacetPressures, Form, MOMENTS, NormalMisfit, OffContact};
-pub(crate) use densities::{Densities, driving_forces, nodal_forces};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use published::Published;
 use std::fmt::Debug;
-
-/// The state of the contact surface at t_n.
-#[derive(Clone, Debug)]
-pub(crate) struct SurfaceStep<const D: usize> {
-    /// Reactions of the simulation (N).
-    pub(crate) reaction: Vec<[f64; D]>,
-    /// The forces of which densities are made (N).
-    pub(crate) force: Vec<[f64; D]>,
-    pub(crate) touching: Vec<bool>,
-}
 
 /// The contact surface around one step.
 #[derive(Clone, Copy, Debug)]

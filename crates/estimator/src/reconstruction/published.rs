@@ -1,6 +1,8 @@
 //! The densities of the paper, eq. \[45\]–\[50\].
 
-use super::{Densities, Reconstruction, StepDensities, SurfaceStep, SurfaceSteps};
+use super::{Reconstruction, StepDensities, SurfaceSteps};
+use crate::contact_density::Densities;
+use crate::time_level::SurfaceStep;
 use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 
@@ -54,17 +56,14 @@ impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
     fn at(&self, before: &[bool], now: &SurfaceStep<D>, after: Option<&[bool]>) -> Densities<D> {
         // i+1 ≤ n ≤ j−1: the node touches at the instants before, at and after t_n.
         let keeps = |k: usize| before[k] && now.touching[k] && after.is_none_or(|after| after[k]);
-        let mut densities = Densities::none(self.problem);
-        let facets = self.problem.surface().facets();
-        for ((facet, ends), density) in facets.iter().zip(&self.ends).zip(&mut densities.0) {
-            for (end, value) in ends.iter().zip(density) {
-                if keeps(end.node) && end.neighbours.iter().all(|&k| keeps(k)) {
-                    let force = now.force[end.node].map(|r| r / end.tributary);
-                    *value = self.problem.obstacles()[facet.obstacle].project_into_cone(&force);
-                }
+        let value = |facet: &ContactFacet<D>, end: &End| {
+            if !keeps(end.node) || !end.neighbours.iter().all(|&k| keeps(k)) {
+                return [0.0; D];
             }
-        }
-        densities
+            let force = now.force[end.node].map(|r| r / end.tributary);
+            self.problem.obstacles()[facet.obstacle].project_into_cone(&force)
+        };
+        Densities::new(self.problem, |f, facet| std::array::from_fn(|p| value(facet, &self.ends[f][p])))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The cone and the contact zone: densities that break them show.
 
 use super::*;
+use crate::contact_density::nodal_forces;
 use crate::options::ReconstructionChoice::{self, Consistent, Corrected, Published};
 use crate::residual::Residuals;
 use percute_core::contact::Obstacle;
@@ -65,7 +66,7 @@ fn forces_outside_the_cone_show() {
         for end in 0..2 {
             for push in [[0.202e6, 1e6], [0.0, -1.0]] {
                 let mut wrong = interval.clone();
-                [&mut wrong.start, &mut wrong.end][end].0[0][0] = push;
+                [&mut wrong.start, &mut wrong.end][end].values_mut()[0][0] = push;
                 let found = residuals(&wrong);
                 assert!(found.cone > 1e-6, "{found:?}");
                 assert_eq!(found.force_off_contact, 0.0);
@@ -80,7 +81,7 @@ fn forces_off_contact_show() {
     for interval in both() {
         for end in 0..2 {
             let mut wrong = interval.clone();
-            [&mut wrong.start, &mut wrong.end][end].0[3][0] = [0.0, 1.0];
+            [&mut wrong.start, &mut wrong.end][end].values_mut()[3][0] = [0.0, 1.0];
             let found = residuals(&wrong);
             assert!(found.force_off_contact > 1e-6, "{found:?}");
             assert!(found.cone < 1e-15);
@@ -103,7 +104,7 @@ fn forces_beside_a_release_show() {
 fn nan_shows() {
     let none = Densities::none(&problem());
     let mut interval = StepDensities { start: none.clone(), end: none };
-    interval.start.0[0][0] = [f64::NAN, f64::NAN];
+    interval.start.values_mut()[0][0] = [f64::NAN, f64::NAN];
     assert!(residuals(&interval).largest().is_nan());
 }
 
@@ -194,7 +195,7 @@ fn consistent_is_statically_equivalent() {
     let nodal = [[1e3, 6e3], [-1e3, 9e3], [2e3, 1.1e4], [1e3, 7e3], [0.0, 5e3]];
     let given: Vec<_> = problem.surface().facets().iter().map(|f| f.nodes.map(|k| nodal[k])).collect();
     let mut step = pressed();
-    step.force = nodal_forces(&problem, &Densities(given.clone()));
+    step.force = nodal_forces(&problem, &Densities::new(&problem, |f, _| given[f]));
     let interval = made(Consistent, &problem, &alone(&step, &step));
     for (made, given) in interval.start.iter().flatten().flatten().zip(given.iter().flatten().flatten()) {
         // Rounding of a tridiagonal solve with five unknowns of order 1e4.

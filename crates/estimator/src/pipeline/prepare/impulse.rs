@@ -1,6 +1,7 @@
 //! How much of the simulation's contact impulse the admissible force keeps.
 
-use crate::reconstruction::{StepDensities, nodal_forces};
+use crate::contact_density::nodal_forces;
+use crate::reconstruction::StepDensities;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 

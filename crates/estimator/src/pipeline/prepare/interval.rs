@@ -2,9 +2,10 @@
 
 use super::Preparation;
 use crate::acceleration::accelerate;
+use crate::contact_density::{Densities, OffContact, driving_forces, misfit_power};
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
-use crate::reconstruction::{self, Densities, OffContact, SurfaceSteps, driving_forces};
+use crate::reconstruction::{self, SurfaceSteps};
 use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, MotionKnown, Velocities};
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
@@ -96,7 +97,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             (0..D).for_each(|p| (0..D).for_each(|c| middle[p][c] = 0.5 * (start[p][c] + end[p][c])));
             let power = |motion: &NodalMotion<D>, density| {
                 let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
-                reconstruction::misfit_power(problem, facet, density, &velocity)
+                misfit_power(problem, facet, density, &velocity)
             };
             let (a, b) = (power(&now.now.motion, start), power(&next.now, end));
             let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &middle));

@@ -1,9 +1,9 @@
 //! Residuals of the sequential part rise when its fields are changed.
 
 use super::*;
+use crate::contact_density::Densities;
 use crate::options::ReconstructionChoice;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
-use crate::reconstruction::Densities;
 use crate::time_level::BeforeJump;
 use percute_core::dynamics::Evaluation;
 use percute_core::problem::Initial;
@@ -140,7 +140,7 @@ fn a_guided_node_keeps_its_tangential_motion() {
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();
         let pulled = |d: &Densities<2>| {
-            let force = crate::reconstruction::nodal_forces(&problem, d)[at];
+            let force = crate::contact_density::nodal_forces(&problem, d)[at];
             usize::from(force[0] != 0.0 && force[1] > 0.0)
         };
         let count: usize = preparation.ready.iter().map(|level| pulled(before(level)) + pulled(&level.density)).sum();

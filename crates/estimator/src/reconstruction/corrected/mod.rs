@@ -4,11 +4,11 @@
 mod auxiliary_solution;
 mod impulse_smoothing;
 mod moment_correction;
-mod normal_misfit;
 mod traction_minimisation;
 
-use super::{BalancedFields, Densities, Reconstruction, SimulatedStep, StepDensities, SurfaceSteps, driving_forces};
+use super::{BalancedFields, Reconstruction, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
+use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
@@ -17,14 +17,12 @@ use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
 use impulse_smoothing::ImpulseSmoothing;
 use moment_correction::MomentCorrection;
-pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::Step;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use traction_minimisation::TractionMinimisation;
-pub(crate) use traction_minimisation::{Form, MOMENTS};
 
 /// The reconstruction that drops no reaction.
 #[derive(Debug)]
@@ -71,13 +69,13 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
             self.problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let surface = self.problem.surface();
-        let mut reaction: Vec<[f64; D]> = surface.nodes().iter().zip(reaction).map(held).collect();
+        let nodes = self.problem.surface().nodes();
+        let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
         if let Some(correction) = &self.moment_correction {
             correction.apply(&mut reaction);
         }
-        let facet_density = |nodes: [usize; D]| nodes.map(|k| reaction[k].map(|r| r / self.tributary[k]));
-        Densities(surface.facets().iter().map(|facet| facet_density(facet.nodes)).collect())
+        let density = |k: usize| reaction[k].map(|r| r / self.tributary[k]);
+        Densities::new(self.problem, |_, facet| facet.nodes.map(density))
     }
 }
 

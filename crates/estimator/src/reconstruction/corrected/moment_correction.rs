@@ -8,7 +8,7 @@
 //! multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room; there is
 //! always enough.
 
-use crate::reconstruction::contact_law::{along, tangent};
+use crate::contact_density::{along, tangent};
 use percute_core::contact::Coulomb;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;

@@ -1,7 +1,7 @@
 use super::MomentCorrection;
+use crate::contact_density::nodal_forces;
 use crate::options::Ablation;
 use crate::reconstruction::corrected::Corrected;
-use crate::reconstruction::nodal_forces;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

@@ -12,7 +12,7 @@ mod basis;
 mod descent;
 
 use crate::element::Element;
-use crate::measure::ElementMeasure;
+use crate::measure::{ElementMeasure, Form, MOMENTS};
 use crate::options::Acceleration;
 use crate::traction::{Equilibrated, Equilibration};
 use basis::Basis;
@@ -23,12 +23,6 @@ use rayon::prelude::*;
 
 /// Steps of conjugate gradients: they bring 95 % of the possible gain (a test checks it). On the plane impacts of docs/verification.md, 20 steps instead lower the largest error by 1 to 2 %.
 const STEPS: usize = 5;
-
-/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
-pub(crate) const MOMENTS: usize = 12;
-
-/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
-pub(crate) type Form = [[f64; MOMENTS]; MOMENTS];
 
 /// Instants worked on together: each form is read once for all of them, and their numbers lie side by side.
 /// None of them depends on which others it is with.

@@ -1,11 +1,17 @@
-//! Densities on the candidate facets, and the forces that they do on nodes.
+//! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact law.
 
+mod friction_misfit;
+mod normal_misfit;
+
+pub(crate) use friction_misfit::{along, misfit_power, tangent};
+pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
+use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 use std::ops::Deref;
 
-/// Nodal values of a density on each candidate facet (Pa). Only a reconstruction makes one.
+/// Nodal values of a density on each candidate facet (Pa). Constant once a reconstruction has made them.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Densities<const D: usize>(pub(super) Vec<[[f64; D]; D]>);
+pub(crate) struct Densities<const D: usize>(Vec<[[f64; D]; D]>);
 
 impl<const D: usize> Deref for Densities<D> {
     type Target = [[[f64; D]; D]];
@@ -17,9 +23,23 @@ impl<const D: usize> Deref for Densities<D> {
 }
 
 impl<const D: usize> Densities<D> {
+    /// The values on each candidate facet, by its position.
+    pub(crate) fn new<const N: usize>(
+        problem: &Problem<D, N>,
+        value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
+    ) -> Self {
+        Self(problem.surface().facets().iter().enumerate().map(|(f, facet)| value(f, facet)).collect())
+    }
+
     /// No force anywhere.
-    pub(super) fn none<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self(vec![[[0.0; D]; D]; problem.surface().facets().len()])
+    pub(crate) fn none<const N: usize>(problem: &Problem<D, N>) -> Self {
+        Self::new(problem, |_, _| [[0.0; D]; D])
+    }
+
+    /// For tests that change them.
+    #[cfg(test)]
+    pub(crate) fn values_mut(&mut self) -> &mut [[[f64; D]; D]] {
+        &mut self.0
     }
 }
 

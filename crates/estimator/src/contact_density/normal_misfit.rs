@@ -7,9 +7,8 @@
 //! the simulation: an impulse that stops a node within a step takes its energy, even where F_DA spreads the impulse over a
 //! time in which the node rests.
 
+use super::{Densities, along};
 use crate::kinematic::ContactTrack;
-use crate::reconstruction::Densities;
-use crate::reconstruction::contact_law::along;
 use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 use percute_core::simplex::Simplex;
@@ -38,7 +37,7 @@ pub(crate) struct OffContact<const D: usize>(Vec<[Pressure<D>; 2]>);
 
 impl<const D: usize> OffContact<D> {
     /// The pressures of the densities at both ends of a step, and of those that the reactions alone give.
-    pub(super) fn new<const N: usize>(
+    pub(crate) fn new<const N: usize>(
         problem: &Problem<D, N>,
         acting: [&Densities<D>; 2],
         sudden: &[Densities<D>; 2],
@@ -88,7 +87,7 @@ impl<const D: usize> FacetPressures<D> {
     }
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step instants.
-    pub(super) fn misfit<const N: usize>(
+    pub(crate) fn misfit<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
