@@ -61,19 +61,10 @@ pub(crate) struct Velocities<const D: usize> {
 /// A level of which the fields before t_n are known, ã and the contact density among them.
 #[derive(Clone, Debug)]
 pub(crate) struct ForcesBefore<const D: usize> {
-    pub(crate) level: TimeLevel<D>,
-    pub(crate) now: Velocities<D>,
-    pub(crate) mid: Option<Velocities<D>>,
+    /// The level as it is unless the contact force jumps at t_n. No density acts before t_0.
+    pub(crate) forces: ForcesKnown<D>,
     /// All forces but those of contact at the nodes of the contact surface (N).
     pub(crate) surface_force: Vec<[f64; D]>,
-    /// ã (m/s²).
-    pub(crate) acceleration: Vec<[f64; D]>,
-    /// The contact density before t_n; `None` at t_0.
-    pub(crate) density: Option<Densities<D>>,
-    /// Densities where nodes do not touch, over the step before.
-    pub(crate) off_contact: Option<OffContact<D>>,
-    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
-    pub(crate) friction: Vec<[f64; 2]>,
 }
 
 /// A level of which ã and the contact density are known on both sides of t_n.
@@ -100,13 +91,4 @@ pub(crate) struct BeforeJump<const D: usize> {
     /// ã at the nodes of the contact surface (m/s²).
     pub(crate) acceleration: Vec<[f64; D]>,
     pub(crate) density: Densities<D>,
-}
-
-impl<const D: usize> ForcesBefore<D> {
-    /// The last level of a run: no step follows, and both its sides are one.
-    pub(crate) fn last(self) -> Option<ForcesKnown<D>> {
-        let Self { level, now, mid, acceleration, density, off_contact, friction, .. } = self;
-        let off_contact = off_contact.into_iter().collect();
-        Some(ForcesKnown { level, now, mid, acceleration, density: density?, before: None, off_contact, friction })
-    }
 }

@@ -141,7 +141,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     fn check_first_touch(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
         let Some(start) = &self.current else { return Ok(()) };
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
-            if step.touching[at] && !start.level.surface.touching[at] {
+            if step.touching[at] && !start.forces.level.surface.touching[at] {
                 let (velocity, gap) = self.tracks[at].at(0);
                 let smallest_gap = -0.25 * velocity * self.times.step(0);
                 if gap < smallest_gap {
@@ -186,9 +186,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Takes in that no more steps come.
     pub(super) fn finish(&mut self) {
         self.complete_interval();
-        if let Some(last) = self.current.take() {
+        // No step follows: the contact force does not jump at the last level.
+        if let Some(ForcesBefore { forces: last, .. }) = self.current.take() {
             self.impulse.add_last(self.problem, self.times, last.level.index, &last.level.surface.reaction);
-            self.ready.extend(last.last());
+            self.ready.push_back(last);
         }
         let tolerance = self.problem.contact_tolerance();
         self.tracks.iter_mut().for_each(|track| track.finish(tolerance));

@@ -14,12 +14,12 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let Some(next) = self.motions.pop_front() else { return };
         let Some(now) = self.current.take() else { return };
         let after = self.motions.front().map(|motion| &motion.level.surface);
-        let (surface, before) = (&now.level.surface, self.before.as_ref());
+        let (surface, before) = (&now.forces.level.surface, self.before.as_ref());
         let steps = SurfaceSteps { before, now: surface, next: &next.level.surface, after };
         let densities = self.reconstruction.densities(&steps);
         let off_contact = self.reconstruction.off_contact(&steps, &densities);
         reconstruction::check(self.problem, &steps, &densities, off_contact.is_some(), &mut self.residuals);
-        self.impulse.add(self.problem, self.times, now.level.index, &densities, &surface.reaction);
+        self.impulse.add(self.problem, self.times, now.forces.level.index, &densities, &surface.reaction);
         self.before = Some(surface.clone());
         let now = self.after(now, densities.start);
         self.current = Some(self.reach(&now, next, densities.end, off_contact));
@@ -30,31 +30,33 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     pub(super) fn first(&self, first: MotionKnown<D>) -> ForcesBefore<D> {
         let MotionKnown { level, now: motion, force, .. } = first;
         let increment = Increment::zero(force.len());
-        ForcesBefore {
+        let surface_force = self.on_surface(&force);
+        let forces = ForcesKnown {
             level,
             now: Velocities { motion, increment },
             mid: None,
-            surface_force: self.on_surface(&force),
             acceleration: accelerate(self.problem, self.dynamics.inverse_mass(), force, &[]),
-            density: None,
-            off_contact: None,
+            density: Densities::none(self.problem),
+            before: None,
+            off_contact: Vec::new(),
             friction: vec![[0.0; 2]; self.problem.surface().facets().len()],
-        }
+        };
+        ForcesBefore { forces, surface_force }
     }
 
     /// A level with the density at the beginning of the step that follows: ã after t_n \[55\].
     fn after(&self, level: ForcesBefore<D>, density: Densities<D>) -> ForcesKnown<D> {
-        let ForcesBefore { level, now, mid, surface_force, mut acceleration, density: earlier, off_contact, friction } =
-            level;
-        let before = earlier.filter(|earlier| *earlier != density);
-        let before = before.map(|density| BeforeJump { acceleration: self.on_surface(&acceleration), density });
+        let ForcesBefore { mut forces, surface_force } = level;
         let pull = driving_forces(self.problem, &density);
+        let earlier = std::mem::replace(&mut forces.density, density);
+        if forces.level.index > 0 && earlier != forces.density {
+            forces.before = Some(BeforeJump { acceleration: self.on_surface(&forces.acceleration), density: earlier });
+        }
         for ((contact, force), pull) in self.problem.surface().nodes().iter().zip(&surface_force).zip(&pull) {
             let i = contact.node.index();
-            acceleration[i] = std::array::from_fn(|c| (force[c] + pull[c]) * self.dynamics.inverse_mass()[i]);
+            forces.acceleration[i] = std::array::from_fn(|c| (force[c] + pull[c]) * self.dynamics.inverse_mass()[i]);
         }
-        let off_contact = off_contact.into_iter().collect();
-        ForcesKnown { level, now, mid, acceleration, density, before, off_contact, friction }
+        forces
     }
 
     /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã is
@@ -73,16 +75,17 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let acceleration = accelerate(self.problem, self.dynamics.inverse_mass(), force, &pull);
         let length = self.times.step(now.level.index);
         let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
-        ForcesBefore {
+        let forces = ForcesKnown {
             level,
             now: Velocities { motion, increment },
             mid: mid.map(|motion| Velocities { motion, increment: middle }),
-            surface_force,
             acceleration,
-            density: Some(density),
-            off_contact,
+            density,
+            before: None,
+            off_contact: off_contact.into_iter().collect(),
             friction,
-        }
+        };
+        ForcesBefore { forces, surface_force }
     }
 
     /// Friction part of η on each candidate facet up to the middle and the end of the step from `now` to `next`: the
