@@ -121,6 +121,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// Tractions and Γ_DA − f_d at t_n. `contact` gives the contact node at each local node.
+    #[inline(always)]
     pub(crate) fn balanced(
         &self,
         equilibration: &Equilibration<'_, D, N>,

@@ -253,7 +253,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Volume of an element with section or thickness (m³).
     #[must_use]
     pub fn volume(&self, element: ElementId) -> f64 {
-        self.mesh.cell_geometry(element).volume * self.material(element).extent()
+        self.mesh.simplex().signed_volume(&self.mesh.cell_points(element)) * self.material(element).extent()
     }
 
     /// Area of a boundary facet with section or thickness (m²).

@@ -101,14 +101,14 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     }
 
     /// The fields that balance at a level; `contact` gives the contact node at each local node.
-    #[inline]
+    #[inline(always)]
     pub(super) fn balanced(&self, level: &Equilibrated<D>, contact: &[Option<usize>; N], side: Side) -> Balanced<D, N> {
         self.measure.balanced(self.shared.equilibration, level, contact, side)
     }
 
     /// Checks their resultants, and their stress at one level of so many, each element in its turn: the map that makes the
     /// stress is linear and the same at all levels.
-    #[inline]
+    #[inline(always)]
     pub(super) fn check(
         &self,
         balanced: &Balanced<D, N>,
@@ -123,7 +123,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     }
 
     /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are wanted.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sample(
         &self,
         interval: &ElementInterval<'_, D, N>,
