@@ -73,9 +73,9 @@ def _error(done: Study) -> Figure:
         over_time.plot(time, np.sqrt(over.total), color=colour, label=f"{name}, error √η")
         over_time.plot(time, np.sqrt(over.elastic), color=colour, linestyle=":", label=f"{name}, elastic part")
     _label(over_time, "time since first touch (µs)", "error (J$^{1/2}$)")
-    over_time.set(yscale="log", ylim=(0.03, 100.0))
+    over_time.set(yscale="log", ylim=(0.02, 100.0))
     over_time.set_xlim(left=0.0)
-    over_time.legend(loc="lower right", ncols=2, fontsize="small")
+    over_time.legend(loc="lower right", ncols=2, fontsize="x-small", handlelength=1.4, columnspacing=1.0)
     done.estimates["corrected"].plot_map(axes=near)
     near.set(xlim=(-1.5, 1.5), ylim=(-10.1, -8.6), title="corrected, near the contact")
     return figure
