@@ -1,5 +1,4 @@
-//! The impact of an elastic body on rigid obstacles with Coulomb friction, and its explicit
-//! finite-element solution.
+//! The impact of an elastic body on rigid obstacles with Coulomb friction, and its explicit finite-element solution.
 //!
 //! A [`problem::Problem`] is stated with a builder, which checks it; [`dynamics::simulate`] runs
 //! it over a [`time::TimeGrid`] and hands each [`history::Step`] to a sink. No files, no
@@ -15,6 +14,7 @@ pub mod ids;
 pub mod load;
 pub mod material;
 pub mod mesh;
+mod message;
 pub mod observer;
 pub mod problem;
 mod ratio;

@@ -3,7 +3,7 @@
 use super::geometry::diameter;
 use super::{ElementGroups, Facet, FacetGroups};
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::problem::{facet, short};
+use crate::message::{facet, numbers, short};
 use crate::simplex::Simplex;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
@@ -47,7 +47,7 @@ pub enum MeshError {
     )]
     Degenerate { element: usize, nodes: Vec<usize>, volume: f64, diameter: f64 },
     /// A facet shared by more than two elements.
-    #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), list(.elements))]
+    #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), numbers(.elements))]
     NonManifoldFacet { nodes: Vec<usize>, elements: Vec<usize> },
     /// Two elements on the same side of a facet.
     #[error("elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave one out", .elements[0], .elements[1])]
@@ -79,10 +79,6 @@ pub enum MeshError {
     /// A group refers to an element that does not exist.
     #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}, counted from 0")]
     NoSuchElement { group: String, element: usize, last: usize },
-}
-
-fn list(numbers: &[usize]) -> String {
-    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 pub(super) fn points<const D: usize>(points: &[[f64; D]]) -> Result<(), MeshError> {

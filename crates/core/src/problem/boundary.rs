@@ -1,10 +1,10 @@
 //! Supports and loads, from named groups to facets, nodes and elements.
 
-use super::error::axis;
 use super::{BodyLoad, Cause, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent, Problem, Statement};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::mesh::Mesh;
+use crate::message::axis;
 use std::collections::BTreeMap;
 
 /// The members of a group of facets.
@@ -134,7 +134,7 @@ pub(super) fn tractions<const D: usize, const N: usize>(
     Ok(loads)
 }
 
-/// Body forces with the volume that feels them at each node, and the list of each element.
+/// Body forces with the volume at each node on which they act, and the list of each element.
 #[allow(clippy::type_complexity)]
 pub(super) fn body_forces<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,

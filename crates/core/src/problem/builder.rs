@@ -1,13 +1,13 @@
 //! From what the user states to a checked problem.
 
 use super::boundary::{self, Supports};
-use super::error::axis;
 use super::{Cause, InputError, Problem, candidates};
 use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId};
 use crate::load::{BodyForce, Support, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
+use crate::message::axis;
 
 /// An initial field.
 #[derive(Clone, Debug)]

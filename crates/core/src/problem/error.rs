@@ -1,9 +1,9 @@
 //! What can be wrong with a problem, where it is, and what to do.
 
-use super::plausibility::short;
 use crate::contact::ObstacleError;
 use crate::load::TableError;
 use crate::material::MaterialError;
+use crate::message::{facet, named, quoted, short, vector};
 use crate::simplex::Shape;
 use std::fmt;
 use thiserror::Error;
@@ -56,7 +56,7 @@ pub enum Cause {
     /// A table out of order.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A name that the mesh does not know.
+    /// A name of no group of the mesh.
     #[error("there is no group of {of} \"{name}\"; the mesh has {}", list(*.of, .known))]
     UnknownGroup { name: String, of: GroupOf, known: Vec<String> },
     /// A group of elements where one of the boundary is needed, or the other way round.
@@ -245,34 +245,6 @@ impl fmt::Display for HeldBy {
     }
 }
 
-/// Name of a component.
-pub(crate) fn axis(component: usize) -> char {
-    ['x', 'y', 'z'][component]
-}
-
-/// A facet by its nodes.
-pub(crate) fn facet(nodes: &[usize]) -> String {
-    match nodes {
-        [node] => format!("end at node {node}"),
-        [first, second] => format!("edge of nodes {first} and {second}"),
-        _ => format!("facet of nodes {nodes:?}"),
-    }
-}
-
-/// A vector as users write it: a number for a bar. No sign before a zero.
-fn vector(components: &[f64]) -> String {
-    let shown = components.iter().map(|x| (x + 0.0).to_string()).collect::<Vec<_>>().join(", ");
-    if components.len() == 1 { shown } else { format!("[{shown}]") }
-}
-
-fn quoted(names: &[String]) -> String {
-    names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(", ")
-}
-
 fn list(of: GroupOf, names: &[String]) -> String {
     if names.is_empty() { format!("no groups of {of}") } else { quoted(names) }
-}
-
-fn named(names: &[String]) -> String {
-    if names.is_empty() { "none".to_string() } else { quoted(names) }
 }

@@ -7,9 +7,7 @@ mod error;
 mod plausibility;
 
 pub use builder::{Builder, Initial, Statement};
-pub(crate) use error::facet;
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub(crate) use plausibility::short;
 pub use plausibility::{PlausibilityWarning, plausibility_warnings};
 
 use crate::contact::{ContactSurface, Obstacle};
@@ -45,7 +43,7 @@ pub struct FacetLoad<const D: usize> {
 pub struct BodyLoad<const D: usize> {
     /// Force per volume over time (N/m³).
     pub value: Table<D>,
-    /// Per node, the volume that feels it (m³).
+    /// Per node, the volume on which it acts (m³).
     pub nodal_volume: Vec<(NodeId, f64)>,
 }
 
@@ -277,8 +275,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         1e-12 * self.initial_velocity.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()))
     }
 
-    /// Moments ∫ F φ_i (N) on a facet of area `area` of a density that is linear with these nodal
-    /// values (Pa).
+    /// Moments ∫ F φ_i (N) on a facet of area `area` of a density that is linear with these nodal values (Pa).
     #[inline]
     #[must_use]
     pub fn facet_moments(area: f64, density: &[[f64; D]; D]) -> [[f64; D]; D] {

@@ -27,14 +27,14 @@ impl fmt::Display for PlausibilityWarning {
     }
 }
 
-/// Everything that is doubtful about a run, known before any step of it.
+/// All plausibility warnings of a run, before its first step.
 #[must_use]
 pub fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
 ) -> Vec<PlausibilityWarning> {
     let mut all = units::plausibility_warnings(problem);
-    // What follows from the speed of waves says nothing where that is in plausibility warning.
+    // Checks that use the wave speed are left out if the units of the mesh or of a material are already in question.
     let mixed = all.iter().any(|plausibility_warning| {
         plausibility_warning.name == "units" && ["mesh", "material"].contains(&plausibility_warning.place.table)
     });
@@ -61,25 +61,4 @@ fn plausibility_warning(
 /// The place of a key in a table of which there may be several.
 fn at(table: &'static str, index: Option<usize>, key: &'static str) -> Place {
     Place { table, index, key }
-}
-
-/// A number in at most four digits.
-pub(crate) fn short(x: f64) -> String {
-    let rounded = format!("{x:.3e}").parse().unwrap_or(x);
-    if rounded == 0.0 || (1e-3..1e5).contains(&f64::abs(rounded)) {
-        rounded.to_string()
-    } else {
-        format!("{rounded:e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::short;
-
-    #[test]
-    fn numbers_are_short() {
-        let shown = [0.0, 1.0 / 3.0, 5091.75, 7.85e-9, 69_999_999_999.0, -400.0, f64::INFINITY].map(short);
-        assert_eq!(shown, ["0", "0.3333", "5092", "7.85e-9", "7e10", "-400", "inf"]);
-    }
 }

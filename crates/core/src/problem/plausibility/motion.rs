@@ -1,8 +1,9 @@
 //! A body that cannot touch before the end, does not move at all, or moves faster than waves.
 
-use super::{PlausibilityWarning, at, plausibility_warning, short};
+use super::{PlausibilityWarning, at, plausibility_warning};
 use crate::contact::dot;
 use crate::material::Law;
+use crate::message::short;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -117,8 +118,8 @@ struct Approach {
     time: f64,
 }
 
-/// A body in flight that reaches no plane before the end, or whose plane is very far. Once it touches one, nobody knows
-/// where it goes.
+/// A body in flight that reaches no plane before the end, or whose plane is very far. Its motion
+/// after a first touch is not predicted.
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
     let flight = flight(problem)?;
     let approach = |obstacle: usize| {

@@ -1,15 +1,16 @@
 //! Runs of one step or of millions, and tables that do not change while they last.
 
-use super::{PlausibilityWarning, at, plausibility_warning, short};
+use super::{PlausibilityWarning, at, plausibility_warning};
 use crate::load::Table;
+use crate::message::short;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
 /// More steps than this are more likely a slip in the end or in a unit.
 const MANY_STEPS: usize = 1_000_000;
-/// A table that does less of all its change than this before the end is more likely in other units.
+/// A table [`LONGER`] times the run is probably in other units if less than this part of its change precedes the end.
 const UNUSED: f64 = 0.01;
-/// If it is so many times as long as the run: one that is only cut short is meant.
+/// A table that is shorter than so many times the run may extend beyond the end on purpose.
 const LONGER: f64 = 100.0;
 
 pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
@@ -77,13 +78,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn runs_of_one_step_and_of_more_than_a_million_are_doubted() {
+    fn runs_of_one_step_and_of_more_than_a_million_have_warnings() {
         let name = |count| steps(count, 1.0).map(|plausibility_warning| plausibility_warning.name);
         assert_eq!([1, 2, MANY_STEPS, MANY_STEPS + 1].map(name), [Some("single_step"), None, None, Some("many_steps")]);
     }
 
     #[test]
-    fn tables_that_change_in_time_are_not_doubted() {
+    fn tables_that_change_in_time_have_no_warning() {
         let ramp = Table::new(vec![0.0, 10.0], vec![[0.0], [3.0]]).unwrap();
         assert!(unused(&ramp, 0.05).is_some_and(|message| message.contains("10 s")));
         assert_eq!(unused(&ramp, 0.11), None);

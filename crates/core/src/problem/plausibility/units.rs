@@ -1,8 +1,9 @@
 //! Numbers that look like those of other units.
 
-use super::{PlausibilityWarning, at, plausibility_warning, short};
+use super::{PlausibilityWarning, at, plausibility_warning};
 use crate::load::BodyForce;
 use crate::material::{Elastic, Hypothesis, Law};
+use crate::message::short;
 use crate::problem::Problem;
 
 /// Less dense than any solid but foams (kg/m³).
@@ -34,7 +35,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
 ) -> Vec<PlausibilityWarning> {
     let size = problem.mesh().size();
-    // The reader of mesh files has said so, with the key that mends it.
+    // An import warning of the mesh file names the key that corrects it.
     let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");
     let mut all: Vec<PlausibilityWarning> = size_of_body(size).filter(|_| !reported).into_iter().collect();
     for (index, material) in problem.materials().iter().enumerate() {
