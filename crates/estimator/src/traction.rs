@@ -64,7 +64,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
-        let crossing = problem.mesh().simplex().walk();
+        let crossing = problem.mesh().simplex().facets_around();
         Self { problem, elements, slots, crossing, loaded, contact_links }
     }
 

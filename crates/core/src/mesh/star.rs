@@ -1,4 +1,4 @@
-//! The elements around each node, walked from facet to facet.
+//! The elements around each node in counterclockwise order, with the facets between them.
 
 use super::{Facet, MeshError};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -6,10 +6,9 @@ use crate::simplex::Simplex;
 
 /// The stars of all nodes, one after the other.
 ///
-/// A star of k elements is a chain: facet, element, facet, …, element, facet, walked
-/// counterclockwise (in 1D from left to right). An interior node of a 2D mesh has a closed chain
-/// whose first and last facet are the same; in 1D, where an element has a single facet at a node,
-/// the outer ends of the chain are `None`.
+/// A star of k elements is a chain: facet, element, facet, …, element, facet, in counterclockwise order (in 1D from
+/// left to right). An interior node of a 2D mesh has a closed chain whose first and last facet are the same; in 1D,
+/// where an element has a single facet at a node, the outer ends of the chain are `None`.
 #[derive(Clone, Debug, Default)]
 pub struct Stars {
     offsets: Vec<u32>,
@@ -20,7 +19,7 @@ pub struct Stars {
 /// The star of one node.
 #[derive(Clone, Copy, Debug)]
 pub struct Star<'a> {
-    /// Elements in the order of the walk.
+    /// Elements in the order of the chain.
     pub elements: &'a [ElementId],
     /// Facet before, between and after them: one more than elements.
     pub links: &'a [Option<FacetId>],
@@ -59,7 +58,7 @@ impl Stars {
         self.links.len()
     }
 
-    /// Walks every star; a star that falls into several chains is a non-manifold node.
+    /// Builds all stars; a star that falls into several chains is a non-manifold node.
     pub(super) fn new<const D: usize, const N: usize>(
         simplex: &dyn Simplex<D, N>,
         node_count: usize,
@@ -67,11 +66,11 @@ impl Stars {
         facets: &[Facet<D>],
         cell_facets: &[[FacetId; N]],
     ) -> Result<Self, MeshError> {
-        let (walk, incident) = (simplex.walk(), incident_elements(node_count, cells));
+        let (facets_around, incident) = (simplex.facets_around(), incident_elements(node_count, cells));
         let mut stars = Self { offsets: vec![0], ..Self::default() };
         let sides = |element: ElementId, node: NodeId| {
             let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
-            walk[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
+            facets_around[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
         };
         let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets[f.index()].neighbour.is_none());
         for (i, around) in incident.iter().enumerate() {

@@ -20,7 +20,7 @@ impl Simplex<1, 2> for Bar {
     }
 
     /// From left to right.
-    fn walk(&self) -> [[Option<usize>; 2]; 2] {
+    fn facets_around(&self) -> [[Option<usize>; 2]; 2] {
         [[Some(1), None], [None, Some(0)]]
     }
 

@@ -1,8 +1,8 @@
 //! The elements: all that depends on the dimension.
 //!
-//! [`Simplex`] is written once for each element: [`Bar`] and [`Triangle`]. A mesh knows its simplex, so that other code is
-//! generic over the dimension `D` and the nodes of an element `N = D + 1`. Code that exists for some elements only
-//! matches on [`Shape`]; a new shape does not compile before each of these matches has its case.
+//! [`Simplex`] is written once for each element: [`Bar`] and [`Triangle`]. A mesh stores its simplex, so that other
+//! code is generic over the dimension `D` and the nodes of an element `N = D + 1`. Code that exists for some elements
+//! only matches on [`Shape`]; a new shape does not compile before each of these matches has its case.
 
 mod bar;
 mod by_dimension;
@@ -53,9 +53,9 @@ pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send
     /// Directions, of any length, one of which separates two elements if no line from corner to corner does.
     fn separating_directions(&self, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> Vec<[f64; D]>;
 
-    /// For each node, the facets by which a counterclockwise walk around it enters and leaves an element; a bar has one
-    /// of them.
-    fn walk(&self) -> [[Option<usize>; 2]; N];
+    /// For each node, the first and the last facet of the element at it, in counterclockwise order around the node; a
+    /// bar has one of them.
+    fn facets_around(&self) -> [[Option<usize>; 2]; N];
 
     /// The elements that an element is cut into by the middles of its edges.
     fn children(&self) -> &'static [Child<N>];
@@ -91,8 +91,7 @@ pub struct CellGeometry<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> CellGeometry<D, N> {
-    /// Outward unit normal and measure of the facet opposite to local node `k`: −∇φ_k/|∇φ_k|
-    /// and D·|E|·|∇φ_k|.
+    /// Outward unit normal and measure of the facet opposite to local node `k`: −∇φ_k/|∇φ_k| and D·|E|·|∇φ_k|.
     #[must_use]
     pub fn facet_normal(&self, k: usize) -> ([f64; D], f64) {
         let norm = self.gradients[k].iter().map(|g| g * g).sum::<f64>().sqrt();

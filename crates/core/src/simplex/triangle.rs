@@ -24,7 +24,7 @@ impl Simplex<2, 3> for Triangle {
         [a, b].into_iter().flat_map(|t| [[&t[0], &t[1]], [&t[1], &t[2]], [&t[2], &t[0]]]).map(normal).collect()
     }
 
-    fn walk(&self) -> [[Option<usize>; 2]; 3] {
+    fn facets_around(&self) -> [[Option<usize>; 2]; 3] {
         [[Some(2), Some(1)], [Some(0), Some(2)], [Some(1), Some(0)]]
     }
 
