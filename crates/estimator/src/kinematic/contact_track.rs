@@ -12,9 +12,9 @@ pub(crate) struct ContactTrack {
     /// Body size (m), which the residuals of distances refer to.
     size: f64,
     known: Vec<(f64, f64)>,
-    /// Half steps and wanted velocities since the last known instant.
+    /// Half steps and target velocities since the last known instant.
     lengths: Vec<f64>,
-    wanted: Vec<f64>,
+    target: Vec<f64>,
     touching: bool,
     /// The first instant whose motion is not that of the simulation.
     first_altered: usize,
@@ -44,7 +44,7 @@ impl ContactTrack {
             size,
             known: vec![(start.1, start.0)],
             lengths: Vec::new(),
-            wanted: Vec::new(),
+            target: Vec::new(),
             touching,
             first_altered: usize::MAX,
             free,
@@ -64,7 +64,7 @@ impl ContactTrack {
             self.known.extend([(0.0, gap); 2]);
         } else {
             self.lengths.extend([step.half; 2]);
-            self.wanted.extend(step.velocity);
+            self.target.extend(step.velocity);
             if arrives || !self.free {
                 self.close(arrives, tolerance);
             }
@@ -82,9 +82,9 @@ impl ContactTrack {
     /// Solves the window since the last known instant.
     fn close(&mut self, arrives: bool, tolerance: f64) {
         let (velocity, gap) = self.last();
-        let window = FlightWindow { start: (gap, velocity), lengths: &self.lengths, wanted: &self.wanted, arrives };
+        let window = FlightWindow { start: (gap, velocity), lengths: &self.lengths, target: &self.target, arrives };
         // A prescribed node cannot be moved out of the way.
-        let path = if self.free { solve(&window, tolerance) } else { window.integrate(&self.wanted) };
+        let path = if self.free { solve(&window, tolerance) } else { window.integrate(&self.target) };
         self.record(path, arrives);
     }
 
@@ -95,12 +95,12 @@ impl ContactTrack {
             // Also the way that the simulation would go: where nothing but rest is admissible, the
             // motion itself is its rounding.
             let way = |h: &f64, v: f64| h * v.abs();
-            let wanted = self.lengths.iter().zip(&self.wanted).map(|(h, v)| way(h, *v)).sum::<f64>();
-            let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(wanted);
+            let least = self.lengths.iter().zip(&self.target).map(|(h, v)| way(h, *v)).sum::<f64>();
+            let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(least);
             let (_, end) = path[path.len() - 1];
             self.onset = worse(self.onset, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
-        if arrives || !self.free || path.iter().zip(&self.wanted).any(|((v, _), wanted)| v != wanted) {
+        if arrives || !self.free || path.iter().zip(&self.target).any(|((v, _), target)| v != target) {
             self.first_altered = self.first_altered.min(self.known.len());
         }
         let mut before = (velocity, gap);
@@ -112,7 +112,7 @@ impl ContactTrack {
         }
         self.known.extend(path);
         self.lengths.clear();
-        self.wanted.clear();
+        self.target.clear();
     }
 
     fn last(&self) -> (f64, f64) {

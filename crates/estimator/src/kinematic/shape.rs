@@ -3,7 +3,7 @@
 //! The gap is linear in the velocities at the half-step instants, at every point of the window, so each point gives a
 //! linear constraint. Only a few matter: the points where the gap is least are added as they are
 //! found (an exchange method) and dropped when they are no longer active, until nothing penetrates. The
-//! distance from the wanted velocities grows with every exchange, so that none comes back.
+//! distance from the target velocities grows with every exchange, so that none comes back.
 
 use super::window::{Cut, FlightWindow, Path};
 use nalgebra::{DMatrix, DVector};
@@ -27,7 +27,7 @@ thread_local! {
     static SHAPED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// The motion over a window: the velocity nearest to the wanted one that respects the onset and does not penetrate by more
+/// The motion over a window: the velocity nearest to the target that respects the onset and does not penetrate by more
 /// than `tolerance` (m).
 pub(super) fn solve(window: &FlightWindow<'_>, tolerance: f64) -> Path {
     let velocity = window.shifted();
@@ -38,7 +38,7 @@ pub(super) fn solve(window: &FlightWindow<'_>, tolerance: f64) -> Path {
     window.integrate(&shape(window, &velocity, 0.1 * tolerance))
 }
 
-/// The velocities nearest to the wanted ones under the onset and a non-negative gap.
+/// The velocities nearest to the targets under the onset and a non-negative gap.
 /// `start` is the solution without the gap condition.
 fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
     #[cfg(test)]
@@ -121,7 +121,7 @@ fn condition(window: &FlightWindow<'_>, cut: &Cut) -> Condition {
     Condition { row, bound: -given }
 }
 
-/// Minimises ½Σω(x − wanted)² under one equality and several inequalities; returns which of these are active too.
+/// Minimises ½Σω(x − target)² under one equality and several inequalities; returns which of these are active too.
 ///
 /// Works on the multipliers, as Lawson and Hanson's non-negative least squares does: x follows from
 /// them by the diagonal weights, and the system is as small as the number of conditions.
@@ -134,11 +134,11 @@ fn nearest(
     let equal = usize::from(equality.is_some());
     let conditions: Vec<Condition> = equality.into_iter().chain(inequalities).collect();
     let count = conditions.len();
-    // In y = √ω (x − wanted) the norm is that of Euclid. Each condition is scaled to a unit row:
+    // In y = √ω (x − target) the norm is that of Euclid. Each condition is scaled to a unit row:
     // they differ by orders of magnitude in time.
     let root: Vec<f64> = (0..free).map(|k| window.weight(k).sqrt()).collect();
     let mut columns = DMatrix::from_fn(free, count, |k, i| conditions[i].row[k] / root[k]);
-    let lacking = |c: &Condition| c.bound - c.row.iter().zip(window.wanted).map(|(a, v)| a * v).sum::<f64>();
+    let lacking = |c: &Condition| c.bound - c.row.iter().zip(window.target).map(|(a, v)| a * v).sum::<f64>();
     let mut lack = DVector::from_iterator(count, conditions.iter().map(lacking));
     for i in 0..count {
         let norm = columns.column(i).norm().max(f64::MIN_POSITIVE);
@@ -147,7 +147,7 @@ fn nearest(
     }
     let multipliers = non_negative(&columns, &lack, equal);
     let y = &columns * &multipliers;
-    let found = (0..free).map(|k| window.wanted[k] + y[k] / root[k]).collect();
+    let found = (0..free).map(|k| window.target[k] + y[k] / root[k]).collect();
     (found, multipliers.iter().skip(equal).map(|m| *m > 0.0).collect())
 }
 

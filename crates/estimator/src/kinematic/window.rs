@@ -10,7 +10,7 @@ pub(super) struct FlightWindow<'a> {
     pub(super) lengths: &'a [f64],
     /// Normal velocity of the simulation at the instants after the first (m/s). If the window ends
     /// in contact, the last instant is not free and its value is ignored.
-    pub(super) wanted: &'a [f64],
+    pub(super) target: &'a [f64],
     /// Whether the node arrives on the plane at rest at the last instant (the onset).
     pub(super) arrives: bool,
 }
@@ -30,7 +30,7 @@ pub(super) type Path = Vec<(f64, f64)>;
 impl FlightWindow<'_> {
     /// Number of instants whose velocity is free.
     pub(super) fn free_instants(&self) -> usize {
-        self.wanted.len() - usize::from(self.arrives)
+        self.target.len() - usize::from(self.arrives)
     }
 
     /// Length that instant `k` (from 0, after the first) stands for in the trapezoidal integral.
@@ -49,7 +49,7 @@ impl FlightWindow<'_> {
     /// The solution of the equality problem: weights and trapezoidal lengths of free instants agree,
     /// so that the onset shifts all of them by the same amount.
     pub(super) fn shifted(&self) -> Vec<f64> {
-        let mut velocity = self.wanted.to_vec();
+        let mut velocity = self.target.to_vec();
         if !self.arrives {
             return velocity;
         }

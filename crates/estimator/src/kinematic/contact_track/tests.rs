@@ -21,7 +21,7 @@ fn residuals(track: &ContactTrack) -> Residuals {
     residuals
 }
 
-/// From gap 4 at −1 to the plane at step 2. The wanted velocities −1 at all instants cover 3.5 m, half a
+/// From gap 4 at −1 to the plane at step 2. The target velocities −1 at all instants cover 3.5 m, half a
 /// half step less than 4 because the last is 0: the three free ones become −1 − ½/3.
 fn arriving() -> ContactTrack {
     let mut track = track(4.0, -1.0);

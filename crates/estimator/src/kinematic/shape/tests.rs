@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-12;
 struct Drawn {
     start: (f64, f64),
     lengths: Vec<f64>,
-    wanted: Vec<f64>,
+    target: Vec<f64>,
     arrives: bool,
 }
 
@@ -33,23 +33,23 @@ impl Drawn {
         let half: Vec<f64> = (0..steps).map(|_| random.between(0.3, 0.7)).collect();
         let lengths: Vec<f64> = half.iter().flat_map(|h| [*h; 2]).collect();
         let drift = random.between(-0.5, 0.3);
-        let wanted = lengths.iter().map(|_| drift + random.between(-1.0, 1.0)).collect();
+        let target = lengths.iter().map(|_| drift + random.between(-1.0, 1.0)).collect();
         let start = match random.bits() % 2 {
             0 => (0.0, 0.0),
             // Even a velocity of −1 needs no more than 0.35 to turn round.
             _ => (random.between(0.35, 1.0), random.between(-1.0, 0.5)),
         };
-        Self { start, lengths, wanted, arrives: random.bits().is_multiple_of(2) }
+        Self { start, lengths, target, arrives: random.bits().is_multiple_of(2) }
     }
 
     fn window(&self) -> FlightWindow<'_> {
-        FlightWindow { start: self.start, lengths: &self.lengths, wanted: &self.wanted, arrives: self.arrives }
+        FlightWindow { start: self.start, lengths: &self.lengths, target: &self.target, arrives: self.arrives }
     }
 }
 
-/// Half the weighted square of the distance from the wanted velocities.
+/// Half the weighted square of the distance from the target velocities.
 fn objective(window: &FlightWindow<'_>, velocity: &[f64]) -> f64 {
-    let square = |k: usize| window.weight(k) * (velocity[k] - window.wanted[k]).powi(2);
+    let square = |k: usize| window.weight(k) * (velocity[k] - window.target[k]).powi(2);
     0.5 * (0..window.free_instants()).map(square).sum::<f64>()
 }
 
@@ -70,7 +70,7 @@ fn on_a_grid(window: &FlightWindow<'_>, points: usize) -> f64 {
     }
     let weights: Vec<f64> = (0..free).map(|k| window.weight(k)).collect();
     let quadratic = CscMatrix::new(free, free, (0..=free).collect(), (0..free).collect(), weights.clone());
-    let linear: Vec<f64> = (0..free).map(|k| -weights[k] * window.wanted[k]).collect();
+    let linear: Vec<f64> = (0..free).map(|k| -weights[k] * window.target[k]).collect();
     let rows: Vec<Vec<f64>> = conditions.iter().map(|c| c.row.iter().map(|a| -a).collect()).collect();
     let bounds: Vec<f64> = conditions.iter().map(|c| -c.bound).collect();
     let equal = usize::from(window.arrives);
@@ -93,7 +93,7 @@ fn velocities(path: &Path) -> Vec<f64> {
 }
 
 /// No half step penetrates between its ends, arrivals arrive, and no admissible motion on a grid of 16
-/// points is nearer to the wanted one, nor farther by more than such a grid misses: the gap of a
+/// points is nearer to the target, nor farther by more than such a grid misses: the gap of a
 /// parabola between two points is at least −(step/16)²/8 times its curvature.
 #[test]
 fn nearest_of_all_that_do_not_penetrate() {
@@ -171,8 +171,8 @@ fn chatter_meets_windows_that_penetrate() {
     }
 }
 
-fn window<'a>(start: (f64, f64), lengths: &'a [f64], wanted: &'a [f64]) -> FlightWindow<'a> {
-    FlightWindow { start, lengths, wanted, arrives: true }
+fn window<'a>(start: (f64, f64), lengths: &'a [f64], target: &'a [f64]) -> FlightWindow<'a> {
+    FlightWindow { start, lengths, target, arrives: true }
 }
 
 /// A step has two half steps, so that tracks never make a window without a free instant; should one
@@ -188,8 +188,8 @@ fn without_free_instants() {
 /// Between two contacts with nothing between them but one instant, only rest is left.
 #[test]
 fn with_one_free_instant() {
-    for wanted in [-3.0, 0.0, 4.0] {
-        let path = solve(&window((0.0, 0.0), &[1.0, 1.0], &[wanted, 0.0]), 1e-12);
+    for target in [-3.0, 0.0, 4.0] {
+        let path = solve(&window((0.0, 0.0), &[1.0, 1.0], &[target, 0.0]), 1e-12);
         assert_eq!(path, [(0.0, 0.0), (0.0, 0.0)]);
     }
 }
