@@ -1,5 +1,6 @@
 """The evidence, computed again at the small resolution, and the page of the repository."""
 
+import ast
 import csv
 import json
 import math
@@ -16,9 +17,12 @@ from typing import Any
 
 import percute as pc
 import pytest
+from percute.verification import studies
 from percute.verification.page import Column, Table, percent, short
 from percute.verification.studies import STUDIES
 
+FORMATS = ("{x:g}",)
+"""Texts with braces that are meant so: formats of matplotlib."""
 PAGE = Path(__file__).parents[2] / "docs/verification.md"
 Rows = list[list[str]]
 
@@ -160,6 +164,18 @@ def test_the_committed_page_has_the_computed_numbers(folder: Path) -> None:
             rows += 1
             assert same, f"docs/verification.md does not have the row {row} of {heading}"
     assert rows > 30
+
+
+def test_no_text_has_a_placeholder(folder: Path) -> None:
+    """A string of a study that lacks its prefix f shows braces on the page; the small resolution leaves some texts out."""
+    for page in (PAGE, folder / "verification.md"):
+        assert "{" not in page.read_text(encoding="utf-8"), page
+    sources = list(Path(studies.__file__).parent.rglob("*.py"))
+    assert len(sources) > 10
+    for source in sources:
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value not in FORMATS:
+                assert not re.search(r"\{\w[^{}]*\}", node.value), f"{source.name}:{node.lineno} lacks its prefix f"
 
 
 def test_the_committed_page_is_short_and_has_its_figures() -> None:

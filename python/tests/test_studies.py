@@ -7,7 +7,7 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import bar, block
-from percute.verification.impacts import MESHES, READINGS, Case, cases
+from percute.verification.impacts import MESHES, RECONSTRUCTION_OPTIONS, Case, cases
 
 
 def area(mesh: pc.Mesh) -> float:
@@ -37,14 +37,14 @@ def test_names_are_unique_and_the_small_cases_among_all() -> None:
 
 def test_the_known_case_has_the_known_effectivities() -> None:
     """e_sup/e_ref and e_mean/e_ref of a computation independent of this program, against 160×128 cells."""
-    found = cases(small=True)[0].run(READINGS)
+    found = cases(small=True)[0].run(RECONSTRUCTION_OPTIONS)
     assert found[2:] == [None] * (MESHES - 2)
     known = {1: [(1.50, 1.51), (1.26, 1.26)], 2: [(1.80, 1.83), (1.78, 1.65)]}
-    for reading, meshes in known.items():
+    for choice, meshes in known.items():
         for each, wanted in zip(found, meshes, strict=False):
             assert each is not None
             # Rounded to 0.01; critical steps of both programs, good to 1e-3, move the instants of impact.
-            assert each.effectivity(reading) == pytest.approx(wanted, rel=0.03)
+            assert each.effectivity(choice) == pytest.approx(wanted, rel=0.03)
 
 
 def test_refined_meshes_are_nested() -> None:

@@ -163,8 +163,8 @@ INSTANTS = (
     "estimate contains, depend on the fraction of the step that is left."
 )
 WORST = (
-    f"The same maps as figure 6 for the largest error [15], T = t_c + {ENDS[1]:g} L/c, but each value is the one farthest from 1 (as a ratio) over the "
-    f"fractions {', '.join(map(str, FRACTIONS))} of a step at which the impact falls."
+    f"The same maps as for the paper's figure 6, of the largest error [15], T = t_c + {ENDS[1]:g} L/c, but each value is the one farthest from 1 (as "
+    f"a ratio) over the fractions {', '.join(map(str, FRACTIONS))} of a step at which the impact falls."
 )
 SWEPT = (
     f"Effectivity e/e_Ex of the largest error (`sup`, [15]) and of the mean ([16]) on {SWEEP} elements over the fraction of a step at which the impact "
@@ -182,8 +182,9 @@ def _ranges(grid: Grid) -> str:
     for m, end in product((0, 1), ENDS):
         own, least = of["corrected", m, end].ratio, min(of[name, m, end].ratio for name in RECONSTRUCTIONS[1:])
         if own > 0.5 * least:
-            wider.append(f"`{MEASURES[m]}`, T = t_c + {end:g} L/c: {short(own, 3)} against {short(least, 3)} of the nearest")
-    but = f", except {'; '.join(wider)} (because of Δt = Δt_c, see below)" if wider else ""
+            wider.append(f"`{MEASURES[m]}` with T = t_c + {end:g} L/c: {short(own, 3)} against {short(least, 3)} with the better of the two")
+    verb = "s are" if len(wider) > 1 else " is"
+    exception = f" The exception{verb} {'; '.join(wider)}, because of the runs at Δt = Δt_c." if wider else ""
     below = [Summary(grid.effectivities(of_default("corrected"), m, lambda s: s.after_impact == ENDS[1] and s.ratio < 1)) for m in (0, 1)]
     ranges = " and ".join(f"{short(s.low, 3)} to {short(s.high, 3)} (`{name}`)" for s, name in zip(below, MEASURES, strict=True))
     return (
@@ -194,8 +195,8 @@ def _ranges(grid: Grid) -> str:
         "accumulated error. `corrected` balances an auxiliary solution with less dispersion instead, and its values come near 1 just there. Its own "
         "low end is at Δt = Δt_c in the runs that go on beyond the contact. There the simulation is at its limit of stability, and its shortest "
         "wave, once the release has excited it, grows with time. That of the auxiliary solution does not grow, but the release excites it as well, "
-        "and about half of that is missing in the estimate. The highest over the lowest value is with `corrected` at most half of that with either "
-        f"other reconstruction{but}. With all shorter steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c."
+        "and about half of that is missing in the estimate. With `corrected`, the ratio of the highest to the lowest value is at most half of that "
+        f"with either other reconstruction.{exception} With all shorter steps, `corrected` is {ranges} until t_c + {ENDS[1]:g} L/c."
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import percute as pc
 from percute.verification import figures, slow, steps
 from percute.verification.choices import RECONSTRUCTIONS as NAMES
-from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, READINGS, STEP, TILTED, Case, Found, cases, curve
+from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -21,7 +21,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     wanted = cases(resolution.small)
 
     def work(case: Case, stop: Stop) -> list[Found | None]:
-        return case.run(READINGS, stop)
+        return case.run(RECONSTRUCTION_OPTIONS, stop)
 
     found = resolution.map(work, wanted, lambda case: case.cost)
     results = list(zip(wanted, found, strict=True))
@@ -32,9 +32,9 @@ def compute(section: Section, resolution: Resolution) -> None:
         "over the t_n of ½∫ρ|Δv|² + ½∫Δε:K:Δε, exact in space, with the reference interpolated linearly between its instants. Runs take "
         f"steps of {STEP} Δt_c, except for the short steps below, and end with the first instant past T. The velocity is 400 m/s across the "
         "plane (normal), and as much along it for oblique impacts. A tilt turns plane and velocity clockwise under the body.",
-        "The block is that of table 1, on 5×4 to 40×32 cells cut in two, or on unstructured triangles of 10 mm that are refined three "
-        "times. The rounded block has lower corners with a radius of 15 mm, the disc has a radius of 25 mm. They are the same polygons on "
-        "all meshes, with edges of 22.5° and 15°, so that one edge after the other comes into contact.",
+        "The block is that of the paper's table 1, on 5×4 to 40×32 cells cut in two, or on unstructured triangles of 10 mm that are refined "
+        "three times. The rounded block has lower corners with a radius of 15 mm, the disc has a radius of 25 mm. They are the same polygons "
+        "on all meshes, with edges of 22.5° and 15°, so that one edge after the other comes into contact.",
         Figure(
             "effectivity",
             "Effectivity index e/e_ref over refinement (both axes logarithmic), of the largest error ([15], above) and of the mean ([16], "
@@ -104,7 +104,7 @@ def _outside(results: Sequence[Result]) -> str:
     least = min(found[-1].contact(0) for case, found in results if case.kind == CORNER and found[-1] is not None)
     return (
         "Where a corner touches alone, the estimate of `corrected` stays about twice too large. Its force is a density, linear along the "
-        "two edges beside the corner. These edges are off the plane. On mesh 4 at least {percent(least)} of the largest η is the energy "
+        f"two edges beside the corner. These edges are off the plane. On mesh 4 at least {percent(least)} of the largest η is the energy "
         "gap·F_n of this force and the work of the arriving mass. A point force would have no gap, but no stress of finite energy "
         "balances it. "
         f"With the curved bodies each edge that comes into contact is such a corner for some steps. {_growth(results)}"

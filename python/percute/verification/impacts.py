@@ -15,7 +15,7 @@ from percute.verification.block import ALUMINIUM
 from percute.verification.choices import RECONSTRUCTIONS
 from percute.verification.parallel import Stop
 
-READINGS = [{"reconstruction": name} for name in RECONSTRUCTIONS]
+RECONSTRUCTION_OPTIONS = [{"reconstruction": name} for name in RECONSTRUCTIONS]
 """The reconstructions of the contact force, as arguments of `percute.estimate`."""
 STEP = 0.9
 """Δt/Δt_c, exactly, of all runs but those for short steps."""

@@ -99,7 +99,7 @@ def _text(table: Table, least: float) -> str:
     return (
         "A bar that vibrates in one mode, whose exact motion is known, shows the same effect without any contact. At the critical step the errors of "
         "the lumped mass and of central differences cancel, and the nodes move exactly [33]: the interpolation between them remains. A "
-        f"smaller step removes the error of the time integration only, and the waves on the lumped mass are too slow: {'; '.join(each)}. This "
+        f"smaller step removes only the error of the time integration. The lumped mass then makes the waves too slow: {'; '.join(each)}. This "
         "error vanishes with the mesh only. It accumulates over the periods, and a measure of local misfit does not contain all of it."
     )
 

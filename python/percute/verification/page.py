@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from percute.verification.figures import Drawing
 
 Cell = str | float | int | None
-TITLE = "How good percute is"
+TITLE = "Accuracy of the estimate"
 INTRODUCTION = (
     "percute estimates the error of impact simulations by the constitutive relation error of Louf, Gallimard and Pelle. "
     "This page shows how close the estimate is to the true error, and where it is not. All numbers and figures come from the "

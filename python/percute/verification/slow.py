@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import percute as pc
-from percute.verification.impacts import CORNER, CURVED, FLAT, READINGS, Case, Found, cases
+from percute.verification.choices import RECONSTRUCTIONS
+from percute.verification.impacts import CORNER, CURVED, FLAT, RECONSTRUCTION_OPTIONS, Case, Found, cases
 from percute.verification.page import Column, Section, Table
 from percute.verification.parallel import Resolution, Stop
 
@@ -14,7 +15,7 @@ SCALES = (1.0, 0.1, 0.01, 0.001)
 def _scaled(run: tuple[Case, float], stop: Stop) -> Found:
     case, scale = run
     slower = case.at(velocity=(scale * case.velocity[0], scale * case.velocity[1]), gap=scale * case.gap)
-    return slower.finest(READINGS, stop)
+    return slower.finest(RECONSTRUCTION_OPTIONS, stop)
 
 
 def add(section: Section, resolution: Resolution) -> None:
@@ -35,8 +36,8 @@ def add(section: Section, resolution: Resolution) -> None:
         wave_speed = case.problem(0).wave_speed
         for scale in SCALES:
             speed, one = scale * abs(case.velocity[1]), next(found)
-            for r, reading in enumerate(READINGS):
-                table.add(case.name, reading["reconstruction"], speed, speed / wave_speed, *one.effectivity(r))
+            for r, reconstruction in enumerate(RECONSTRUCTIONS):
+                table.add(case.name, reconstruction, speed, speed / wave_speed, *one.effectivity(r))
     section.add(
         "### Slow impacts",
         "Where all touching edges lie in the plane, a slower impact is the same on another scale, and the effectivity index does not "
@@ -55,7 +56,7 @@ def _summary(table: Table, bodies: list[Case]) -> Table:
     columns = [Column("body"), Column("reconstruction"), *(Column(name, digits=3) for name in speeds)]
     summary = Table("effectivity-speeds-summary", "Effectivity index over the speed across the plane, largest error and mean.", columns)
     for case in bodies:
-        for reading in READINGS:
-            of = {"body": case.name, "reconstruction": reading["reconstruction"]}
+        for reconstruction in RECONSTRUCTIONS:
+            of = {"body": case.name, "reconstruction": reconstruction}
             summary.add(*of.values(), *table.where("sup", of), *table.where("mean", of))
     return summary

@@ -8,7 +8,7 @@ from typing import Any
 import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Setting
-from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, READINGS, Case, cases
+from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, RECONSTRUCTION_OPTIONS, Case, cases
 from percute.verification.page import Column, Figure, Section, Table
 from percute.verification.parallel import Resolution, Stop
 
@@ -16,7 +16,7 @@ RATIOS = (0.9, 0.5, 0.2, 0.1, 0.05, 0.02)
 """Δt/Δt_c."""
 ELEMENTS, FRACTIONS = 40, (0.1, 0.3, 0.5, 0.7, 0.9)
 """The bar, and the fractions of a step at which its impact falls."""
-ATTEMPTS: dict[str, dict[str, Any]] = {reading["reconstruction"]: reading for reading in READINGS}
+ATTEMPTS: dict[str, dict[str, Any]] = {options["reconstruction"]: options for options in RECONSTRUCTION_OPTIONS}
 ATTEMPTS["corrected, not spread"] = {"_ablation": "impulse smoothing"}
 """The reconstructions, and the default with reactions that are not spread in time."""
 ENDS = ("lowest, sup", "highest, sup", "lowest, mean", "highest, mean")
@@ -56,7 +56,7 @@ def add(section: Section, resolution: Resolution) -> None:
     section.add(
         "### Short steps",
         "The simulation brings the mass of an arriving node to rest within a step: the shorter the step, the larger the force. The estimate "
-        "must not follow it, and `corrected` spreads its impulses in time for this reason. The bar of figure 5, with impacts at "
+        "must not follow it, and `corrected` spreads its impulses in time for this reason. The bar of the paper's figure 5, with impacts at "
         f"{len(FRACTIONS)} fractions of a step and until t_c + 2L/c, is compared with the exact solution, plane bodies on mesh {FEW} with the "
         "first reference. A force that is spread over the time of a wave through the depth of the node begins with twice the exact one: on "
         "the flat block the largest error of `corrected` is then that of the impact and rises to a limit with shorter steps. The mean does not.",

@@ -37,9 +37,9 @@ def compute(section: Section, resolution: Resolution) -> None:
     estimates = dict(zip(RECONSTRUCTIONS, resolution.map(work, RECONSTRUCTIONS), strict=True))
     here = ", ".join(f"{percent(e.relative_sup)} and {percent(e.relative_mean)} with `{name}`" for name, e in estimates.items())
     section.add(
-        f"The block of table 1 on {block.mesh} squares cut in two, with the same assumptions. The paper does not state the mesh and the instants of its "
-        f"figures 8 and 9. Its relative errors there, {PAPER[0]} % (sup) and {PAPER[1]} % (mean), belong to another mesh or interval than those of its "
-        f"table 1. Here they are {here}."
+        f"The block of the paper's table 1 on {block.mesh} squares cut in two, with the same assumptions. The paper does not state the mesh and the "
+        f"instants of its figures 8 and 9. Its relative errors there, {PAPER[0]} % (sup) and {PAPER[1]} % (mean), belong to another mesh or interval "
+        f"than those of its table 1. Here they are {here}."
     )
     times = [each.time for each in estimates["corrected"].maps[1:]]
     steps = [int(np.argmin(abs(history.time - time))) for time in times]

@@ -56,7 +56,7 @@ def _sweep(section: Section, resolution: Resolution) -> None:
     first = [Column("reconstruction"), Column("Δt/Δt_c", digits=1)]
     over_time = Table(
         "time-steps-over-time",
-        "The error over time for each step. Where the contact zone changes, an instant has two values.",
+        "The error over time for each step. With `consistent` and `published`, an instant at which the contact zone changes has two values.",
         [*first, Column("t − t_impact", "µs"), Column("√η", "J^½", "[14]")],
         on_page=False,
     )
@@ -76,8 +76,8 @@ def _sweep(section: Section, resolution: Resolution) -> None:
         instant = 1e6 * (estimate.time_of_sup - impact.arrival)
         sup.add(name, ratio, estimate.sup, instant, at_impact**0.5, later**0.5, kinetic, estimate.mean)
     section.add(
-        f"The block of table 1 without friction on {runs[0][2].mesh} squares, 640 elements, with steps from the critical one down to a tenth of "
-        f"it. The gap is crossed in a whole number of steps and {FRACTION} of one, near 0.2 mm, so that the impact falls on the same place "
+        f"The block of the paper's table 1 without friction on {runs[0][2].mesh} squares, 640 elements, with steps from the critical one down to a "
+        f"tenth of it. The gap is crossed in a whole number of steps and {FRACTION} of one, near 0.2 mm, so that the impact falls on the same place "
         "inside a step. Instants are counted from the arrival.",
         Figure(
             "figure-10a",

@@ -78,9 +78,9 @@ def compute(section: Section, resolution: Resolution) -> None:
 
 
 INTRODUCTION = (
-    "Each case is a file in `python/percute/verification/benchmarks/cases`. It runs several times; each run halves what its table names. Where "
-    "velocities jump, central differences smear the front over a width of h^(2/3): errors of order 1/3 in the energy norm and of order 2/3 in "
-    "all quantities that depend on the arrival of the front are those of the scheme, not of contact."
+    "Each case is a file in `python/percute/verification/benchmarks/cases`. It is run several times, and each run halves the quantity in the "
+    "third column. Where velocities jump, central differences smear the front over a width of h^(2/3): errors of order 1/3 in the energy norm and "
+    "of order 2/3 in all quantities that depend on the arrival of the front are those of the scheme, not of contact."
 )
 CAPTION = (
     "Exact (dashed) and computed curves of the first run, the coarsest: contact force of `bar_impact`, gap of `bouncing_bar` and `clamped_rod`, "
