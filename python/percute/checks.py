@@ -162,7 +162,7 @@ def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):
         kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" else _told(value)
-        whole = "; whole numbers stored as fractions become so with astype(int)" if array.dtype.kind == "f" else ""
+        whole = "; convert floating-point numbers with astype(int)" if array.dtype.kind == "f" else ""
         raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0{whole}{_no_truth(value)}")
     if columns == 1 and array.ndim == 1:
         array = array[:, None]

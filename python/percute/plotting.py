@@ -98,7 +98,7 @@ def plot_map(estimate: Estimate, axes: Axes | None) -> Axes:
         _draw_body(axes, mesh.points, mesh.cells, estimate.by_element, label, FIELD)
     axes.set_title(
         f"largest error {estimate.sup:.4g} J$^{{1/2}}$, {100 * estimate.relative_sup:.3g} % of the reference;\n"
-        f"the squares of the map add up to the mean's, ({estimate.mean:.4g} J$^{{1/2}}$)²"
+        f"the squares add up to that of the mean error, ({estimate.mean:.4g} J$^{{1/2}}$)²"
     )
     return axes
 

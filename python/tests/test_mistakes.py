@@ -84,7 +84,7 @@ def told_of(call: Callable[[], object], mistake: dict[str, Any]) -> list[str]:
             try:
                 call()
             except (Stopped, pc.PercuteError, MemoryError):
-                pass  # What was doubted was a mistake indeed.
+                pass  # The cause of the warning was a mistake indeed.
         assert all(issubclass(warning.category, pc.InputWarning) for warning in caught)
         # The line of the user's own that is shown must be the one that called.
         assert all(Path(warning.filename) == Path(__file__) or warning.filename == "<string>" for warning in caught)

@@ -195,7 +195,7 @@ fn named<T: Display>(what: &str, all: &[T]) -> String {
     format!("{what}: one of {names} [default: as stored in the history]")
 }
 
-/// A name that the estimator knows.
+/// The value of an option of the estimator, by its name.
 fn choice<T: FromStr<Err = UnknownName>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|error: UnknownName| format!("{error}{}", hint(text, error.known.iter().copied())))
 }

@@ -35,7 +35,7 @@ pub enum FileCause {
     #[error("another program is using the file (it is locked); wait until it is done, or give another name")]
     InUse,
     /// The file cannot be created.
-    #[error("the file cannot be created: {source}; is the folder there, and may it be written to?")]
+    #[error("the file cannot be created: {source}; check that the folder exists and is writable")]
     Create { source: io::Error },
     /// Not enough space.
     #[error("the file needs {needed} bytes, but only {free} are free there; make room, or store it elsewhere")]

@@ -101,7 +101,7 @@ fn head(root: &DrawingArea<SVGBackend<'_>, Shift>, report: &Report) -> Result<()
     let until = trimmed(report.end, 4);
     let name = std::path::Path::new(&report.case).file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
     let line = format!(
-        "{name}: share of each element up to t = {until} s{cut}; their squares add up to the mean's, ({} J^½)²",
+        "{name}: contribution of each element up to t = {until} s{cut}; the squares add up to that of the mean error, ({} J^½)²",
         short(report.error.mean, 4)
     );
     let left = px(f64::from(MARGIN)) as i32;

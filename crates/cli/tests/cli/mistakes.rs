@@ -216,9 +216,9 @@ end = 0.01
 courant = 0.9
 "#;
 
-/// Nothing is said of what is as it should be.
+/// A case without mistakes has neither errors nor warnings.
 #[test]
-fn good_cases_are_not_doubted() {
+fn good_cases_have_no_warnings() {
     let examples = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples")).unwrap();
     let examples = examples.map(|entry| entry.unwrap().path()).filter(|path| path.extension() == Some("toml".as_ref()));
     let examples: Vec<_> = examples.map(|path| path.to_str().unwrap().to_string()).collect();

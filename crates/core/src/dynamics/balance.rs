@@ -27,8 +27,7 @@ pub struct Balance {
     pub friction: f64,
     /// Largest |energy − initial energy − works| so far, over the largest energy or work.
     pub energy_drift: f64,
-    /// Largest |momentum − initial momentum − impulses| so far (any component), over the largest
-    /// momentum or impulse.
+    /// Largest |momentum − initial momentum − impulses| so far (any component), over the largest momentum or impulse.
     pub impulse_drift: f64,
     #[serde(skip)]
     largest_energy_gap: f64,
@@ -114,9 +113,9 @@ impl<const D: usize> BalanceKeeper<D> {
         &self.balance
     }
 
-    /// Takes in one instant; whether the energy is still plausible: below ten times what was
-    /// there or put in, which only an instability exceeds. What a load gives before it has done
-    /// any work, when it starts on a body at rest, and rounding do not count.
+    /// Adds one instant and returns whether the energy is plausible: at most ten times the sum of the initial energy
+    /// and the work of loads and supports. Only an unstable run exceeds this limit. The kinetic energy that a load
+    /// gives to a body at rest before it has done any work, and rounding, are allowed for.
     pub(super) fn record<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -149,8 +148,7 @@ impl<const D: usize> BalanceKeeper<D> {
         energy.is_finite() && energy <= 10.0 * (b.initial + self.energy_put_in + self.kick) + self.rounding
     }
 
-    /// Adds the works of the step that ends at this instant; returns the sum of all external
-    /// forces.
+    /// Adds the works of the step that ends at this instant; returns the sum of all external forces.
     fn advance_works<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,

@@ -15,9 +15,10 @@ use thiserror::Error;
 pub enum SimulationError {
     /// Energy out of nothing.
     #[error(
-        "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the energy is \
-         ten times what was there or put in; take smaller time steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), \
-         or steps that do not jump from one to the next"
+        "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the \
+         energy exceeds ten times the sum of the initial energy and the work of loads and supports; take smaller time \
+         steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), or steps that do not jump \
+         from one to the next"
     )]
     Unstable {
         /// The step.

@@ -40,12 +40,12 @@ pub(super) fn doubled(tags: &[u64]) -> Option<ImportWarning> {
     }
     let (count, shown) = (tags.len(), shown(tags));
     let (elements, tag, were, each) = if count == 1 {
-        ("element", "tag", "was", "it has the nodes of an element before, which is in the groups of both")
+        ("element", "tag", "was", "it has the same nodes as an earlier element, which is in the groups of both")
     } else {
-        ("elements", "tags", "were", "each has the nodes of an element before, which is in the groups of both")
+        ("elements", "tags", "were", "each has the same nodes as an earlier element, which is in the groups of both")
     };
     let message = format!("{count} {elements} of the mesh file ({tag} {shown}) {were} left out: {each}");
-    let brief = format!("{count} {elements} that {were} there already left out");
+    let brief = format!("{count} duplicate {elements} left out");
     Some(ImportWarning { name: "duplicate_elements", brief, message, groups: vec![] })
 }
 
@@ -100,7 +100,7 @@ pub(super) fn empty<T, U>(
     groups.dedup();
     let reason = match raw.version {
         Version::V22 => "Gmsh writes no groups to MSH 2.2 with `Mesh.SaveAll = 1`; set it to 0, or save as 4.1",
-        Version::V41 => "in Gmsh, does each name parts of the geometry that are there and meshed?",
+        Version::V41 => "in Gmsh, check that each group contains entities that exist and are meshed",
     };
     let message = format!("{} {} no elements in the mesh file: {reason}", quoted(&groups), has(&groups));
     import_warning("empty_groups", "groups without elements", message, groups)

@@ -85,7 +85,7 @@ fn folders_that_cannot_hold_a_file() {
     {
         let error = refused(&folder.path().join(name), Overwrite::Refuse);
         assert!(matches!(&error.cause, FileCause::Create { source } if source.kind() == kind), "{error}");
-        assert!(error.to_string().contains("cannot be created") && error.to_string().contains("is the folder there"));
+        assert!(error.to_string().contains("cannot be created") && error.to_string().contains("the folder exists"));
     }
     assert!(matches!(open(folder.path().join("none")).unwrap_err().cause, FileCause::Missing));
     assert!(matches!(open(folder.path().join("file/a")).unwrap_err().cause, FileCause::Read { .. }));

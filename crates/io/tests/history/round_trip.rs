@@ -239,7 +239,7 @@ fn size_is_foretold() {
     check("groups.vtkhdf", plan.bytes(), 200);
 }
 
-/// Writes the first steps only; the file opens, knows how many there are, and can be finished.
+/// Writes the first steps only; the file opens, has their number, and can be finished.
 #[test]
 fn unfinished_files_give_their_whole_steps() {
     let folder = folder();

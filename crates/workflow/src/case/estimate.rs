@@ -20,7 +20,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
     Ok(options)
 }
 
-/// A name among those that the estimator knows.
+/// The value of an option of the estimator, by its name.
 fn choice<T: FromStr<Err = UnknownName>>(table: &Table<'_>, key: &str) -> Result<Option<T>, CaseError> {
     let Some(value) = table.get(key) else { return Ok(None) };
     let name = value.text("a name")?;

@@ -21,7 +21,7 @@
 //! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
 //!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields.
 //!
-//! The reader walks the parsed document itself, because every error shall name the line, the path
+//! The reader goes through the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
 mod estimate;

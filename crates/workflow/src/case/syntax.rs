@@ -13,7 +13,7 @@ pub(super) fn advice(line: &str, told: &str) -> Option<&'static str> {
     let line = line.trim();
     if told.contains("duplicate") {
         if line.starts_with('[') {
-            return Some("this table is given twice; of several, each begins with two brackets, as in [[material]]");
+            return Some("this table is given twice; if several are allowed, use double brackets, as in [[material]]");
         }
         return Some("this key is given twice in its table; leave one out");
     }
@@ -35,7 +35,7 @@ pub(super) fn advice(line: &str, told: &str) -> Option<&'static str> {
         return Some("a header ends with as many ] as it begins with [");
     }
     match line.split_once('=') {
-        Some((_, value)) if value.trim().is_empty() => Some("the value behind = is missing"),
+        Some((_, value)) if value.trim().is_empty() => Some("the value after = is missing"),
         Some((_, value)) => about_value(value.trim(), 0),
         // One of several lines of a list.
         None if of_list => about_value(line, 1),

@@ -39,9 +39,9 @@ pub fn available() -> Option<u64> {
 pub fn scarce(needed: u64, free: Option<u64>, in_memory: bool) -> Option<String> {
     let free = free.filter(|free| needed > *free)?;
     let (needed, free) = (bytes(needed), bytes(free));
-    let file = if in_memory { ", store the history in a file" } else { "" };
+    let file = if in_memory { ", or store the history in a file" } else { "" };
     Some(format!(
-        "the run needs about {needed} of memory, but {free} are free: take a coarser mesh, fewer steps{file}, or a larger machine"
+        "the run needs about {needed} of memory, but {free} are free: use a coarser mesh, fewer steps or a larger machine{file}"
     ))
 }
 
