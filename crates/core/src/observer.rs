@@ -13,13 +13,13 @@ pub struct Progress {
     pub total: usize,
 }
 
-/// Told about progress at every step; breaks to stop the computation cleanly.
+/// Receives the progress at every step; a break stops the computation cleanly.
 pub trait Observer {
     /// Called between steps, from the thread that computes.
     fn observe(&mut self, progress: Progress) -> ControlFlow<()>;
 }
 
-/// Watches nothing and never stops.
+/// Ignores the progress and never stops.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 

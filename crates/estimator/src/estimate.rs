@@ -12,7 +12,7 @@ pub struct Parts {
     pub kinetic: f64,
     /// ½∫(σ_DA − σ_CA) : K⁻¹ (σ_DA − σ_CA).
     pub elastic: f64,
-    /// 2∫₀ᵗ∫[b(−w_CA, F_DA) + w_CA·F_DA].
+    /// 2∫₀ᵗ∫[b(−w_CA, F_DA) + w_CA·F_DA]; with `corrected` its tangential part, ∫F_n gap and ∫∫F_n|w_n| dt.
     pub contact: f64,
 }
 
@@ -24,8 +24,8 @@ impl Parts {
     }
 }
 
-/// η and d at one instant. Where the contact zone changes, an instant has two samples: before and
-/// after.
+/// η and d at one instant. With `consistent` and `published`, an instant at which the contact zone changes has two
+/// samples, before and after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// t (s).
@@ -79,8 +79,7 @@ pub struct Estimate<const D: usize> {
     pub maps: Vec<ElementMap<D>>,
     /// How far each field is from exactly admissible.
     pub residuals: Residuals,
-    /// Normal impulse of the admissible contact force over that of the simulation; `None` without
-    /// contact.
+    /// Normal impulse of the admissible contact force over that of the simulation; `None` without contact.
     pub kept_impulse: Option<f64>,
     /// Where velocities and accelerations came from.
     pub given: Given,

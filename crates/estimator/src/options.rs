@@ -48,7 +48,7 @@ pub enum Ablation {
     /// The simulation's own displacements are balanced, with accelerations that take up the difference between the nodal
     /// forces of the density and the reactions.
     AuxiliarySolution,
-    /// A auxiliary solution with the dispersion of the simulation.
+    /// An auxiliary solution with the dispersion of the simulation.
     Correction,
     /// Reactions as they are, however short the step in which they stop a node.
     ImpulseSmoothing,

@@ -100,7 +100,7 @@ pub(crate) fn estimate(
     })
 }
 
-/// What the error means with a reading, by its name; a file may have one that this version does not know.
+/// The meaning of the error with a reconstruction, by its name; a file may name one of a newer version.
 #[pyfunction]
 pub(crate) fn meaning(reconstruction: &str) -> String {
     percute_workflow::report::meaning(reconstruction.parse().ok())

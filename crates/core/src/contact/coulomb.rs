@@ -8,7 +8,7 @@ const LIMIT: f64 = 1e-6;
 /// A tangential force is part of a vector, and no more accurate than this times its normal force.
 const ROUNDING: f64 = 1e-15;
 
-/// The state of a node of the contact surface under R_n, in the half step after t_n.
+/// The state of a node of the contact surface under R_n, in the step from t_n to t_{n+1}.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Status {

@@ -1,7 +1,7 @@
 //! Contact with obstacles: geometry, Coulomb's law, the constraints of a step, and results.
 //!
 //! An [`Obstacle`] gives the gap of a point and the [`Frame`] at it. All other code uses these two only. [`Coulomb`] is
-//! the one place that knows the cone of friction.
+//! the only implementation of the cone of friction.
 
 mod constraint;
 mod coulomb;

@@ -66,7 +66,7 @@ pub trait StepSource<const D: usize> {
     fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError>;
 }
 
-/// Takes steps and forgets them.
+/// Discards all steps.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Discard;
 

@@ -1,6 +1,6 @@
 //! A bar or a plane problem, found out at run time.
 
-/// Something of a bar or the same of a plane body, such as a mesh, a problem or a file that holds one of them.
+/// An object in 1D or 2D, such as a mesh, a problem or a file that contains one of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByDimension<B, P> {
     /// Of a bar: 1D.

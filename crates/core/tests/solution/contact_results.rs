@@ -115,8 +115,8 @@ fn the_impulse_is_the_change_of_momentum() {
     }
 }
 
-/// A node is not free at t_n exactly if it touches at t_{n+1}. If it sticks it does not move along the plane until then; if it
-/// slips, R_n is on the cone and against the motion.
+/// A node is in contact (not free) at t_n if and only if it touches at t_{n+1}. If it sticks it does not move along the
+/// plane until then; if it slips, R_n is on the cone and against the motion.
 fn check_status(run: &Run<'_, 2, 3>, what: &str) -> [usize; 3] {
     let (results, problem) = (results(run), run.problem);
     let (plane, steps, nodes) = (&problem.obstacles()[0], steps(&results), run.contact_nodes());

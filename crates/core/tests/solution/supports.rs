@@ -61,12 +61,12 @@ fn tables_are_followed_with_variable_steps() {
     check(&table(), &TimeGrid::from_steps(&steps).unwrap());
 }
 
-/// Where the knots of the table are instants, the motion is the exact integral of the table:
+/// If the instants of the table are instants t_n, the motion is the exact integral of the table:
 /// 25 m/s · 10 µs + ½·(40 + 0) m/s · 20 µs.
 #[test]
-fn knots_on_instants_give_the_exact_integral() {
-    let knots = Table::new(vec![0.0, 1e-5, 3e-5], vec![[10.0, 0.0], [40.0, 0.0], [0.0, 0.0]]).unwrap();
-    let problem = driven(&knots);
+fn tables_at_instants_of_steps_give_the_exact_integral() {
+    let table = Table::new(vec![0.0, 1e-5, 3e-5], vec![[10.0, 0.0], [40.0, 0.0], [0.0, 0.0]]).unwrap();
+    let problem = driven(&table);
     let run = run(&problem, &TimeGrid::uniform(4e-5, 80).unwrap());
     for node in nodes_of(problem.mesh(), "left") {
         let found = run.displacement(run.last())[node][0];

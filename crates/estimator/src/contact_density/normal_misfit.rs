@@ -1,11 +1,11 @@
 //! By how much a density that may act off contact misses the normal contact law.
 //!
-//! Exactly, a normal force F_n acts at gap 0 and on no normal motion. Where it does not, the energy ∫F_n gap is
-//! the misfit of the law at displacement level. It is finite, and zero if and only if the complementarity holds.
-//! ∫∫F_n|w_n| dt is the work that the force took from the motion or gave to it, which the exact force never
-//! does. It adds up, because the waves that it should have made are missing from then on. It is the work of the reactions of
-//! the simulation: an impulse that stops a node within a step takes its energy, even where F_DA spreads the impulse over a
-//! time in which the node rests.
+//! An exact normal contact force F_n acts only where the gap and the normal velocity are zero. Otherwise the energy
+//! ∫F_n gap is the misfit of the law at displacement level. It is finite, and zero if and only if the complementarity
+//! condition holds. ∫∫F_n|w_n| dt is the work of the normal force, which is zero in the exact solution. It accumulates,
+//! because the waves that carry this energy in the exact solution are missing afterwards. F_n is here the reaction of
+//! the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even where F_DA
+//! distributes the impulse over a time in which the node is at rest.
 
 use super::{Densities, along};
 use crate::kinematic::ContactTrack;
@@ -86,7 +86,8 @@ impl<const D: usize> FacetPressures<D> {
         Self { facet, first, steps: steps.iter().map(|step| step.0[facet]).collect() }
     }
 
-    /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step instants.
+    /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step
+    /// instants.
     pub(crate) fn misfit<const N: usize>(
         &self,
         problem: &Problem<D, N>,

@@ -23,7 +23,7 @@ pub(super) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (
 const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 const CENTROID: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
 
-/// What the reference triangle knows.
+/// Quantities of the reference triangle.
 #[derive(Debug)]
 pub(super) struct Reference {
     /// Stress coefficients of a unit of each load, then of each free stress.

@@ -142,9 +142,9 @@ fn effectivities_against_the_exact_solution() {
     }
 }
 
-/// The default stays with the true error as the step becomes short: the force that stops the end of the bar is bounded, and
-/// the work of stopping it is not lost. The range is what comes out for 0.05, 0.1, 0.2 and 0.4 of the critical step on 10 to 80 elements at
-/// five fractions of a step; the computation by hand agrees.
+/// The default stays with the true error as the step becomes short: the force that brings the end of the bar to rest is
+/// bounded, and its work is not lost. The range is that of runs with 0.05, 0.1, 0.2 and 0.4 of the critical step on 10
+/// to 80 elements at five fractions of a step; an independent computation agrees.
 #[test]
 fn short_steps() {
     for (elements, courant, fraction) in [(10, 0.05, 2.3), (10, 0.2, 2.9), (40, 0.1, 2.5), (20, 0.4, 2.1)] {
@@ -199,7 +199,7 @@ fn a_gap_of_whole_steps_at_the_critical_step() {
     }
 }
 
-/// The residuals of the certificate are numbers, and rounding, in a flight without any force too.
+/// The residuals are finite and of the size of rounding, also in a flight without any force.
 #[test]
 fn residuals_before_contact() {
     for fraction in [2.3, 5.0] {

@@ -1,9 +1,9 @@
 //! Contact results: force, gap, sliding and friction at each node of the contact surface, and their resultants.
 //!
-//! The scheme decides the instant of each quantity. The reaction R_n makes a_n, and so the velocity of
-//! the half step *after* t_n, which ends on the obstacle at t_{n+1}. Force, density, status and sliding velocity at t_n
-//! are therefore those of R_n and of that half step: a node is not free at t_n exactly if it touches at t_{n+1}. Gap
-//! and place are those of u_n. At the t_n before the first touch there is a force, and still a gap.
+//! The scheme fixes the instant of each quantity. The reaction R_n determines a_n and the velocity v_{n+½} of the step
+//! from t_n to t_{n+1}, at whose end the node is on the obstacle. Force, density, status and sliding velocity at t_n
+//! are therefore those of R_n and of this step: a node is in contact at t_n if and only if it touches at t_{n+1}. Gap
+//! and position are those of u_n. At the last t_n before the first touch the node has both a force and a gap.
 
 mod recorder;
 mod resultant;
@@ -55,7 +55,7 @@ pub struct ContactSteps<const D: usize> {
     pub force: Vec<[f64; D]>,
     /// Gap at t_n (m), eq. \[3\].
     pub gap: Vec<f64>,
-    /// Tangential velocity of the half step after t_n (m/s), global axes, at the last instant of the one before; 0 at a
+    /// Tangential part of (u_{n+1} − u_n)/Δt_n (m/s), global axes, at the last instant that of the last step; 0 at a
     /// free node.
     pub sliding_velocity: Vec<[f64; D]>,
     /// Status under R_n.

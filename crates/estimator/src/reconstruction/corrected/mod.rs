@@ -1,4 +1,4 @@
-//! The whole reaction as a density on all candidate facets of its node, balanced by an auxiliary solution with less
+//! The full reaction as a density on all candidate facets of its node, balanced by an auxiliary solution with less
 //! dispersion, with tractions of least energy.
 
 mod auxiliary_solution;

@@ -1,12 +1,12 @@
 //! Moments of densities.
 //!
-//! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k. It acts at the
-//! centroids of the shape functions, which are not at the nodes at the end of a contact surface or between unequal facets.
-//! The missing moment would turn the body, ever faster as long as it acts. So the normal forces of the nodes of a body
-//! that face one plane are multiplied by factors that keep their sum and bring the moment. The factors are those nearest
-//! to 1, in the mean weighted by the forces, affine along the plane, and 0 where they would be negative. Friction is
-//! multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room; there is
-//! always enough.
+//! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k. It acts at
+//! the centroids of the shape functions, which are not at the nodes at the end of a contact surface or between unequal
+//! facets. The missing moment would give the body an angular acceleration. The normal forces of the nodes of a body
+//! that face one plane are therefore multiplied by factors that keep their sum and restore the moment. The factors are
+//! those nearest to 1, in the mean weighted by the forces, affine along the plane, and 0 where they would be negative.
+//! Friction is multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room;
+//! there is always enough.
 
 use crate::contact_density::{along, tangent};
 use percute_core::contact::Coulomb;

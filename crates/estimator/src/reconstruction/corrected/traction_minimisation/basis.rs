@@ -1,7 +1,7 @@
 //! The changes of the tractions that leave the resultant and the moment on each element as they are.
 //!
-//! Moments of an edge act on an element like forces at the two nodes of the edge. So these changes have no
-//! resultant and no moment on any element, and they are all there are:
+//! The moments of an edge act on an element like forces at the two nodes of the edge. The changes without resultant and
+//! moment on any element are spanned by:
 //! - on each edge, opposite forces at its ends, along it: one for each edge;
 //! - around each node that is surrounded by unknown edges, the same force and the same couple through all of
 //!   them: three for each such node.

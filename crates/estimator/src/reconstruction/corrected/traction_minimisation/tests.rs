@@ -45,7 +45,7 @@ fn random_slopes(
 
 /// Moments on an edge act like forces at its two nodes: no mode gives any element a resultant or a moment.
 #[test]
-fn no_element_feels_a_mode_as_a_whole() {
+fn modes_have_no_resultant_on_any_element() {
     let (problem, mut random) = (problem(), Random::new(1));
     let basis = prepared(&problem).basis;
     let mut moments = basis.no_moments();

@@ -1,4 +1,4 @@
-//! Runs that end before their time: unstable, too near at the start, interrupted, not taken.
+//! Runs that end early: unstable, too near to the plane at the start, interrupted, refused by the sink.
 
 use crate::run::{aluminium, run};
 use percute_core::contact::Obstacle;
