@@ -20,7 +20,7 @@ __all__ = ["Contact", "ContactStatus", "Resultants"]
 
 
 class ContactStatus(IntEnum):
-    """Status of a contact node under its reaction R_n, in the half step after t_n."""
+    """Status of a contact node under its reaction R_n, in the step from t_n to t_{n+1}."""
 
     FREE = 0
     """Free: R_n is zero."""
@@ -60,8 +60,8 @@ class Resultants:
 class Contact:
     """Contact results at the nodes of the contact surface, and their resultants.
 
-    Force, density, status and sliding velocity at t_n are those of the reaction R_n and of the half step after t_n, on which it
-    acts: a node is not free at t_n exactly if it touches at t_{n+1}. Gaps and places are those of t_n itself.
+    Force, density, status and sliding velocity at t_n are those of the reaction R_n and of the step from t_n to t_{n+1}. A node
+    is in contact (not free) at t_n if and only if it touches at t_{n+1}. Gaps and positions are those at t_n.
     """
 
     time: NDArray[np.float64]
@@ -81,8 +81,8 @@ class Contact:
     gap: NDArray[np.float64]
     """Gap at t_n (m), shape (instants, contact nodes), eq. [3]."""
     sliding_velocity: NDArray[np.float64]
-    """Tangential velocity of the half step after t_n (m/s), at the last instant of the one before; 0 where free; global
-    axes, shape (instants, contact nodes, dimension)."""
+    """Tangential part of (u_{n+1} − u_n)/Δt_n (m/s), at the last instant that of the last step; 0 where free; global axes,
+    shape (instants, contact nodes, dimension)."""
     status: NDArray[np.uint8]
     """`ContactStatus` under R_n, shape (instants, contact nodes)."""
     friction_energy: NDArray[np.float64]
@@ -138,14 +138,14 @@ class Contact:
         Parameters
         ----------
         colour : {"status", "pressure"}, default: "status"
-            What colours the zone.
+            Quantity that the colour of the zone shows.
         axes : sequence of matplotlib.axes.Axes, optional
-            Where to draw, one for the forces and one for each plane; new ones by default.
+            Axes of the plot, one for the forces and one for each plane; new ones by default.
 
         Returns
         -------
         list of matplotlib.axes.Axes
-            What was drawn on.
+            The axes of the plot.
         """
         from percute import contact_picture
 

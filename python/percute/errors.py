@@ -1,6 +1,6 @@
 """Exceptions and warnings of percute.
 
-All exceptions are `PercuteError`; each is also the built-in exception that fits, so that code that knows nothing of
+All exceptions are `PercuteError`; each is also the built-in exception that fits, so that code without knowledge of
 percute can catch it. Messages name the argument, its value, its unit and what is allowed.
 """
 

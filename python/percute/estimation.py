@@ -42,8 +42,8 @@ def _measure(name: str, meaning: str) -> cached_property[float]:
 class Estimate(Immutable):
     """The constitutive relation error of a history.
 
-    Made by `estimate`, `run` or `percute.open`. Errors are in J^½, those of a plane body for its thickness. ``meaning`` says
-    what they mean and what they do not.
+    Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``meaning``
+    is a text on their meaning and their limits.
     """
 
     _data: _percute.EstimateData | StoredEstimate
@@ -186,7 +186,7 @@ class Estimate(Immutable):
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an estimate file for ParaView, h5py and `percute.open`, described in ``docs/estimate.md``.
 
-        What contact did is in it, unless the estimate was unpickled without its history.
+        It contains the contact results, unless the estimate was unpickled without its history.
 
         Parameters
         ----------
@@ -200,7 +200,7 @@ class Estimate(Immutable):
         ExistingFileError, StorageError
             The file exists already or cannot be written.
         InputError
-            The estimate comes from a file: copy that. Or ``path`` is the file of the history, which is not to be lost.
+            The estimate comes from a file; copy that file instead. Or ``path`` is the file of the history, which is never replaced.
         """
         file, replace = file_name("path", path), flag("overwrite", overwrite)
         if isinstance(self._data, StoredEstimate):
@@ -217,12 +217,12 @@ class Estimate(Immutable):
         Parameters
         ----------
         axes : matplotlib.axes.Axes, optional
-            Where to draw; new ones by default.
+            Axes of the plot; new ones by default.
 
         Returns
         -------
         matplotlib.axes.Axes
-            What was drawn on.
+            The axes of the plot.
         """
         from percute import plotting
 
@@ -234,12 +234,12 @@ class Estimate(Immutable):
         Parameters
         ----------
         axes : matplotlib.axes.Axes, optional
-            Where to draw; new ones by default.
+            Axes of the plot; new ones by default.
 
         Returns
         -------
         matplotlib.axes.Axes
-            What was drawn on.
+            The axes of the plot.
         """
         from percute import plotting
 
@@ -305,7 +305,7 @@ def estimate(
     window : int, optional
         How many steps are worked on at once. The result does not depend on it.
     instants : int or (n,) floats, optional
-        At how many instants, evenly spaced, or near which (s), ``maps`` are kept; none by default.
+        Number of evenly spaced instants, or times (s), at which ``maps`` are kept: at the nearest steps. None by default.
     fields : bool, default: False
         Whether these hold the admissible fields too; it needs ``instants``.
     progress : bool or callable, optional

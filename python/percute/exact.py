@@ -40,7 +40,7 @@ POINTS = 8
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class TrueError:
-    """The true error of a simulated bar, eq. [60]: the energy norm of the difference to the exact fields."""
+    """The true error of a simulation, eq. [60]: the energy norm of the difference from exact fields or from a finer simulation."""
 
     sup: float
     """Largest over the t_n (J^½)."""

@@ -37,7 +37,7 @@ def open(path: str | os.PathLike[str]) -> History | Estimate:
     MissingFileError
         There is no such file.
     FileFormatError
-        It is neither, damaged, newer than this program, or its contents contradict each other.
+        The file is neither a history nor an estimate, is damaged or inconsistent, or has a newer layout.
     StorageError
         It cannot be read, or another program is writing it.
     """

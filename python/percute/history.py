@@ -193,7 +193,7 @@ class History(Immutable):
         return Contact._of(self._data.contact(), self.problem.mesh)
 
     def error(self, reference: History) -> TrueError:
-        """Give the true error of this history, as far as a finer one tells it.
+        """Return the true error of this history, measured against a finer one.
 
         Parameters
         ----------
@@ -236,12 +236,12 @@ class History(Immutable):
         scale : float, default: 1.0
             By how much the displacement is exaggerated.
         axes : matplotlib.axes.Axes, optional
-            Where to draw; new ones by default.
+            Axes of the plot; new ones by default.
 
         Returns
         -------
         matplotlib.axes.Axes
-            What was drawn on.
+            The axes of the plot.
         """
         from percute import plotting
 
@@ -300,8 +300,8 @@ def simulate(
     steps : (n,) floats
         Time steps (s), one by one.
     store : str or path, optional
-        A file, such as ``"block.vtkhdf"``, to which the steps are written as they come, instead of keeping them in memory; see
-        ``docs/history.md``. Its size is known at the start, and room for it is taken at once.
+        A file, such as ``"block.vtkhdf"``, to which the steps are written during the run; they are then not kept in memory.
+        See ``docs/history.md``. Disk space for the complete file is allocated at the start.
     overwrite : bool, default: False
         Whether a file that exists already is replaced.
     progress : bool or callable, optional
@@ -315,8 +315,8 @@ def simulate(
     Warns
     -----
     InputWarning
-        What was given is possible, but more likely a slip: units that look mixed, a body that never touches, a run that
-        needs more memory than there is.
+        The input is possible but probably a mistake: mixed units, a body that never touches, a run that needs more memory
+        than is free.
 
     Raises
     ------

@@ -19,7 +19,7 @@ class Parts:
     elastic: float
     """From stress: ½∫(σ_DA − σ_CA):K⁻¹(σ_DA − σ_CA)."""
     contact: float
-    """From friction: 2∫∫[b(−w_CA, F_DA) + w_CA·F_DA]."""
+    """From the contact law: 2∫∫[b(−w_CA, F_DA) + w_CA·F_DA]; with ``corrected`` its tangential part, ∫F_n gap and ∫∫F_n|w_n| dt."""
 
     @property
     def total(self) -> float:
@@ -31,7 +31,7 @@ class Parts:
 class OverTime:
     """η, its parts and d at each sample, each of shape (samples,).
 
-    Where the contact zone changes, an instant has two samples, before and after.
+    With ``consistent`` and ``published``, an instant at which the contact zone changes has two samples, before and after.
     """
 
     time: NDArray[np.float64]

@@ -53,7 +53,7 @@ class Elastic:
     poisson : float, optional
         Poisson's ratio ν, above -1 and below 0.5. Plane bodies need it, bars have none.
     plane : {"stress", "strain"}, optional
-        What a plane body does across its plane. Plane bodies need it, bars have none.
+        Plane stress or plane strain. Required for plane bodies, not allowed for bars.
     thickness : float, default: 1.0
         Thickness of a plane body (m). With 1 m, energies and forces are per metre.
     section : float, optional
@@ -191,7 +191,7 @@ class BodyForce:
     time : (instants,) floats, optional
         Instants (s) of ``value``: straight lines between, constant before and after.
     group : str, optional
-        The group of elements that feels it; by default all.
+        The group of elements on which it acts; by default all.
     """
 
     value: Vector | Rows | ArrayLike

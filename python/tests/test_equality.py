@@ -15,7 +15,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 # What may differ: how it was asked for, by whom, and how long it took.
 ASKED = ("case", "seconds", "versions", "held")
 # Of the contact force, by name, the default first; None is the last of what the argument may be.
-READINGS: tuple[str, ...] = get_args(get_args(get_type_hints(pc.estimate)["reconstruction"])[0])
+RECONSTRUCTIONS: tuple[str, ...] = get_args(get_args(get_type_hints(pc.estimate)["reconstruction"])[0])
 
 
 def command(*arguments: str | Path) -> dict[str, Any]:
@@ -103,18 +103,18 @@ def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> 
 
 
 def test_all_readings_are_named_in_the_signature(block_history: pc.History) -> None:
-    with pytest.raises(pc.InputError, match=re.escape(f"choose one of {', '.join(READINGS)}")):
+    with pytest.raises(pc.InputError, match=re.escape(f"choose one of {', '.join(RECONSTRUCTIONS)}")):
         pc.estimate(block_history, reconstruction="blunt")  # type: ignore[arg-type]
-    assert pc.estimate(block_history).options["reconstruction"] == READINGS[0]
+    assert pc.estimate(block_history).options["reconstruction"] == RECONSTRUCTIONS[0]
 
 
-@pytest.mark.parametrize("reading", READINGS)
-def test_the_options_of_the_case_go_with_its_history(reading: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("reconstruction", RECONSTRUCTIONS)
+def test_the_options_of_the_case_go_with_its_history(reconstruction: str, tmp_path: Path) -> None:
     text = (EXAMPLES / "block.toml").read_text().replace('"closest"', '"weak"').replace("every = 1", "every = 3")
-    text = text.replace('reconstruction = "corrected"', f'reconstruction = "{reading}"')
+    text = text.replace('reconstruction = "corrected"', f'reconstruction = "{reconstruction}"')
     text += f'\n[output]\nestimate = "{tmp_path / "error.vtkhdf"}"\ninstants = 4\n'
     estimate = pc.run(text, store=tmp_path / "history.vtkhdf")
-    stated = {"reconstruction": reading, "acceleration": "weak", "every": 3}
+    stated = {"reconstruction": reconstruction, "acceleration": "weak", "every": 3}
     assert estimate.options == stated and estimate.history is not None
     for history in (pc.open(tmp_path / "history.vtkhdf"), pickle.loads(pickle.dumps(pc.run(text, overwrite=True).history))):
         assert pc.estimate(history).options == stated

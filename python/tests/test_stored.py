@@ -143,19 +143,19 @@ def test_a_number_that_json_cannot_have(good: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("reading", "says"), [("corrected", "In tests"), ("consistent", "With `consistent` it may be far off"), ("of tomorrow", "mass and contact.")]
+    ("reconstruction", "says"), [("corrected", "In tests"), ("consistent", "With `consistent` it may be far off"), ("of tomorrow", "mass and contact.")]
 )
-def test_a_report_of_another_version(reading: str, says: str, good: Path, tmp_path: Path) -> None:
-    """Older ones do not say what their number means, newer ones may have a reading of which nothing is known here."""
+def test_a_report_of_another_version(reconstruction: str, says: str, good: Path, tmp_path: Path) -> None:
+    """Older ones do not say what their number means, newer ones may have a reconstruction that is unknown here."""
 
     def report(text: bytes) -> np.bytes_:
         document = json.loads(text)
-        document["options"]["reconstruction"] = reading
+        document["options"]["reconstruction"] = reconstruction
         del document["meaning"]
         return np.bytes_(json.dumps(document).encode())
 
     estimate = pc.open(changed(good, tmp_path, replaced(REPORT, report)))
-    assert isinstance(estimate, pc.Estimate) and estimate.options["reconstruction"] == reading
+    assert isinstance(estimate, pc.Estimate) and estimate.options["reconstruction"] == reconstruction
     assert says in estimate.meaning and estimate.meaning.endswith(".")
 
 
