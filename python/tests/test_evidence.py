@@ -19,6 +19,7 @@ import percute as pc
 import pytest
 from percute.verification import studies
 from percute.verification.page import Column, Table, percent, short
+from percute.verification.parallel import Resolution
 from percute.verification.studies import STUDIES
 
 FORMATS = ("{x:g}",)
@@ -259,6 +260,21 @@ def test_finished_studies_stay_when_it_is_interrupted(tmp_path: Path) -> None:
     assert heard[-1].stage == "time-steps"
 
 
+def test_a_computed_study_stays_when_its_drawing_is_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    done: list[str] = []
+    monkeypatch.setattr("percute.verification.figures.save", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        studies.run(tmp_path, studies.chosen(["stress-maps"]), Resolution(small=True), False, lambda study: done.append(study.key))
+    assert done == list(numbers(tmp_path)["studies"]) == ["stress-maps"] and list(tables(tmp_path))
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "(not drawn)" in page and "<img" not in page and page.endswith("</html>\n")
+    assert "![" not in (tmp_path / "verification.md").read_text(encoding="utf-8")
+    assert not list(tmp_path.rglob("*.part"))
+
+
 def command(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-m", "percute", "reproduce", *arguments], cwd=cwd, capture_output=True, text=True)
 
@@ -268,7 +284,8 @@ def test_the_command_has_its_options_and_exit_codes(tmp_path: Path) -> None:
     assert listed.returncode == 0 and [line.split()[0] for line in listed.stdout.splitlines()] == [study.key for study in STUDIES]
     unknown = command("tabel1", cwd=tmp_path)
     assert unknown.returncode == 2 and "did you mean `table1`?" in unknown.stderr and not list(tmp_path.iterdir())
-    assert command("--threads", "0", cwd=tmp_path).returncode == 2
+    threads = command("--threads", "0", cwd=tmp_path)
+    assert threads.returncode == 2 and "error: --threads is 0; it must be" in threads.stderr
     (tmp_path / "used").mkdir()
     (tmp_path / "used/letter.txt").write_text("mine")
     used = command("stress-maps", "--small", "--output", "used", cwd=tmp_path)
@@ -280,12 +297,13 @@ def test_the_command_has_its_options_and_exit_codes(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals")
-def test_ctrl_c_keeps_finished_studies(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_an_interrupt_ends_with_a_message(tmp_path: Path, name: str) -> None:
     arguments = [sys.executable, "-m", "percute", "reproduce", "stress-maps", "effectivity", "--output", "ev"]
     child = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     # Effectivity comes first on the page and takes minutes.
     time.sleep(3)
-    os.kill(child.pid, signal.SIGINT)
+    os.kill(child.pid, getattr(signal, name))
     _, said = child.communicate(timeout=60)
     assert child.returncode == 130 and "interrupted: no study is done" in said
 

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from percute import _percute
 from percute.errors import ExistingFileError, InputError, PercuteError
+from percute.estimation import pace
 from percute.progress import shown
 from percute.verification.parallel import Resolution
 from percute.verification.studies import STUDIES, Study, chosen, run
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-
-
-def _threads(given: str) -> int:
-    threads = int(given)
-    if not 1 <= threads <= _percute.MOST_THREADS:
-        raise argparse.ArgumentTypeError(f"{given} is not between 1 and {_percute.MOST_THREADS}")
-    return threads
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -31,14 +25,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--list", action="store_true", help="print the names of the studies and end")
     parser.add_argument("--small", action="store_true", help="compute some rows of each table only; the numbers are the same")
     parser.add_argument("--force", "--overwrite", action="store_true", help="replace files that are there")
-    parser.add_argument("--threads", type=_threads, metavar="N", help="number of threads [default: one for each core]; no number depends on it")
+    parser.add_argument("--threads", type=int, metavar="N", help="number of threads [default: one for each core]; no number depends on it")
     parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
     return parser
 
 
 def _said(error: PercuteError) -> str:
     """Give the message of an error in the words of the command."""
-    return str(error).replace("`folder`: ", "--output: ").replace("`studies`: ", "").replace("overwrite=True", "--force")
+    return str(error).replace("`folder`: ", "--output: ").replace("`studies`: ", "").replace("`threads`", "--threads").replace("overwrite=True", "--force")
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -48,6 +42,10 @@ def main(arguments: Sequence[str]) -> int:
         width = max(len(study.key) for study in STUDIES)
         print("\n".join(f"{study.key:{width}}  {study.title}" for study in STUDIES))
         return DONE
+    # SIGTERM and SIGHUP, with which batch systems and terminals end processes, are like Ctrl-C. `nohup` ignores SIGHUP.
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) == signal.SIG_DFL:
+            signal.signal(getattr(signal, name), signal.default_int_handler)
     done: list[Study] = []
     code, page = DONE, given.output / "index.html"
     try:
@@ -59,7 +57,7 @@ def main(arguments: Sequence[str]) -> int:
                 if not given.quiet:
                     print(f"\r\x1b[K" * sys.stderr.isatty() + f"{len(done)} of {len(studies)} studies done: {study.title}", file=sys.stderr)
 
-            run(given.output, studies, Resolution(given.small, given.threads, tell=tell), given.force, tell_done)
+            run(given.output, studies, Resolution(given.small, pace(given.threads, None)[0], tell=tell), given.force, tell_done)
     except KeyboardInterrupt:
         code = INTERRUPTED
     except PercuteError as error:

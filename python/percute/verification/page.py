@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from percute import _percute
+from percute import __version__
 
 if TYPE_CHECKING:
     from percute.verification.figures import Drawing
@@ -30,6 +30,8 @@ INTRODUCTION = (
 MOST_ROWS = 1000
 """Longer tables are in their files only."""
 NOTHING = "–"
+NOT_DRAWN = "(not drawn)"
+"""Where the figures of a study are still to be drawn."""
 
 
 def short(value: float, digits: int) -> str:
@@ -160,11 +162,11 @@ class _Html:
     def text(self, text: str) -> str:
         return f"<h3>{_rich(text[4:])}</h3>" if text.startswith("### ") else f"<p>{_rich(text)}</p>"
 
-    def figure(self, figure: Figure, number: int, svg: str) -> str:
-        data = base64.b64encode(svg.encode()).decode()
+    def figure(self, figure: Figure, number: int, svg: str | None) -> str:
+        data = base64.b64encode((svg or "").encode()).decode()
+        image = f'<img alt="{html.escape(figure.caption)}" src="data:image/svg+xml;base64,{data}">' if svg else NOT_DRAWN
         return (
-            f'<figure id="{figure.key}">\n<img alt="{html.escape(figure.caption)}" src="data:image/svg+xml;base64,{data}">\n'
-            f"<figcaption><b>Figure {number}.</b> {_rich(figure.caption)} "
+            f'<figure id="{figure.key}">\n{image}\n<figcaption><b>Figure {number}.</b> {_rich(figure.caption)} '
             f'<span class="file">figures/{figure.key}.svg, .png</span></figcaption>\n</figure>'
         )
 
@@ -193,8 +195,9 @@ class _Markdown:
     def text(self, text: str) -> str:
         return text
 
-    def figure(self, figure: Figure, number: int, svg: str) -> str:
-        return f"![Figure {number}](figures/{figure.key}.png)\n**Figure {number}.** {figure.caption}"
+    def figure(self, figure: Figure, number: int, svg: str | None) -> str:
+        image = f"![Figure {number}](figures/{figure.key}.png)" if svg else NOT_DRAWN
+        return f"{image}\n**Figure {number}.** {figure.caption}"
 
     def table(self, table: Table, number: int) -> str:
         if not table.on_page:
@@ -221,7 +224,7 @@ def _items(sections: Iterable[Section], form: _Html | _Markdown, svg: dict[str, 
                 (pieces if item.on_page else left).append(form.table(item, tables))
             elif isinstance(item, Figure):
                 drawings += 1
-                pieces.append(form.figure(item, drawings, svg.get(item.key, "")))
+                pieces.append(form.figure(item, drawings, svg.get(item.key)))
             else:
                 pieces.append(form.text(item))
         yield section, pieces, left
@@ -242,32 +245,45 @@ def _html(sections: Sequence[Section], origin: str, svg: dict[str, str]) -> str:
     )
 
 
-def _markdown(sections: Sequence[Section], origin: str) -> str:
+def _markdown(sections: Sequence[Section], origin: str, svg: dict[str, str]) -> str:
     pieces = [f"# {TITLE}", INTRODUCTION, origin]
-    for section, own, left in _items(sections, _Markdown(), {}):
+    for section, own, left in _items(sections, _Markdown(), svg):
         pieces += [f"## {section.title}", *own, *([" ".join(left)] if left else [])]
     return "\n\n".join(pieces) + "\n"
 
 
-def write(folder: Path, sections: Sequence[Section], resolution: str, missing: Sequence[str]) -> Path:
-    """Write the figures and tables of the last section and the pages of all; give the page."""
-    from percute.verification import figures
+def _replace(file: Path, text: str) -> None:
+    """Write a file under another name first, so that an interrupt leaves the old one whole."""
+    part = file.with_name(file.name + ".part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
 
-    origin = f"Written by `percute reproduce{' --small' if resolution == 'small' else ''}` of percute {_percute.__version__}."
+
+def write(folder: Path, sections: Sequence[Section], resolution: str, missing: Sequence[str], svg: dict[str, str]) -> None:
+    """Write the tables of the last section and the pages of all; ``svg`` has the drawn figures by their keys."""
+    origin = f"Written by `percute reproduce{' --small' if resolution == 'small' else ''}` of percute {__version__}."
     if missing:
         origin += f" Not on this page: {', '.join(missing)}."
-    for place, items in (("figures", sections[-1].figures), ("tables", sections[-1].tables)):
-        if items:
-            (folder / place).mkdir(exist_ok=True)
-    for figure in sections[-1].figures:
-        figures.save(figure.drawing, folder / "figures" / figure.key)
+    if sections[-1].tables:
+        (folder / "tables").mkdir(exist_ok=True)
     for table in sections[-1].tables:
-        (folder / "tables" / f"{table.key}.csv").write_text(table.csv(), encoding="utf-8")
-    drawn = {f.key: (folder / "figures" / f"{f.key}.svg").read_text(encoding="utf-8") for s in sections for f in s.figures}
+        _replace(folder / "tables" / f"{table.key}.csv", table.csv())
     studies = {s.key: {"title": s.title, "tables": {table.key: table.json() for table in s.tables}} for s in sections}
-    numbers = {"percute": _percute.__version__, "resolution": resolution, "studies": studies}
-    (folder / "numbers.json").write_text(json.dumps(numbers, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
-    (folder / "verification.md").write_text(_markdown(sections, origin), encoding="utf-8")
-    page = folder / "index.html"
-    page.write_text(_html(sections, origin, drawn), encoding="utf-8")
-    return page
+    numbers = {"percute": __version__, "resolution": resolution, "studies": studies}
+    _replace(folder / "numbers.json", json.dumps(numbers, ensure_ascii=False, indent=1) + "\n")
+    _replace(folder / "verification.md", _markdown(sections, origin, svg))
+    _replace(folder / "index.html", _html(sections, origin, svg))
+
+
+def draw(folder: Path, section: Section) -> dict[str, str]:
+    """Write the figures of a section, which takes seconds; give their SVG by their keys."""
+    from percute.verification import figures
+
+    if section.figures:
+        (folder / "figures").mkdir(exist_ok=True)
+    for figure in section.figures:
+        figures.save(figure.drawing, folder / "figures" / figure.key)
+    return {figure.key: (folder / "figures" / f"{figure.key}.svg").read_text(encoding="utf-8") for figure in section.figures}

@@ -9,7 +9,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from percute._percute import Progress
+from percute import Progress
 
 Stop = Callable[[Progress], object]
 """The ``progress`` of simulations and estimates through which a study is stopped."""

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 
@@ -91,15 +92,20 @@ def run(
     import_module("percute.verification.figures")
     prepare(folder, overwrite)
     sections: list[Section] = []
+    svg: dict[str, str] = {}
     for study in studies:
         with warnings.catch_warnings():
             # Slow speeds and short runs are meant here.
             warnings.simplefilter("ignore", InputWarning)
             sections.append(study.compute(resolution))
         there = [section.key for section in sections]
+        write = partial(page.write, folder, sections, resolution.name, [other.key for other in STUDIES if other.key not in there], svg)
         try:
-            page.write(folder, sections, resolution.name, [other.key for other in STUDIES if other.key not in there])
+            # The numbers first: an interrupt while figures are drawn does not lose them.
+            write()
+            done(study)
+            svg |= page.draw(folder, sections[-1])
+            write()
         except OSError as error:
             raise StorageError(f"cannot write {error.filename or folder}: {error.strerror}") from error
-        done(study)
     return folder / PAGES[0]
