@@ -32,6 +32,7 @@ from percute.errors import (
 )
 from percute.estimation import Estimate, estimate
 from percute.evidence import reproduce
+from percute.exact import Effectivity, TrueError
 from percute.files import open, run
 from percute.history import Balance, History, simulate, true_errors
 from percute.mesh import Mesh
@@ -44,6 +45,7 @@ __all__ = [
     "BodyForce",
     "Contact",
     "ContactStatus",
+    "Effectivity",
     "Elastic",
     "ElementMap",
     "Estimate",
@@ -67,6 +69,7 @@ __all__ = [
     "StorageError",
     "Support",
     "Traction",
+    "TrueError",
     "WorstElement",
     "__version__",
     "estimate",

@@ -19,7 +19,11 @@ T = TypeVar("T")
 LARGEST = 2**63 - 1
 """The largest whole number of the engine."""
 
-MADE_BY = {"History": "percute.simulate, percute.run or percute.open", "Estimate": "percute.estimate, percute.run or percute.open"}
+MADE_BY = {
+    "History": "percute.simulate, percute.run or percute.open",
+    "Estimate": "percute.estimate, percute.run or percute.open",
+    "TrueError": "percute.true_errors, History.error or an exact solution",
+}
 """Functions that make the objects not made by their class."""
 
 _short = reprlib.Repr()

@@ -161,7 +161,7 @@ class Estimate(Immutable):
 
         Parameters
         ----------
-        error : percute.exact.TrueError
+        error : percute.TrueError
             The true error of the same history, as `History.error` and `percute.exact` give it.
         """
         from percute.exact import Effectivity, TrueError

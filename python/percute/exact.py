@@ -56,7 +56,7 @@ class TrueError:
     """e² (J), shape (instants,)."""
 
     def __repr__(self) -> str:
-        return f"<percute.exact.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {len(self.time)} instants>"
+        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {len(self.time)} instants>"
 
 
 @dataclass(frozen=True)

@@ -204,7 +204,7 @@ class History(Immutable):
 
         Returns
         -------
-        percute.exact.TrueError
+        percute.TrueError
             The energy norm of the difference at the instants of this history, exact in space.
 
         Raises
@@ -364,7 +364,7 @@ def true_errors(
 
     Returns
     -------
-    list of percute.exact.TrueError
+    list of percute.TrueError
 
     Raises
     ------

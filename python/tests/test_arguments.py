@@ -261,7 +261,7 @@ def test_representations_are_short(calls: Calls) -> None:
     count = len(calls.block)
     assert re.fullmatch(rf"<percute.Balance: {count} instants, energy drift \S+, impulse drift \S+>", repr(calls.block.balance))
     error = calls.exact.error(calls.bar)
-    assert re.fullmatch(r"<percute.exact.TrueError: sup \S+ J\^½, mean \S+ J\^½, \d+ instants>", repr(error))
+    assert re.fullmatch(r"<percute.TrueError: sup \S+ J\^½, mean \S+ J\^½, \d+ instants>", repr(error))
 
 
 def test_an_interruption_before_the_first_step_has_no_history(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -69,6 +69,7 @@ def test_errors_against_finer_histories(block_history: pc.History) -> None:
     assert (streamed.sup, streamed.mean) == (error.sup, error.mean)
     estimate = pc.estimate(block_history)
     index = estimate.effectivity(error)
+    assert isinstance(error, pc.TrueError) and isinstance(index, pc.Effectivity)
     assert (index.sup, index.mean) == (estimate.sup / error.sup, estimate.mean / error.mean)
     assert block_history.error(block_history).sup < 1e-6 * error.sup
 
@@ -82,7 +83,7 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
         block_history.error(bar_history)
     with pytest.raises(pc.InputError, match="`reference` is"):
         block_history.error(3)  # type: ignore[arg-type]
-    with pytest.raises(pc.InputError, match="`error` is"):
+    with pytest.raises(pc.InputError, match=r"`error` is 1.0; it must be a TrueError, made by percute.true_errors, History.error or"):
         pc.estimate(bar_history).effectivity(1.0)  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match="`histories`"):
         pc.true_errors(bar_history, bar(80), end=50e-6, courant=0.9)  # type: ignore[arg-type]

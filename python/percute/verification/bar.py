@@ -24,10 +24,12 @@ class Outcome:
     """Largest and mean true error (J^½), eq. [60]."""
     estimates: list[tuple[float, ...]]
     """Largest and mean estimated error (J^½) of each choice, and both relative to their denominators, eq. [22]."""
+    indices: list[pc.Effectivity]
+    """e_RdC/e_Ex of each choice."""
 
     def effectivity(self, choice: int) -> tuple[float, float]:
-        """Give e_RdC/e_Ex, of the largest and the mean error."""
-        return self.estimates[choice][0] / self.exact[0], self.estimates[choice][1] / self.exact[1]
+        """Give e_RdC/e_Ex of a choice, of the largest and the mean error."""
+        return self.indices[choice].sup, self.indices[choice].mean
 
 
 @dataclass(frozen=True)
@@ -63,4 +65,4 @@ class Setting:
         estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
         errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
-        return Outcome((true.sup, true.mean), errors)
+        return Outcome((true.sup, true.mean), errors, [each.effectivity(true) for each in estimates])

@@ -119,7 +119,7 @@ def _growth(results: Iterable[Result]) -> str:
         if len(meshes) == MESHES:
             grown.append((meshes[3].effectivity(0)[0] / meshes[1].effectivity(0)[0], case, meshes))
     growth, case, meshes = max(grown, key=lambda each: each[0])
-    falls = ", ".join(short(a.exact[-1][0] / b.exact[-1][0], 3) for a, b in zip(meshes, meshes[1:], strict=False))
+    falls = ", ".join(short(a.exact[-1].sup / b.exact[-1].sup, 3) for a, b in zip(meshes, meshes[1:], strict=False))
     return (
         f"The largest growth from mesh 2 to mesh 4 is that of the largest error for {case.name}: by {percent(growth - 1.0)}, of which the "
         f"error of the references may explain {percent(_moves(meshes)[-1])} (below). Its part of contact falls faster than the rest, from "
@@ -156,7 +156,8 @@ def _references(results: Iterable[Result]) -> Table:
     for case, found in results:
         coarsest = next(each.elements >> (2 * mesh) for mesh, each in enumerate(found) if each is not None)
         for k, level in enumerate(case.references):
-            table.add(case.name, coarsest << (2 * level), *_on_mesh([None if each is None else each.exact[k] for each in found]))
+            errors = [None if each is None else (each.exact[k].sup, each.exact[k].mean) for each in found]
+            table.add(case.name, coarsest << (2 * level), *_on_mesh(errors))
     return table
 
 
@@ -171,14 +172,14 @@ def _runs(results: Iterable[Result]) -> Table:
             for each in filter(None, found):
                 e = each.estimates[r]
                 measures = (e.sup, e.mean, e.relative_sup, e.relative_mean, e.kept_impulse)
-                table.add(case.name, name, each.elements, each.steps, *measures, 100.0 * each.contact(r), *each.exact[-1])
+                table.add(case.name, name, each.elements, each.steps, *measures, 100.0 * each.contact(r), each.exact[-1].sup, each.exact[-1].mean)
     return table
 
 
 def _moves(found: Sequence[Found | None]) -> list[float]:
     """Give by how much each reference but the first moves the true error on mesh 4, relative: the larger of sup and mean."""
     exact = found[-1].exact if found[-1] is not None else []
-    return [max(abs(b[m] / a[m] - 1.0) for m in range(2)) for a, b in zip(exact, exact[1:], strict=False)]
+    return [max(abs(b.sup / a.sup - 1.0), abs(b.mean / a.mean - 1.0)) for a, b in zip(exact, exact[1:], strict=False)]
 
 
 def _settled(results: Sequence[Result]) -> str:
@@ -193,7 +194,7 @@ def _settled(results: Sequence[Result]) -> str:
     for case, found in results:
         first, last = found[0], found[-1]
         if case.kind == FLAT and first is not None and last is not None:
-            logs.append(math.log(first.exact[-1][0] / last.exact[-1][0]) / (MESHES - 1))
+            logs.append(math.log(first.exact[-1].sup / last.exact[-1].sup) / (MESHES - 1))
     return (
         "From the first reference to the second, which has four times as many elements, the true error on mesh 4 moves by at most "
         f"{', '.join(moved)}. {''.join(further)}For flat impacts, whose fronts are discontinuous, the true error falls by a factor of about "

@@ -45,12 +45,13 @@ class Found:
     """The most nodes that touch at one instant."""
     last: int
     """How many touch at the end."""
-    exact: list[tuple[float, float]] = field(default_factory=list)
-    """Sup and mean of e_ref (J^½) against each reference."""
+    exact: list[pc.TrueError] = field(default_factory=list)
+    """e_ref against each reference."""
 
     def effectivity(self, choice: int) -> tuple[float, float]:
         """Give e/e_ref, sup and mean, of a choice against the finest reference."""
-        return self.estimates[choice].sup / self.exact[-1][0], self.estimates[choice].mean / self.exact[-1][1]
+        index = self.estimates[choice].effectivity(self.exact[-1])
+        return index.sup, index.mean
 
     def contact(self, choice: int) -> float:
         """Give the part of contact in η where it is largest."""
@@ -160,7 +161,7 @@ class Case:
             fine = self.problem(refinements)
             errors = pc.true_errors(histories, fine, **_steps_past(max(ends), STEP, fine), progress=stop)
             for each, true in zip(there, errors, strict=True):
-                each.exact.append((true.sup, true.mean))
+                each.exact.append(true)
         return found + [None] * (MESHES - self.meshes)
 
     def finest(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> Found:
