@@ -195,7 +195,7 @@ class Mesh(Immutable):
             A version that is not known, another format without meshlane, or names of groups with quotes or line breaks.
         """
         file, replace, as_bytes = file_name("path", path), flag("overwrite", overwrite), flag("binary", binary)
-        if version not in ("4.1", "2.2"):
+        if not isinstance(version, str) or version not in ("4.1", "2.2"):
             raise wrong("version", version, '"4.1" or "2.2"')
         if is_gmsh(file):
             self._data.write(file, version == "2.2", as_bytes, replace)

@@ -99,6 +99,8 @@ def test_arguments_are_checked(tmp_path: Path) -> None:
     mesh = pc.Mesh.rectangle(1, 1, nx=1, ny=1)
     with pytest.raises(pc.InputError, match=r'`version` is 4.1; it must be "4.1" or "2.2"'):
         mesh.write(tmp_path / "a.msh", version=4.1)  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match="`version` is "):
+        mesh.write(tmp_path / "a.msh", version=np.array([]))  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match=r"`binary` is 1; it must be True or False"):
         mesh.write(tmp_path / "a.msh", binary=1)  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match=r"those of .msh files"):
