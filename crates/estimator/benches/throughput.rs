@@ -7,7 +7,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Dynamics, critical_time_step, simulate};
-use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::history::{SinkError, State, StateSink};
 use percute_core::material::{Elastic, Law};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
@@ -85,16 +85,16 @@ impl Csr {
     }
 }
 
-/// Hands steps on and notes when the first came: what is set up before it does not count.
+/// Hands states on and notes when the first came: what is set up before it does not count.
 struct Timed<S> {
     inner: S,
     first: Option<Instant>,
 }
 
-impl<S: StepSink<2>> StepSink<2> for Timed<S> {
-    fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
+impl<S: StateSink<2>> StateSink<2> for Timed<S> {
+    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
         self.first.get_or_insert_with(Instant::now);
-        self.inner.push(step)
+        self.inner.accept(state)
     }
 }
 

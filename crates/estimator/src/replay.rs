@@ -6,7 +6,7 @@ use crate::options::Options;
 use crate::pipeline::Estimator;
 use crate::request::Request;
 use percute_core::dynamics::{Balancing, Evaluation, Simulation};
-use percute_core::history::{SinkError, Step, StepSink, StepSource};
+use percute_core::history::{SinkError, StateSink, StepError, StepSource};
 use percute_core::observer::{Observer, Progress};
 use percute_core::problem::Problem;
 use std::ops::ControlFlow;
@@ -24,38 +24,32 @@ pub fn estimate<const D: usize, const N: usize>(
     source: &dyn StepSource<D>,
     options: Options,
     request: &Request,
-    beside: &mut dyn StepSink<D>,
+    beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
-    let mut replay = Replay {
-        evaluation: Evaluation::new(problem, source.times()),
-        estimator: Estimator::new(problem, source.times(), options)?.keeping(request)?,
-        balancing: Balancing::new(problem, source.times()),
-        beside,
-        observer,
-        last: source.count().saturating_sub(1),
-    };
-    let interrupted = match source.replay(&mut replay) {
+    let estimator = Estimator::new(problem, source.times(), options)?.keeping(request)?;
+    let mut sinks = (estimator, (Balancing::new(problem, source.times()), beside));
+    let mut evaluation = Evaluation::new(problem, source.times());
+    let last = source.count().saturating_sub(1);
+    let replayed = source.replay(&mut |step| {
+        sinks.accept(&evaluation.advance(step)?)?;
+        let progress = Progress { stage: "estimating", done: step.index, total: last };
+        if observer.observe(progress) == ControlFlow::Break(()) && step.index < last {
+            return Err(Stopped.into());
+        }
+        Ok(())
+    });
+    let (estimator, (balancing, _)) = sinks;
+    let interrupted = match replayed {
         Ok(()) => false,
         Err(error) if error.is::<Stopped>() => true,
         Err(error) => return Err(failed(error)),
     };
-    let balance_over_time = replay.balancing.finish();
+    let balance_over_time = balancing.finish();
     let balance = balance_over_time.last().copied().unwrap_or_default();
     let steps = balance_over_time.len().saturating_sub(1);
-    let estimate = replay.estimator.finish()?;
+    let estimate = estimator.finish()?;
     Ok((Simulation { balance, balance_over_time, steps, interrupted }, estimate))
-}
-
-/// Takes the steps of a history.
-struct Replay<'a, 'p, const D: usize, const N: usize> {
-    evaluation: Evaluation<'p, D, N>,
-    estimator: Estimator<'p, D, N>,
-    balancing: Balancing<'p, D, N>,
-    beside: &'a mut dyn StepSink<D>,
-    observer: &'a mut dyn Observer,
-    /// The last step that will come.
-    last: usize,
 }
 
 /// The observer broke.
@@ -63,21 +57,11 @@ struct Replay<'a, 'p, const D: usize, const N: usize> {
 #[error("stopped")]
 struct Stopped;
 
-impl<const D: usize, const N: usize> StepSink<D> for Replay<'_, '_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let state = self.evaluation.advance(step).map_err(EstimateError::from)?;
-        self.estimator.push_state(&state)?;
-        self.balancing.push_state(&state)?;
-        self.beside.push_state(&state)?;
-        let progress = Progress { stage: "estimating", done: step.index, total: self.last };
-        if self.observer.observe(progress) == ControlFlow::Break(()) && step.index < self.last {
-            return Err(Stopped.into());
-        }
-        Ok(())
-    }
-}
-
 fn failed(error: SinkError) -> RunError {
+    let error = match error.downcast::<StepError>() {
+        Ok(error) => return RunError::Estimate((*error).into()),
+        Err(error) => error,
+    };
     match error.downcast::<EstimateError>() {
         Ok(error) => RunError::Estimate(*error),
         Err(error) => RunError::Source(error),

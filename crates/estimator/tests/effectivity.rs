@@ -14,7 +14,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Motion, Recorder};
+use percute_estimator::reference::{Comparison, Motion};
 use percute_estimator::{ErrorMeasures, Estimator, Options, Reconstruction};
 
 /// Gap (m) and the least T (s): a run takes steps of exactly 0.9 Δt_c and ends with the first at or
@@ -46,10 +46,10 @@ fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [ErrorMeasure
         let options = Options { reconstruction: INDEPENDENT[which].0, ..Options::default() };
         Estimator::new(problem, times, options).unwrap()
     };
-    let mut sink = (Recorder::new(problem, times), (estimator(0), estimator(1)));
+    let mut sink = (Motion::default(), (estimator(0), estimator(1)));
     simulate(problem, times, &mut sink, &mut Unobserved).unwrap();
-    let (recorder, (consistent, published)) = sink;
-    (recorder.finish(), [consistent, published].map(|e| e.finish().unwrap().error))
+    let (motion, (consistent, published)) = sink;
+    (motion, [consistent, published].map(|e| e.finish().unwrap().error))
 }
 
 /// All sixteen in one test: they share the reference.
@@ -62,7 +62,7 @@ fn effectivities_against_a_fine_mesh() {
     let fine = block([160, 128], GAP);
     let end = grids.iter().map(TimeGrid::end).fold(0.0, f64::max);
     let times = grid(&fine, end);
-    let mut comparison = Comparison::new(&fine, &times);
+    let mut comparison = Comparison::new(&fine);
     for (problem, (motion, _)) in problems.iter().zip(&runs) {
         comparison.add(problem, motion).unwrap();
     }
@@ -87,7 +87,7 @@ fn a_run_against_itself() {
     let problem = block([5, 4], GAP);
     let times = grid(&problem, END);
     let motion = run(&problem, &times).0;
-    let mut comparison = Comparison::new(&problem, &times);
+    let mut comparison = Comparison::new(&problem);
     comparison.add(&problem, &motion).unwrap();
     simulate(&problem, &times, &mut comparison, &mut Unobserved).unwrap();
     let error = comparison.finish().unwrap().remove(0);
@@ -95,7 +95,7 @@ fn a_run_against_itself() {
     assert!(error.sup < 1e-11, "{}", error.sup);
 
     let short = TimeGrid::uniform(0.5 * times.end(), times.step_count()).unwrap();
-    let mut comparison = Comparison::new(&problem, &short);
+    let mut comparison = Comparison::new(&problem);
     comparison.add(&problem, &motion).unwrap();
     simulate(&problem, &short, &mut comparison, &mut Unobserved).unwrap();
     assert!(comparison.finish().is_err());
@@ -142,11 +142,11 @@ impl Impact {
         let (problem, fine) = (self.problem(level), self.problem(level + 2));
         let times = grid(&problem, self.end);
         let estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
-        let mut sink = (Recorder::new(&problem, &times), estimator);
+        let mut sink = (Motion::default(), estimator);
         simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
-        let (motion, estimate) = (sink.0.finish(), sink.1.finish().unwrap().error);
+        let (motion, estimate) = (sink.0, sink.1.finish().unwrap().error);
         let times = grid(&fine, times.end());
-        let mut comparison = Comparison::new(&fine, &times);
+        let mut comparison = Comparison::new(&fine);
         comparison.add(&problem, &motion).unwrap();
         simulate(&fine, &times, &mut comparison, &mut Unobserved).unwrap();
         let exact = comparison.finish().unwrap().remove(0);

@@ -5,9 +5,9 @@ use crate::reference::{TrueErrorColumns, told};
 use crate::run::{Run, Stoppable};
 use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
-use percute_core::history::StepSource;
+use percute_core::dynamics::replay;
 use percute_core::simplex::ByDimension;
-use percute_estimator::reference::{Recorder, ReferenceError, TrueError, bar_impact_error};
+use percute_estimator::reference::{Motion, ReferenceError, TrueError, bar_impact_error};
 use percute_exact::{BarEnds, BarImpact, BarMode, BarRamp, BlockMode, BouncingBar, ClampedRod, RigidSlide, Wave};
 use pyo3::prelude::*;
 use std::collections::HashMap;
@@ -164,8 +164,8 @@ pub(crate) fn true_error_of_bar_impact<'py>(
 }
 
 fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: bridge::Watch) -> Result<TrueError, String> {
-    let mut recorder = Recorder::new(&run.problem, run.times());
+    let mut motion = Motion::default();
     let source = Stoppable { source: run.source(), watch };
-    source.replay(&mut recorder).map_err(|error| error.to_string())?;
-    bar_impact_error(&run.problem, &recorder.finish(), exact).map_err(|error: ReferenceError| error.to_string())
+    replay(&run.problem, &source, &mut motion).map_err(|error| error.to_string())?;
+    bar_impact_error(&run.problem, &motion, exact).map_err(|error: ReferenceError| error.to_string())
 }

@@ -7,7 +7,7 @@ use crate::run::{AnyRun, Run};
 use crate::{bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
-use percute_core::history::{History, Step, StepSink};
+use percute_core::history::{History, Step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};

@@ -7,12 +7,11 @@ use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run, Stoppable};
 use crate::simulate::Times;
 use crate::{bridge, errors, time, view};
-use percute_core::dynamics::simulate;
-use percute_core::history::StepSource;
+use percute_core::dynamics::{replay, simulate};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Recorder, TrueError, TrueErrorSample};
+use percute_estimator::reference::{Comparison, Motion, TrueError, TrueErrorSample};
 use percute_workflow::report::Named;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -83,9 +82,9 @@ fn compared<'py, const D: usize, const N: usize>(
     let found = bridge::blocking(py, progress, move |watch| match &reference {
         Source::Kept(fine) => {
             let source = Stoppable { source: fine.source(), watch: watch.clone() };
-            compare(&runs, &fine.problem, fine.times(), &watch, |sink| source.replay(sink).map_err(text))
+            compare(&runs, &fine.problem, &watch, |sink| replay(&fine.problem, &source, sink).map_err(text))
         }
-        Source::Made(fine, times) => compare(&runs, fine, times, &watch, |sink| {
+        Source::Made(fine, times) => compare(&runs, fine, &watch, |sink| {
             simulate(fine, times, sink, &mut watch.clone()).map(|_| ()).map_err(text)
         }),
     })?;
@@ -94,20 +93,19 @@ fn compared<'py, const D: usize, const N: usize>(
 }
 
 /// Compares the motions of `runs` with the steps that `drive` hands to a comparison.
-fn compare<'p, const D: usize, const N: usize>(
+fn compare<const D: usize, const N: usize>(
     runs: &[Arc<Run<D, N>>],
-    fine: &'p Problem<D, N>,
-    times: &'p TimeGrid,
+    fine: &Problem<D, N>,
     watch: &Watch,
     drive: impl FnOnce(&mut Comparison<'_, D, N>) -> Result<(), String>,
 ) -> Result<Vec<TrueError>, String> {
     let mut motions = Vec::new();
     for run in runs {
-        let mut recorder = Recorder::new(&run.problem, run.times());
-        Stoppable { source: run.source(), watch: watch.clone() }.replay(&mut recorder).map_err(text)?;
-        motions.push(recorder.finish());
+        let mut motion = Motion::default();
+        replay(&run.problem, &Stoppable { source: run.source(), watch: watch.clone() }, &mut motion).map_err(text)?;
+        motions.push(motion);
     }
-    let mut comparison = Comparison::new(fine, times);
+    let mut comparison = Comparison::new(fine);
     for (run, motion) in runs.iter().zip(&motions) {
         comparison.add(&run.problem, motion).map_err(text)?;
     }

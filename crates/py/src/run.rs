@@ -2,8 +2,8 @@
 
 use crate::bridge::Watch;
 use percute_core::contact::{ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, Evaluation};
-use percute_core::history::{History, SinkError, Step, StepSink, StepSource};
+use percute_core::dynamics::{Balance, Balancing, replay};
+use percute_core::history::{History, SinkError, State, StateSink, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -118,7 +118,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
             return Ok(balance);
         }
         let mut balancing = Balancing::new(&self.problem, self.times());
-        Stoppable { source: self.source(), watch }.replay(&mut balancing)?;
+        replay(&self.problem, &Stoppable { source: self.source(), watch }, &mut balancing)?;
         Ok(self.balance.get_or_init(|| balancing.finish()))
     }
 
@@ -127,31 +127,23 @@ impl<const D: usize, const N: usize> Run<D, N> {
         if let Some(contact) = self.contact.get() {
             return Ok(contact.clone());
         }
-        let mut recorder = ContactRecorder::new(&self.problem, self.times()).keeping_steps()?;
-        Stoppable { source: self.source(), watch }.replay(&mut recorder)?;
-        Ok(self.contact.get_or_init(|| Arc::new(recorder.finish())).clone())
+        let recorder = ContactRecorder::new(&self.problem, self.times()).keeping_steps()?;
+        let contact = recorder.replay(&Stoppable { source: self.source(), watch })?;
+        Ok(self.contact.get_or_init(|| Arc::new(contact)).clone())
     }
 
     /// v_n and a_n by the scheme, or as the history brings them.
     pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
-        let evaluation = Evaluation::new(&self.problem, self.times());
-        let motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
-        let mut deriving = Deriving { evaluation, motion };
-        Stoppable { source: self.source(), watch }.replay(&mut deriving)?;
-        Ok(deriving.motion)
+        let mut motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
+        replay(&self.problem, &Stoppable { source: self.source(), watch }, &mut motion)?;
+        Ok(motion)
     }
 }
 
-struct Deriving<'p, const D: usize, const N: usize> {
-    evaluation: Evaluation<'p, D, N>,
-    motion: Motion<D>,
-}
-
-impl<const D: usize, const N: usize> StepSink<D> for Deriving<'_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let state = self.evaluation.advance(step)?;
-        self.motion.velocity.extend(state.velocity());
-        self.motion.acceleration.extend(state.acceleration());
+impl<const D: usize> StateSink<D> for Motion<D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.velocity.extend(state.velocity());
+        self.acceleration.extend(state.acceleration());
         Ok(())
     }
 }
@@ -177,19 +169,8 @@ impl<const D: usize> StepSource<D> for Stoppable<'_, D> {
         self.source.count()
     }
 
-    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
-        self.source.replay(&mut StoppableSink { sink, watch: &self.watch })
-    }
-}
-
-struct StoppableSink<'a, const D: usize> {
-    sink: &'a mut dyn StepSink<D>,
-    watch: &'a Watch,
-}
-
-impl<const D: usize> StepSink<D> for StoppableSink<'_, D> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        if self.watch.0.stopped() { Err(Left.into()) } else { self.sink.push(step) }
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        self.source.replay(&mut |step| if self.watch.0.stopped() { Err(Left.into()) } else { take(step) })
     }
 }
 
@@ -208,10 +189,10 @@ impl<const D: usize> Growing<D> {
     }
 }
 
-impl<const D: usize> StepSink<D> for Growing<D> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize> StateSink<D> for Growing<D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         match self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            Some(history) => history.push(step),
+            Some(history) => history.accept(state),
             None => Err(Left.into()),
         }
     }

@@ -9,7 +9,7 @@ use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{bridge, errors, time};
 use percute_core::dynamics::Balance;
-use percute_core::history::StepSink;
+use percute_core::history::StateSink;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -221,7 +221,7 @@ impl<const D: usize, const N: usize> Planned<D, N> {
             let (problem, store, mut growing) = (problem.clone(), store.clone(), growing.clone());
             move |mut watch: Watch| {
                 let file = store.as_ref().map(|store| store.begin(&problem, &times)).transpose()?;
-                let memory = growing.as_mut().map(|growing| growing as &mut dyn StepSink<D>);
+                let memory = growing.as_mut().map(|growing| growing as &mut dyn StateSink<D>);
                 let done = work(Storage { file, memory }, &mut watch);
                 if let (Err(failure), Some(store)) = (&done, &store)
                     && failure.is_refused_start()

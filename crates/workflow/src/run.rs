@@ -5,7 +5,7 @@ use crate::case::CaseOf;
 use crate::failure::Failure;
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Simulation, SimulationError};
-use percute_core::history::{Discard, StepSink, StepSource};
+use percute_core::history::{Discard, StateSink, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -39,7 +39,7 @@ pub struct Storage<'s, const D: usize> {
     /// A file.
     pub file: Option<Writer<D>>,
     /// Memory.
-    pub memory: Option<&'s mut dyn StepSink<D>>,
+    pub memory: Option<&'s mut dyn StateSink<D>>,
 }
 
 impl Analysis {
@@ -123,7 +123,7 @@ fn drive<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     storage: Storage<'_, D>,
-    beside: &mut dyn StepSink<D>,
+    beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
     // The history first: a step that cannot be estimated is still stored.

@@ -6,7 +6,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Motion, Recorder, bar_impact_error};
+use percute_estimator::reference::{Comparison, Motion, bar_impact_error};
 use percute_estimator::{Acceleration, Estimator, Reconstruction};
 use percute_exact::BarImpact;
 use percute_workflow::case::{Case, CaseOf, Source, parse, problem_from, statement};
@@ -88,9 +88,9 @@ fn last_lines_and_pictures() {
 /// The case, its motion, and its e_sup.
 fn run<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> (Motion<D>, f64) {
     let estimator = Estimator::new(&case.problem, &case.times, case.options).unwrap();
-    let mut sink = (Recorder::new(&case.problem, &case.times), estimator);
+    let mut sink = (Motion::default(), estimator);
     simulate(&case.problem, &case.times, &mut sink, &mut Unobserved).unwrap();
-    (sink.0.finish(), sink.1.finish().unwrap().error.sup)
+    (sink.0, sink.1.finish().unwrap().error.sup)
 }
 
 /// The true error (sup) from a run of the case on a finer mesh.
@@ -103,7 +103,7 @@ fn true_error(case: &CaseOf<2, 3>, motion: &Motion<2>) -> f64 {
     let (fine, _): (TriangleProblem, _) = problem_from(&stated, mesh, rest, velocity).unwrap();
     let end = case.times.end();
     let times = TimeGrid::uniform(end, (end / (0.9 * critical_time_step(&fine))).ceil() as usize).unwrap();
-    let mut comparison = Comparison::new(&fine, &times);
+    let mut comparison = Comparison::new(&fine);
     comparison.add(&case.problem, motion).unwrap();
     simulate(&fine, &times, &mut comparison, &mut Unobserved).unwrap();
     comparison.finish().unwrap()[0].sup

@@ -125,16 +125,15 @@ impl<const D: usize> BalanceKeeper<D> {
         let total_force = self.advance_works(problem, times, now);
         let b = &mut self.balance;
         let (kinetic, momentum) = now.energies(problem.mass());
-        (b.kinetic, b.strain) = (kinetic, now.strain);
+        (b.kinetic, b.strain) = (kinetic, now.strain());
         let energy = b.kinetic + b.strain;
-        if now.step.index == 0 {
+        if now.step().index == 0 {
             b.initial = energy;
             self.initial_momentum = momentum;
         }
-        let back = if now.step.index == 0 { 0.0 } else { 0.5 * times.step(now.step.index - 1) };
-        let forward = times.velocity_step(now.step.index) - back;
+        let forward = times.velocity_step(now.step().index) - now.back();
         for c in 0..D {
-            self.impulse[c] += back * total_force[c];
+            self.impulse[c] += now.back() * total_force[c];
             let gap = momentum[c] - self.initial_momentum[c] - self.impulse[c];
             b.largest_impulse_gap = b.largest_impulse_gap.max(gap.abs());
             b.largest_impulse = b.largest_impulse.max(momentum[c].abs()).max(self.impulse[c].abs());
@@ -155,20 +154,20 @@ impl<const D: usize> BalanceKeeper<D> {
         times: &TimeGrid,
         now: &State<'_, D>,
     ) -> [f64; D] {
-        let first = now.step.index == 0;
+        let first = now.step().index == 0;
         let mut total = [0.0; D];
         let mut add = |force: &[f64; D]| (0..D).for_each(|c| total[c] += force[c]);
         let b = &mut self.balance;
         let put_in = &mut self.energy_put_in;
 
         if !self.external.is_empty() {
-            problem.external_forces(times.instants()[now.step.index], &mut self.external);
+            problem.external_forces(times.instants()[now.step().index], &mut self.external);
             self.external.iter().for_each(&mut add);
-            let h = times.velocity_step(now.step.index);
-            let given = self.external.iter().zip(now.inverse_mass).map(|(f, m)| dot(f, f) * m).sum::<f64>();
+            let h = times.velocity_step(now.step().index);
+            let given = self.external.iter().zip(now.inverse_mass()).map(|(f, m)| dot(f, f) * m).sum::<f64>();
             self.kick = self.kick.max(0.5 * h * h * given);
             let (mut work, external) = (0.0, &self.external);
-            self.loads.advance(now.step.displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
+            self.loads.advance(now.step().displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
             if !first {
                 b.work_of_loads += work;
                 *put_in += work.abs();
@@ -177,32 +176,32 @@ impl<const D: usize> BalanceKeeper<D> {
 
         let along = |i: usize| {
             let mut force = [0.0; D];
-            force[problem.prescribed()[i].component] = now.support_reaction[i];
+            force[problem.prescribed()[i].component] = now.support_reaction()[i];
             force
         };
-        (0..now.support_reaction.len()).for_each(|i| add(&along(i)));
+        (0..now.support_reaction().len()).for_each(|i| add(&along(i)));
         let moving = |p: &PrescribedComponent| {
             // a_n already prepares the next velocity.
-            let next = (now.step.index + 1).min(times.step_count());
-            let v = [now.step.index, next].map(|n| problem.prescribed_velocity(p, times.instants()[n]));
+            let next = (now.step().index + 1).min(times.step_count());
+            let v = [now.step().index, next].map(|n| problem.prescribed_velocity(p, times.instants()[n]));
             0.5 * problem.mass()[p.node.index()] * v[0].abs().max(v[1].abs()).powi(2)
         };
         self.kick = self.kick.max(problem.prescribed().iter().map(moving).sum());
         let mut work = 0.0;
-        self.supports.advance(now.step.displacement, along, |_, mean, path| work += dot(&mean, &path));
+        self.supports.advance(now.step().displacement, along, |_, mean, path| work += dot(&mean, &path));
         if !first {
             b.work_of_supports += work;
             *put_in += work.abs();
         }
 
-        now.step.reaction.iter().for_each(&mut add);
+        now.step().reaction.iter().for_each(&mut add);
         let nodes = problem.surface().nodes();
         self.contact.advance(
-            now.step.displacement,
-            |i| now.step.reaction[i],
+            now.step().displacement,
+            |i| now.step().reaction[i],
             |i, mean, path| {
                 if !first {
-                    let frame = problem.surface().frame(i, &now.step.displacement[nodes[i].node.index()]);
+                    let frame = problem.surface().frame(i, &now.step().displacement[nodes[i].node.index()]);
                     b.work_of_contact += dot(&mean, &path);
                     b.friction += dissipation(&frame, &mean, &path);
                 }

@@ -1,8 +1,8 @@
 //! The balance of a history, from its steps.
 
+use super::Balance;
 use super::balance::BalanceKeeper;
-use super::{Balance, Evaluation};
-use crate::history::{SinkError, State, Step, StepSink};
+use crate::history::{SinkError, State, StateSink};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -14,15 +14,13 @@ pub struct Balancing<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     keeper: BalanceKeeper<D>,
     over_time: Vec<Balance>,
-    /// Evaluates bare steps.
-    evaluation: Option<Box<Evaluation<'p, D, N>>>,
 }
 
 impl<'p, const D: usize, const N: usize> Balancing<'p, D, N> {
     /// Before the first step.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
-        Self { problem, times, keeper: BalanceKeeper::new(problem, times), over_time: Vec::new(), evaluation: None }
+        Self { problem, times, keeper: BalanceKeeper::new(problem, times), over_time: Vec::new() }
     }
 
     /// Energies, works and drifts at every step taken.
@@ -32,16 +30,8 @@ impl<'p, const D: usize, const N: usize> Balancing<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StepSink<D> for Balancing<'_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let mut evaluation =
-            self.evaluation.take().unwrap_or_else(|| Box::new(Evaluation::new(self.problem, self.times)));
-        let pushed = evaluation.advance(step).map_err(SinkError::from).and_then(|state| self.push_state(&state));
-        self.evaluation = Some(evaluation);
-        pushed
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize, const N: usize> StateSink<D> for Balancing<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         // The integrator alone refuses implausible energies.
         self.keeper.record(self.problem, self.times, state);
         self.over_time.push(*self.keeper.balance());

@@ -3,7 +3,7 @@
 use super::balance::BalanceKeeper;
 use super::contact::Contact;
 use super::{Balance, Dynamics, advance};
-use crate::history::{SinkError, State, Step, StepSink};
+use crate::history::{SinkError, State, StateSink, Step, StepForces};
 use crate::observer::{Observer, Progress};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -87,23 +87,21 @@ pub struct Simulation {
 pub fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
-    sink: &mut dyn StepSink<D>,
+    sink: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
     let dynamics = Dynamics::new(problem, times);
     let mut displacement = problem.initial_displacement().to_vec();
     let mut velocity = problem.initial_velocity().to_vec();
-    let mut force = vec![[0.0; D]; problem.mesh().node_count()];
+    let mut forces = StepForces::new(problem);
     let mut contact = Contact::new(problem.surface().nodes().len());
-    let mut support_reaction = vec![0.0; problem.prescribed().len()];
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let (mut done, mut interrupted) = (0, false);
 
     for n in 0..=times.step_count() {
-        let strain = dynamics.forces(n, &displacement, &mut force);
-        dynamics.apply_supports(n, &mut force, |i, reaction| support_reaction[i] = reaction);
-        contact.react(&dynamics, n, &displacement, &velocity, &mut force);
+        dynamics.evaluate(n, &displacement, &mut forces);
+        contact.react(&dynamics, n, &displacement, &velocity, &mut forces.total);
         if n == 0 {
             contact.settle_start(&dynamics);
             refuse_a_start_too_near(&dynamics, &contact)?;
@@ -117,20 +115,11 @@ pub fn simulate<const D: usize, const N: usize>(
             velocity: None,
             acceleration: None,
         };
-        let state = State {
-            step,
-            strain,
-            force: &force,
-            force_before_contact: &contact.force_before,
-            support_reaction: &support_reaction,
-            half_step: &velocity,
-            back: if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) },
-            inverse_mass: &dynamics.inverse_mass,
-        };
+        let state = State::new(step, times, &forces, &velocity, &dynamics.inverse_mass);
         if !balance.record(problem, times, &state) {
             return Err(unstable(&dynamics, n, &velocity));
         }
-        sink.push_state(&state).map_err(|cause| SimulationError::Sink { step: n, cause })?;
+        sink.accept(&state).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
         done = n;
         let progress = Progress { stage: "simulating", done, total: times.step_count() };
@@ -138,7 +127,7 @@ pub fn simulate<const D: usize, const N: usize>(
             interrupted = true;
             break;
         }
-        advance(times, n, &mut velocity, &mut displacement, dynamics.accelerations(&force));
+        advance(times, n, &mut velocity, &mut displacement, dynamics.accelerations(&forces.total));
     }
     Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
 }

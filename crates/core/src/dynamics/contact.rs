@@ -12,8 +12,6 @@ pub(super) struct Contact<const D: usize> {
     pub(super) touching: Vec<bool>,
     /// Touching status at t_{n+1}.
     pub(super) touching_next: Vec<bool>,
-    /// M a_n at the nodes of the contact surface without their reactions (N).
-    pub(super) force_before: Vec<[f64; D]>,
     constraints: Vec<Constraint<D>>,
 }
 
@@ -23,7 +21,6 @@ impl<const D: usize> Contact<D> {
             reaction: vec![[0.0; D]; count],
             touching: vec![false; count],
             touching_next: vec![false; count],
-            force_before: vec![[0.0; D]; count],
             constraints: Vec::new(),
         }
     }
@@ -53,9 +50,6 @@ impl<const D: usize> Contact<D> {
         std::mem::swap(&mut self.touching, &mut self.touching_next);
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
-        for (contact, before) in problem.surface().nodes().iter().zip(&mut self.force_before) {
-            *before = force[contact.node.index()];
-        }
         solve(&self.constraints, steps, |constraint, reaction| {
             let node = problem.surface().nodes()[constraint.at].node.index();
             (0..D).for_each(|c| force[node][c] += reaction[c]);

@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use super::update::advance_velocity;
-use crate::history::{State, Step, StepCheck, StepError};
+use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepError, StepForces, StepSource, half_of_last};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -12,9 +12,7 @@ use crate::time::TimeGrid;
 pub struct Evaluation<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,
     check: StepCheck,
-    force: Vec<[f64; D]>,
-    force_before_contact: Vec<[f64; D]>,
-    support_reaction: Vec<f64>,
+    forces: StepForces<D>,
     half_step: Vec<[f64; D]>,
     /// a_{n−1}, if the history brings it.
     given: Option<Vec<[f64; D]>>,
@@ -27,9 +25,7 @@ impl<'p, const D: usize, const N: usize> Evaluation<'p, D, N> {
         Self {
             dynamics: Dynamics::new(problem, times),
             check: StepCheck::default(),
-            force: vec![[0.0; D]; problem.mesh().node_count()],
-            force_before_contact: vec![[0.0; D]; problem.surface().nodes().len()],
-            support_reaction: vec![0.0; problem.prescribed().len()],
+            forces: StepForces::new(problem),
             half_step: problem.initial_velocity().to_vec(),
             given: None,
         }
@@ -40,43 +36,42 @@ impl<'p, const D: usize, const N: usize> Evaluation<'p, D, N> {
     /// # Errors
     /// A step that does not fit.
     pub fn advance<'a>(&'a mut self, step: &Step<'a, D>) -> Result<State<'a, D>, StepError> {
-        let Self { dynamics, check, force, support_reaction, half_step, .. } = self;
+        let Self { dynamics, check, forces, half_step, given } = self;
         let (problem, times, n) = (dynamics.problem, dynamics.times, step.index);
-        check.check(problem, times, step)?;
-        check.accept(step);
+        check.advance(problem, times, step)?;
         if n > 0 {
-            match &self.given {
+            match given {
                 Some(given) => advance_velocity(times, n - 1, half_step, given.iter().copied()),
-                None => advance_velocity(times, n - 1, half_step, dynamics.accelerations(force)),
+                None => advance_velocity(times, n - 1, half_step, dynamics.accelerations(&forces.total)),
             }
         }
-        let strain = dynamics.forces(n, step.displacement, force);
-        dynamics.apply_supports(n, force, |i, reaction| support_reaction[i] = reaction);
-        let surface = problem.surface().nodes();
-        for (contact, before) in surface.iter().zip(&mut self.force_before_contact) {
-            *before = force[contact.node.index()];
+        dynamics.evaluate(n, step.displacement, forces);
+        for (contact, reaction) in problem.surface().nodes().iter().zip(step.reaction) {
+            (0..D).for_each(|c| forces.total[contact.node.index()][c] += reaction[c]);
         }
-        for (contact, reaction) in surface.iter().zip(step.reaction) {
-            (0..D).for_each(|c| force[contact.node.index()][c] += reaction[c]);
-        }
-        self.given = step.acceleration.map(<[_]>::to_vec);
-        let back = if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) };
+        *given = step.acceleration.map(<[_]>::to_vec);
         if let (Some(velocity), true) = (step.velocity, n > 0) {
             // A history may bring its own v_n; v_{n−½} then lies ½Δt_{n−1} a_n before it.
+            let back = half_of_last(times, n);
             for (i, v) in half_step.iter_mut().enumerate() {
-                let a = step.acceleration.map_or_else(|| force[i].map(|f| dynamics.inverse_mass[i] * f), |a| a[i]);
+                let a =
+                    step.acceleration.map_or_else(|| forces.total[i].map(|f| dynamics.inverse_mass[i] * f), |a| a[i]);
                 *v = std::array::from_fn(|c| velocity[i][c] - back * a[c]);
             }
         }
-        Ok(State {
-            step: *step,
-            strain,
-            force: &self.force,
-            force_before_contact: &self.force_before_contact,
-            support_reaction: &self.support_reaction,
-            half_step: &self.half_step,
-            back,
-            inverse_mass: &self.dynamics.inverse_mass,
-        })
+        Ok(State::new(*step, times, forces, half_step, &dynamics.inverse_mass))
     }
+}
+
+/// Hands the states of all steps of a history to `sink`.
+///
+/// # Errors
+/// A step that cannot be read or does not fit, or what the sink fails to take.
+pub fn replay<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    sink: &mut dyn StateSink<D>,
+) -> Result<(), SinkError> {
+    let mut evaluation = Evaluation::new(problem, source.times());
+    source.replay(&mut |step| sink.accept(&evaluation.advance(step)?))
 }

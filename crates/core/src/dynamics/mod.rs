@@ -13,10 +13,11 @@ pub use balance::Balance;
 pub use balancing::Balancing;
 pub use central_difference::{Simulation, SimulationError, simulate};
 pub use critical_step::{critical_time_step, element_time_step};
-pub use evaluation::Evaluation;
+pub use evaluation::{Evaluation, replay};
 pub use internal_force::Stiffness;
 pub use update::advance;
 
+use crate::history::StepForces;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -65,6 +66,16 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
     pub fn forces(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
         self.problem.external_forces(self.times.instants()[n], force);
         self.stiffness.subtract_internal_forces(displacement, force)
+    }
+
+    /// The forces at t_n but for contact.
+    fn evaluate(&self, n: usize, displacement: &[[f64; D]], forces: &mut StepForces<D>) {
+        let StepForces { strain, total, before_contact, supports } = forces;
+        *strain = self.forces(n, displacement, total);
+        self.apply_supports(n, total, |i, reaction| supports[i] = reaction);
+        for (contact, before) in self.problem.surface().nodes().iter().zip(before_contact) {
+            *before = total[contact.node.index()];
+        }
     }
 
     /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain

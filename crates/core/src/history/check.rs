@@ -64,31 +64,16 @@ pub enum StepError {
 
 /// Checks steps as they come: their order, lengths, times, and that all numbers are finite.
 #[derive(Clone, Debug, Default)]
-pub struct StepCheck {
+pub(crate) struct StepCheck {
     next: usize,
     /// Whether step 0 had velocity and acceleration.
     given: [bool; 2],
 }
 
 impl StepCheck {
-    /// Number of steps found good so far.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.next
-    }
-
-    /// Whether the steps bring velocities and accelerations of their own.
-    #[must_use]
-    pub fn given(&self) -> [bool; 2] {
-        self.given
-    }
-
-    /// Checks one step.
-    ///
-    /// # Errors
-    /// The first thing that does not fit; the step then does not count.
-    pub fn check<const D: usize, const N: usize>(
-        &self,
+    /// Checks one step and counts it, unless it does not fit.
+    pub(crate) fn advance<const D: usize, const N: usize>(
+        &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
         step: &Step<'_, D>,
@@ -123,15 +108,11 @@ impl StepCheck {
         if apart.is_nan() || apart > 1e-12 * times.end() {
             return Err(StepError::Time { step: n, given: step.time, expected });
         }
-        Ok(())
-    }
-
-    /// Counts a step that was found good.
-    pub fn accept<const D: usize>(&mut self, step: &Step<'_, D>) {
-        if self.next == 0 {
+        if n == 0 {
             self.given = optional(step).map(|(_, there)| there);
         }
         self.next += 1;
+        Ok(())
     }
 }
 

@@ -1,6 +1,6 @@
 //! A history in memory.
 
-use super::{SinkError, Step, StepSink, StepSource};
+use super::{SinkError, State, StateSink, Step, StepSource};
 use crate::time::TimeGrid;
 use thiserror::Error;
 
@@ -145,8 +145,12 @@ impl<const D: usize> History<D> {
     }
 }
 
-impl<const D: usize> StepSink<D> for History<D> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize> History<D> {
+    /// Appends a step.
+    ///
+    /// # Errors
+    /// A step that does not fit the steps before, or no memory.
+    pub fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
         if self.count == 0 {
             self.begin(step)?;
         }
@@ -164,6 +168,12 @@ impl<const D: usize> StepSink<D> for History<D> {
     }
 }
 
+impl<const D: usize> StateSink<D> for History<D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.push(state.step())
+    }
+}
+
 impl<const D: usize> StepSource<D> for History<D> {
     fn times(&self) -> &TimeGrid {
         &self.times
@@ -173,8 +183,8 @@ impl<const D: usize> StepSource<D> for History<D> {
         self.count
     }
 
-    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
-        (0..self.count).filter_map(|n| self.step(n)).try_for_each(|step| sink.push(&step))
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        (0..self.count).filter_map(|n| self.step(n)).try_for_each(|step| take(&step))
     }
 }
 
@@ -204,7 +214,7 @@ mod tests {
         assert_eq!([0, 1, 2].map(|n| history.step(n)), [0, 1, 2].map(|n| Some(step(n))));
         assert_eq!(history.step(3), None);
         let mut again = History::new(history.times());
-        history.replay(&mut again).unwrap();
+        history.replay(&mut |step| again.push(step)).unwrap();
         assert_eq!(again, history);
     }
 

@@ -4,9 +4,11 @@ mod check;
 mod memory;
 mod state;
 
-pub use check::{StepCheck, StepError};
+pub(crate) use check::StepCheck;
+pub use check::StepError;
 pub use memory::{History, MemoryError};
 pub use state::State;
+pub(crate) use state::{StepForces, half_of_last};
 
 use crate::time::TimeGrid;
 
@@ -33,22 +35,13 @@ pub struct Step<'a, const D: usize> {
 /// Why a sink could not take a step.
 pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Takes steps in order, from 0 on.
-pub trait StepSink<const D: usize> {
-    /// Takes one step.
+/// Takes the states of steps in order, from 0 on.
+pub trait StateSink<const D: usize> {
+    /// Takes one state.
     ///
     /// # Errors
     /// Whatever keeps the sink from taking it; the run then stops.
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError>;
-
-    /// Takes one step that was checked and evaluated already. A sink that needs no more than the step itself need not
-    /// implement this.
-    ///
-    /// # Errors
-    /// As [`StepSink::push`].
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.push(&state.step)
-    }
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError>;
 }
 
 /// Gives steps back in order.
@@ -59,64 +52,47 @@ pub trait StepSource<const D: usize> {
     /// Number of instants held, at most N + 1.
     fn count(&self) -> usize;
 
-    /// Hands all steps to a sink.
+    /// Hands all steps to `take`. [`dynamics::replay`](crate::dynamics::replay) makes their states.
     ///
     /// # Errors
-    /// What the source fails to read or the sink fails to take.
-    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError>;
+    /// What the source fails to read or `take` returns.
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError>;
 }
 
-/// Discards all steps.
+/// Discards all states.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Discard;
 
-impl<const D: usize> StepSink<D> for Discard {
-    fn push(&mut self, _: &Step<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize> StateSink<D> for Discard {
+    fn accept(&mut self, _: &State<'_, D>) -> Result<(), SinkError> {
         Ok(())
     }
 }
 
 /// Two sinks side by side.
-impl<const D: usize, A: StepSink<D>, B: StepSink<D>> StepSink<D> for (A, B) {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.0.push(step)?;
-        self.1.push(step)
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.0.push_state(state)?;
-        self.1.push_state(state)
+impl<const D: usize, A: StateSink<D>, B: StateSink<D>> StateSink<D> for (A, B) {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.0.accept(state)?;
+        self.1.accept(state)
     }
 }
 
 /// Any number of sinks side by side.
-impl<const D: usize, S: StepSink<D>> StepSink<D> for Vec<S> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.iter_mut().try_for_each(|sink| sink.push(step))
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.iter_mut().try_for_each(|sink| sink.push_state(state))
+impl<const D: usize, S: StateSink<D>> StateSink<D> for Vec<S> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.iter_mut().try_for_each(|sink| sink.accept(state))
     }
 }
 
 /// A sink that may be left out.
-impl<const D: usize, S: StepSink<D>> StepSink<D> for Option<S> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.as_mut().map_or(Ok(()), |sink| sink.push(step))
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.as_mut().map_or(Ok(()), |sink| sink.push_state(state))
+impl<const D: usize, S: StateSink<D>> StateSink<D> for Option<S> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.as_mut().map_or(Ok(()), |sink| sink.accept(state))
     }
 }
 
-impl<const D: usize, S: StepSink<D> + ?Sized> StepSink<D> for &mut S {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        (**self).push(step)
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        (**self).push_state(state)
+impl<const D: usize, S: StateSink<D> + ?Sized> StateSink<D> for &mut S {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        (**self).accept(state)
     }
 }

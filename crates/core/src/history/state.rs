@@ -2,50 +2,111 @@
 
 use super::Step;
 use crate::contact::ContactSurface;
+use crate::problem::Problem;
+use crate::time::TimeGrid;
 
-/// A step that fits its problem, with internal forces, acceleration and velocity by the scheme, eq. \[28\]–\[32\]. They are
-/// computed once for all sinks. Velocities or accelerations that the step brings replace those of the scheme.
-#[derive(Clone, Copy, Debug)]
-pub struct State<'a, const D: usize> {
-    /// The step.
-    pub step: Step<'a, D>,
+/// The forces at an instant by the scheme.
+#[derive(Clone, Debug)]
+pub(crate) struct StepForces<const D: usize> {
     /// Strain energy ½ u_n·K u_n (J).
-    pub strain: f64,
-    /// M a_n by the scheme (N).
-    pub force: &'a [[f64; D]],
+    pub(crate) strain: f64,
+    /// M a_n (N).
+    pub(crate) total: Vec<[f64; D]>,
     /// The same but for contact at the nodes of the contact surface (N).
-    pub force_before_contact: &'a [[f64; D]],
+    pub(crate) before_contact: Vec<[f64; D]>,
     /// Reaction of each prescribed component (N).
-    pub support_reaction: &'a [f64],
-    /// v_{n−½} (m/s), at the start v₀.
-    pub half_step: &'a [[f64; D]],
-    /// ½Δt_{n−1} (s), 0 at the start.
-    pub back: f64,
-    /// 1/m of each node (1/kg).
-    pub inverse_mass: &'a [f64],
+    pub(crate) supports: Vec<f64>,
 }
 
-impl<const D: usize> State<'_, D> {
+impl<const D: usize> StepForces<D> {
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+        Self {
+            strain: 0.0,
+            total: vec![[0.0; D]; problem.mesh().node_count()],
+            before_contact: vec![[0.0; D]; problem.surface().nodes().len()],
+            supports: vec![0.0; problem.prescribed().len()],
+        }
+    }
+}
+
+/// A step that fits its problem, with its nodal forces and v_{n−½} by the scheme, eq. \[28\]–\[32\]. These fields are
+/// computed once for all sinks; acceleration, velocity and energies follow from them at each call. Velocities or
+/// accelerations that the step brings replace those of the scheme. Only `dynamics` makes states.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'a, const D: usize> {
+    step: Step<'a, D>,
+    forces: &'a StepForces<D>,
+    half_step: &'a [[f64; D]],
+    /// ½Δt_{n−1} (s), 0 at the start.
+    back: f64,
+    inverse_mass: &'a [f64],
+}
+
+impl<'a, const D: usize> State<'a, D> {
+    /// The state of a checked step; `half_step` is v_{n−½} (m/s), at the start v₀.
+    pub(crate) fn new(
+        step: Step<'a, D>,
+        times: &TimeGrid,
+        forces: &'a StepForces<D>,
+        half_step: &'a [[f64; D]],
+        inverse_mass: &'a [f64],
+    ) -> Self {
+        Self { step, forces, half_step, back: half_of_last(times, step.index), inverse_mass }
+    }
+
+    /// The step.
+    #[must_use]
+    pub fn step(&self) -> &Step<'a, D> {
+        &self.step
+    }
+
+    /// Strain energy ½ u_n·K u_n (J).
+    #[must_use]
+    pub fn strain(&self) -> f64 {
+        self.forces.strain
+    }
+
+    /// v_{n−½} (m/s), at the start v₀.
+    #[must_use]
+    pub fn half_step(&self) -> &'a [[f64; D]] {
+        self.half_step
+    }
+
+    /// Reaction of each prescribed component (N).
+    pub(crate) fn support_reaction(&self) -> &'a [f64] {
+        &self.forces.supports
+    }
+
+    /// ½Δt_{n−1} (s), 0 at the start.
+    pub(crate) fn back(&self) -> f64 {
+        self.back
+    }
+
+    /// 1/m of each node (1/kg).
+    pub(crate) fn inverse_mass(&self) -> &'a [f64] {
+        self.inverse_mass
+    }
+
     /// a_n of a node (m/s²).
     #[inline]
     fn acceleration_of(&self, node: usize) -> [f64; D] {
         match self.step.acceleration {
             Some(given) => given[node],
-            None => self.force[node].map(|f| self.inverse_mass[node] * f),
+            None => self.forces.total[node].map(|f| self.inverse_mass[node] * f),
         }
     }
 
     /// a_n (m/s²).
     #[must_use]
     pub fn acceleration(&self) -> Vec<[f64; D]> {
-        (0..self.force.len()).map(|node| self.acceleration_of(node)).collect()
+        (0..self.forces.total.len()).map(|node| self.acceleration_of(node)).collect()
     }
 
     /// M a_n by the scheme but for contact (N).
     #[must_use]
     pub fn force_without_contact(&self, surface: &ContactSurface<D>) -> Vec<[f64; D]> {
-        let mut force = self.force.to_vec();
-        for (contact, before) in surface.nodes().iter().zip(self.force_before_contact) {
+        let mut force = self.forces.total.clone();
+        for (contact, before) in surface.nodes().iter().zip(&self.forces.before_contact) {
             force[contact.node.index()] = *before;
         }
         force
@@ -61,17 +122,22 @@ impl<const D: usize> State<'_, D> {
             let acceleration = self.acceleration_of(node);
             std::array::from_fn(|c| self.half_step[node][c] + self.back * acceleration[c])
         };
-        (0..self.force.len()).map(one).collect()
+        (0..self.forces.total.len()).map(one).collect()
     }
 
     /// Kinetic energy (J) and momentum (kg m/s), with these masses of the nodes (kg).
     #[must_use]
     pub fn energies(&self, mass: &[f64]) -> (f64, [f64; D]) {
         if self.step.velocity.is_none() && self.step.acceleration.is_none() {
-            return energies(mass, self.half_step, self.back, self.force);
+            return energies(mass, self.half_step, self.back, &self.forces.total);
         }
-        energies(mass, &self.velocity(), 0.0, self.force)
+        energies(mass, &self.velocity(), 0.0, &self.forces.total)
     }
+}
+
+/// ½Δt_{n−1} (s), 0 at the start.
+pub(crate) fn half_of_last(times: &TimeGrid, n: usize) -> f64 {
+    if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) }
 }
 
 /// Those of the velocities v + `back` a.

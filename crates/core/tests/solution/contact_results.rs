@@ -19,9 +19,7 @@ const GAP: f64 = 2.7e-4;
 
 /// The contact results of a run, with all nodes at all instants.
 fn results<const D: usize, const N: usize>(run: &Run<'_, D, N>) -> ContactResults<D> {
-    let mut recorder = ContactRecorder::new(run.problem, run.history.times()).keeping_steps().unwrap();
-    run.history.replay(&mut recorder).unwrap();
-    recorder.finish()
+    ContactRecorder::new(run.problem, run.history.times()).keeping_steps().unwrap().replay(&run.history).unwrap()
 }
 
 fn steps<const D: usize>(results: &ContactResults<D>) -> &ContactSteps<D> {

@@ -3,7 +3,7 @@
 use crate::run::{aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
-use percute_core::history::{Discard, History, SinkError, Step, StepSink};
+use percute_core::history::{Discard, History, SinkError, State, StateSink};
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::{Progress, Unobserved};
@@ -106,9 +106,9 @@ struct Full {
     taken: usize,
 }
 
-impl StepSink<2> for Full {
-    fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
-        if step.index == self.at {
+impl StateSink<2> for Full {
+    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+        if state.step().index == self.at {
             return Err("no room left".into());
         }
         self.taken += 1;

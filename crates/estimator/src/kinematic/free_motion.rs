@@ -52,11 +52,11 @@ impl<const D: usize> FreeMotion<D> {
         times: &TimeGrid,
         state: &State<'_, D>,
     ) -> (Option<NodalMotion<D>>, NodalMotion<D>) {
-        let n = state.step.index;
+        let n = state.step().index;
         let mut mid = None;
         if n > 0 {
             let half = 0.5 * times.step(n - 1);
-            let mut velocity = state.half_step.to_vec();
+            let mut velocity = state.half_step().to_vec();
             prescribe(problem, &mut velocity, |p| {
                 let v = |k: usize| problem.prescribed_velocity(p, times.instants()[k]);
                 0.5 * (v(n - 1) + v(n))

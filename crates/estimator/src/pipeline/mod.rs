@@ -16,8 +16,7 @@ use crate::estimate::Estimate;
 use crate::options::{MOST_THREADS, Options};
 use crate::request::Request;
 use maps::Maps;
-use percute_core::dynamics::Evaluation;
-use percute_core::history::{SinkError, State, Step, StepSink};
+use percute_core::history::{SinkError, State, StateSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
@@ -32,7 +31,7 @@ pub use window::memory;
 /// of contact, which wait until their nodes' next contact is known, and for the maps that were
 /// requested.
 ///
-/// A [`push`](StepSink::push) that fills a window works on all of it before it returns, and so does
+/// A state that fills a window makes [`accept`](StateSink::accept) work on all of it before it returns, and so does
 /// [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: with
 /// the default window about a second on one core for up to 250 000 elements, and in proportion to them
 /// beyond, because a window has 8 steps at least. [`Options::window`] makes it shorter.
@@ -42,8 +41,6 @@ pub struct Estimator<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     pool: ThreadPool,
     preparation: Preparation<'p, D, N>,
-    /// Evaluates bare steps.
-    evaluation: Option<Box<Evaluation<'p, D, N>>>,
     window: LevelWindow<'p, D, N>,
 }
 
@@ -68,7 +65,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
         let mut preparation = Preparation::new(problem, times, &options);
         preparation.prepare(&window.equilibration.elements);
-        Ok(Self { problem, times, pool, preparation, evaluation: None, window })
+        Ok(Self { problem, times, pool, preparation, window })
     }
 
     /// Keeps the maps requested as well, from the first step on. No other number of the estimate changes.
@@ -103,18 +100,9 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StepSink<D> for Estimator<'_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let mut evaluation =
-            self.evaluation.take().unwrap_or_else(|| Box::new(Evaluation::new(self.problem, self.times)));
-        let state = evaluation.advance(step).map_err(EstimateError::from);
-        let pushed = state.map_err(SinkError::from).and_then(|state| self.push_state(&state));
-        self.evaluation = Some(evaluation);
-        pushed
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.preparation.check(&state.step)?;
+impl<const D: usize, const N: usize> StateSink<D> for Estimator<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.preparation.check(state.step())?;
         self.preparation.push(state);
         self.pass_on(false);
         Ok(())

@@ -154,7 +154,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Takes in one step.
     pub(super) fn push(&mut self, state: &State<'_, D>) {
-        let (problem, step, n) = (self.problem, &state.step, state.step.index);
+        let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
         self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
         let (mid, now) = self.motion.advance(problem, self.times, state);

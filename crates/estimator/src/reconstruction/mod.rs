@@ -85,7 +85,7 @@ pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + 
     /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the reconstruction
     /// has its own.
     fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
-        let (state, step) = (simulated.state, &simulated.state.step);
+        let (state, step) = (simulated.state, simulated.state.step());
         let force = state.force_without_contact(dynamics.problem().surface());
         BalancedFields { displacement: step.displacement.to_vec(), force, contact: step.reaction.to_vec() }
     }

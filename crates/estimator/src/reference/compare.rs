@@ -4,12 +4,11 @@ use super::locate::Transfer;
 use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
 use crate::inertia::mass_product;
-use percute_core::dynamics::{Evaluation, Stiffness};
-use percute_core::history::{SinkError, Step, StepSink};
+use percute_core::dynamics::Stiffness;
+use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
 
 /// Instants that agree to this, relative, are the same: rounding of N·Δt against T.
 const SAME_INSTANT: f64 = 1e-12;
@@ -23,10 +22,9 @@ const SAME_INSTANT: f64 = 1e-12;
 pub struct Comparison<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     stiffness: Stiffness<D, N>,
-    evaluation: Evaluation<'p, D, N>,
     coarse: Vec<Coarse<'p, D, N>>,
     /// The last state of the reference.
-    before: Option<State<D>>,
+    before: Option<Instant<D>>,
 }
 
 /// One simulation under comparison.
@@ -40,26 +38,20 @@ struct Coarse<'p, const D: usize, const N: usize> {
 
 /// The reference at one of its instants.
 #[derive(Clone, Debug)]
-struct State<const D: usize> {
+struct Instant<const D: usize> {
     time: f64,
     displacement: Vec<[f64; D]>,
     velocity: Vec<[f64; D]>,
 }
 
 impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
-    /// A comparison with the simulation of `problem` over `times`, whose steps must be pushed.
+    /// A comparison with the simulation of `problem`, whose states it must take.
     #[must_use]
-    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
-        Self {
-            problem,
-            stiffness: Stiffness::new(problem),
-            evaluation: Evaluation::new(problem, times),
-            coarse: Vec::new(),
-            before: None,
-        }
+    pub fn new(problem: &'p Problem<D, N>) -> Self {
+        Self { problem, stiffness: Stiffness::new(problem), coarse: Vec::new(), before: None }
     }
 
-    /// Adds a simulation to compare, before the first step is pushed. The results come in the
+    /// Adds a simulation to compare, before it takes the first state. The results come in the
     /// order in which they were added.
     ///
     /// # Errors
@@ -93,10 +85,10 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StepSink<D> for Comparison<'_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        let velocity = self.evaluation.advance(step)?.velocity();
-        let now = State { time: step.time, displacement: step.displacement.to_vec(), velocity };
+impl<const D: usize, const N: usize> StateSink<D> for Comparison<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let displacement = state.step().displacement.to_vec();
+        let now = Instant { time: state.step().time, displacement, velocity: state.velocity() };
         let before = self.before.replace(now.clone());
         let before = before.as_ref().unwrap_or(&now);
         for coarse in &mut self.coarse {
@@ -121,8 +113,8 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
         &self,
         fine: &Problem<D, N>,
         stiffness: &Stiffness<D, N>,
-        before: &State<D>,
-        now: &State<D>,
+        before: &Instant<D>,
+        now: &Instant<D>,
         weight: f64,
     ) -> TrueErrorSample {
         let n = self.samples.len();

@@ -6,7 +6,7 @@
 //!
 //! e²(t) = ½∫ρ|Δv|² + ½∫Δε : K : Δε.
 //!
-//! A [`Recorder`] keeps the fields of the simulation whose error is wanted. [`Comparison`] takes
+//! [`Motion`] keeps the fields of the simulation whose error is wanted. [`Comparison`] takes
 //! the steps of a finer simulation as they come and compares; [`bar_impact_error`] evaluates
 //! eq. \[60\] for the exact impact of a bar.
 
@@ -19,7 +19,7 @@ mod motion;
 pub use bar::bar_impact_error;
 pub use compare::Comparison;
 pub use error::ReferenceError;
-pub use motion::{Motion, Recorder};
+pub use motion::Motion;
 
 /// The true error at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -16,7 +16,7 @@ use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Recorder, TrueError, bar_impact_error};
+use percute_estimator::reference::{Motion, TrueError, bar_impact_error};
 use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request};
 use percute_exact::BarImpact;
 
@@ -65,12 +65,12 @@ fn effectivity(bar: &Bar) -> ([Estimate<1>; 3], TrueError) {
         Estimator::new(&problem, &times, options).unwrap()
     };
     let [corrected, consistent, published] = RECONSTRUCTIONS.map(estimator);
-    let mut sink = (Recorder::new(&problem, &times), (corrected, (consistent, published)));
+    let mut sink = (Motion::default(), (corrected, (consistent, published)));
     simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
-    let (recorder, (corrected, (consistent, published))) = sink;
+    let (motion, (corrected, (consistent, published))) = sink;
     let Bar { length, young, density, section, speed, gap, .. } = *bar;
     let exact = BarImpact { length, young, density, section, speed, gap };
-    let error = bar_impact_error(&problem, &recorder.finish(), &exact).unwrap();
+    let error = bar_impact_error(&problem, &motion, &exact).unwrap();
     ([corrected, consistent, published].map(|e| e.finish().unwrap()), error)
 }
 

@@ -3,7 +3,7 @@
 use crate::bodies::{gravity, plane_below, steps, swinging, thrown};
 use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
 use percute_core::contact::Obstacle;
-use percute_core::history::{History, StepSink};
+use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Progress;

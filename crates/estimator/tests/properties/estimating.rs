@@ -1,11 +1,11 @@
 //! Estimates of histories under all choices.
 
-use percute_core::dynamics::simulate;
-use percute_core::history::{History, StepSource};
+use percute_core::dynamics::{Evaluation, replay, simulate};
+use percute_core::history::{History, SinkError, StateSink, Step, StepError, StepSource};
 use percute_core::observer::Unobserved;
-use percute_core::problem::Problem;
+use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request};
+use percute_estimator::{Acceleration, Estimate, EstimateError, Estimator, Options, Reconstruction, Request};
 
 /// All reconstructions of the contact force under each of the Γ_DA.
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
@@ -26,6 +26,31 @@ pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, t
     history
 }
 
+/// An estimator of bare steps.
+pub(crate) struct Evaluated<'p> {
+    evaluation: Evaluation<'p, 2, 3>,
+    pub(crate) estimator: Estimator<'p, 2, 3>,
+}
+
+impl<'p> Evaluated<'p> {
+    pub(crate) fn new(problem: &'p TriangleProblem, times: &'p TimeGrid, options: Options) -> Self {
+        let estimator = Estimator::new(problem, times, options).unwrap();
+        Self { evaluation: Evaluation::new(problem, times), estimator }
+    }
+
+    pub(crate) fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
+        self.estimator.accept(&self.evaluation.advance(step)?)
+    }
+}
+
+/// The reason why a step was refused.
+pub(crate) fn cause(error: SinkError) -> EstimateError {
+    match error.downcast::<StepError>() {
+        Ok(error) => EstimateError::Step(*error),
+        Err(error) => *error.downcast().unwrap(),
+    }
+}
+
 /// The estimate of a stored history.
 pub(crate) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
@@ -43,7 +68,7 @@ pub(crate) fn estimate_with_maps<const D: usize, const N: usize>(
     request: &Request,
 ) -> Estimate<D> {
     let mut estimator = Estimator::new(problem, history.times(), options).unwrap().keeping(request).unwrap();
-    history.replay(&mut estimator).unwrap();
+    replay(problem, history, &mut estimator).unwrap();
     estimator.finish().unwrap()
 }
 

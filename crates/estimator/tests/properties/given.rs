@@ -1,13 +1,13 @@
 //! Histories that bring velocities and accelerations of their own.
 
 use crate::bodies::{fixed, gravity, plane_below, steps, swinging, thrown};
-use crate::estimating::{all_choices, assert_admissible, estimate, history};
+use crate::estimating::{Evaluated, all_choices, assert_admissible, cause, estimate, history};
 use percute_core::dynamics::Evaluation;
-use percute_core::history::{History, Step, StepError, StepSink};
+use percute_core::history::{History, Step, StepError};
 use percute_core::load::{Support, Table};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, EstimateError, Estimator, Given, Options, Reconstruction};
+use percute_estimator::{Estimate, EstimateError, Given, Options, Reconstruction};
 use percute_testkit::random_rectangle;
 use std::f64::consts::PI;
 
@@ -130,13 +130,13 @@ fn refused(change: impl Fn(usize, &mut Option<Field>)) -> EstimateError {
     let (problem, times) = runs().remove(0);
     let history = history(&problem, &times);
     let motion = motion(&problem, &history, &times);
-    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    let mut estimator = Evaluated::new(&problem, &times, Options::default());
     for (n, (v, _)) in motion.into_iter().enumerate() {
         let mut velocity = Some(v);
         change(n, &mut velocity);
         let step = Step { velocity: velocity.as_deref(), ..history.step(n).unwrap() };
         if let Err(error) = estimator.push(&step) {
-            return *error.downcast().unwrap();
+            return cause(error);
         }
     }
     panic!("nothing was refused")
@@ -179,10 +179,10 @@ fn accelerations_that_do_not_fit_are_refused() {
         (None, StepError::Partly { step: 1, field: "acceleration", there: false }),
     ] {
         let options = Options { reconstruction: Reconstruction::Published, ..Options::default() };
-        let mut estimator = Estimator::new(&problem, &times, options).unwrap();
+        let mut estimator = Evaluated::new(&problem, &times, options);
         estimator.push(&Step { acceleration: Some(&zero), ..history.step(0).unwrap() }).unwrap();
         let acceleration = second.map(Vec::as_slice);
         let found = estimator.push(&Step { acceleration, ..history.step(1).unwrap() }).unwrap_err();
-        assert_eq!(*found.downcast::<EstimateError>().unwrap(), EstimateError::Step(error));
+        assert_eq!(cause(found), EstimateError::Step(error));
     }
 }

@@ -1,8 +1,8 @@
 //! Steps that do not fit: an error that says what is wrong, never a panic.
 
 use crate::bodies::{plane_below, steps, thrown};
-use crate::estimating::history;
-use percute_core::history::{SinkError, Step, StepError, StepSink};
+use crate::estimating::{Evaluated, cause, history};
+use percute_core::history::{Step, StepError};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Estimator, MOST_THREADS, Options, Reconstruction};
@@ -37,10 +37,6 @@ fn impact() -> TriangleProblem {
     thrown(mesh, [100.0, -300.0], plane).build().unwrap()
 }
 
-fn cause(error: SinkError) -> EstimateError {
-    *error.downcast().unwrap()
-}
-
 type Spoil = fn(&mut Raw);
 
 /// Feeds the steps of a run up to number `at`, which is spoilt.
@@ -48,7 +44,7 @@ fn fed(at: usize, spoil: impl Fn(&mut Raw)) -> EstimateError {
     let problem = impact();
     let times = steps(&problem, 0.9, 10);
     let history = history(&problem, &times);
-    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    let mut estimator = Evaluated::new(&problem, &times, Options::default());
     for n in 0..at {
         estimator.push(&history.step(n).unwrap()).unwrap();
     }
@@ -56,7 +52,7 @@ fn fed(at: usize, spoil: impl Fn(&mut Raw)) -> EstimateError {
     spoil(&mut raw);
     let error = cause(estimator.push(&raw.step()).unwrap_err());
     // What was right before can still be summed up.
-    assert_eq!(estimator.finish().is_ok(), at >= 2);
+    assert_eq!(estimator.estimator.finish().is_ok(), at >= 2);
     error
 }
 
@@ -109,7 +105,7 @@ fn a_start_too_near() {
     for (step, refused) in [(far, false), (near, true)] {
         let times = TimeGrid::uniform(3.0 * step, 3).unwrap();
         let surface = problem.surface().nodes().len();
-        let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+        let mut estimator = Evaluated::new(&problem, &times, Options::default());
         let nodes = problem.mesh().node_count();
         let mut raw = Raw {
             index: 0,
@@ -140,9 +136,9 @@ fn too_few_steps_and_impossible_options() {
     let times = steps(&problem, 0.9, 10);
     let history = history(&problem, &times);
     for count in 0..2 {
-        let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+        let mut estimator = Evaluated::new(&problem, &times, Options::default());
         (0..count).for_each(|n| estimator.push(&history.step(n).unwrap()).unwrap());
-        assert_eq!(estimator.finish(), Err(EstimateError::TooFewSteps { count }));
+        assert_eq!(estimator.estimator.finish(), Err(EstimateError::TooFewSteps { count }));
     }
     for options in [
         Options { every: 0, ..Options::default() },
@@ -163,7 +159,7 @@ fn overflow_shows() {
     let problem = impact();
     let times = steps(&problem, 0.9, 10);
     let history = history(&problem, &times);
-    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    let mut estimator = Evaluated::new(&problem, &times, Options::default());
     for n in 0..history.len() {
         let mut raw = Raw::of(&history.step(n).unwrap());
         if n == 4 {
@@ -171,7 +167,7 @@ fn overflow_shows() {
         }
         estimator.push(&raw.step()).unwrap();
     }
-    assert_eq!(estimator.finish(), Err(EstimateError::Overflow));
+    assert_eq!(estimator.estimator.finish(), Err(EstimateError::Overflow));
 }
 
 /// Times of another grid, a first step that is not the initial state, contact where there is none.
@@ -206,7 +202,7 @@ fn steps_too_long_for_the_auxiliary_solution() {
     let thinned = TimeGrid::from_instants(instants).unwrap();
     for reconstruction in [Reconstruction::Corrected, Reconstruction::Consistent] {
         let options = Options { reconstruction, ..Options::default() };
-        let mut estimator = Estimator::new(&problem, &thinned, options).unwrap();
+        let mut estimator = Evaluated::new(&problem, &thinned, options);
         let mut refused = None;
         for n in 0..=thinned.step_count() {
             let mut raw = Raw::of(&history.step(3 * n).unwrap());
@@ -230,6 +226,6 @@ fn steps_too_long_for_the_auxiliary_solution() {
             other => assert!(other.is_none() && reconstruction == Reconstruction::Consistent, "{other:?}"),
         }
         // What was right before can still be summed up.
-        assert!(estimator.finish().is_ok());
+        assert!(estimator.estimator.finish().is_ok());
     }
 }

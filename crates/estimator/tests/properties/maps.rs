@@ -254,7 +254,7 @@ fn more_maps_than_memory_are_refused() {
 fn beginning(complete: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
     let mut history = History::new(times);
     for n in 0..count {
-        percute_core::history::StepSink::push(&mut history, &complete.step(n).unwrap()).unwrap();
+        history.push(&complete.step(n).unwrap()).unwrap();
     }
     history
 }

@@ -8,7 +8,7 @@ use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Motion, Recorder};
+use percute_estimator::reference::Motion;
 use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
 use percute_exact::{BlockMode, Wave};
 use std::f64::consts::PI;
@@ -91,12 +91,12 @@ fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>,
         .unwrap()
     };
     let mut sink = (
-        Recorder::new(problem, &times),
+        Motion::default(),
         (estimator(Acceleration::Closest), (estimator(Acceleration::Rigid), estimator(Acceleration::Weak))),
     );
     simulate(problem, &times, &mut sink, &mut Unobserved).unwrap();
-    let (recorder, (closest, (rigid, weak))) = sink;
-    (recorder.finish(), [closest, rigid, weak].map(|e| e.finish().unwrap()))
+    let (motion, (closest, (rigid, weak))) = sink;
+    (motion, [closest, rigid, weak].map(|e| e.finish().unwrap()))
 }
 
 /// True error at the start, its largest value and its mean (J^½).

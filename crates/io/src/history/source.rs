@@ -4,7 +4,7 @@ use super::file::HistoryFile;
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Opened, Part};
-use percute_core::history::{SinkError, Step, StepSink, StepSource};
+use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::ops::Range;
@@ -140,12 +140,17 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         Err(FileCause::NotFinite { name: name.to_string(), step: first + at / rows, node: node(at % rows), value })
     }
 
-    fn hand_on(&self, block: &StepBlock<D>, steps: Range<usize>, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+    fn hand_on(
+        &self,
+        block: &StepBlock<D>,
+        steps: Range<usize>,
+        take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>,
+    ) -> Result<(), SinkError> {
         let (nodes, surface) = (self.file.mesh().node_count(), self.rows.len());
         for (k, index) in steps.enumerate() {
             let (nodal, contact) = (k * nodes..(k + 1) * nodes, k * surface..(k + 1) * surface);
             let [velocity, acceleration] = [0, 1].map(|m| block.motion[m].as_ref().map(|v| &v[nodal.clone()]));
-            sink.push(&Step {
+            take(&Step {
                 index,
                 time: self.file.times().instants()[index],
                 displacement: &block.displacement[nodal],
@@ -168,13 +173,13 @@ impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
         self.file.count()
     }
 
-    fn replay(&self, sink: &mut dyn StepSink<D>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         let step = 24 * self.file.mesh().node_count() + 16 * self.file.contact_nodes().len();
         let size = (BLOCK / step.max(1)).max(1);
         for start in (0..self.count()).step_by(size) {
             let steps = start..self.count().min(start + size);
             let block = self.block(steps.clone())?;
-            self.hand_on(&block, steps, sink)?;
+            self.hand_on(&block, steps, take)?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use super::recover::set_steps;
 use super::rows::{Places, Row};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
-use percute_core::history::{SinkError, Step, StepError, StepSink};
+use percute_core::history::{SinkError, State, StateSink, Step, StepError};
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
@@ -152,11 +152,19 @@ impl<const D: usize> Writer<D> {
         self.next += 1;
         Ok(())
     }
+
+    /// Appends a step.
+    ///
+    /// # Errors
+    /// A step that does not fit, or a file that cannot be written.
+    pub fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        Ok(self.send(step).map_err(|cause| cause.at(&self.path))?)
+    }
 }
 
-impl<const D: usize> StepSink<D> for Writer<D> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        Ok(self.send(step).map_err(|cause| cause.at(&self.path))?)
+impl<const D: usize> StateSink<D> for Writer<D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.push(state.step())
     }
 }
 

@@ -25,9 +25,7 @@ fn steps<const D: usize, const N: usize>(problem: &Problem<D, N>) -> History<D> 
 }
 
 fn replayed<const D: usize, const N: usize>(problem: &Problem<D, N>, source: &dyn StepSource<D>) -> ContactResults<D> {
-    let mut recorder = ContactRecorder::new(problem, source.times()).keeping_steps().unwrap();
-    source.replay(&mut recorder).unwrap();
-    recorder.finish()
+    ContactRecorder::new(problem, source.times()).keeping_steps().unwrap().replay(source).unwrap()
 }
 
 fn bar() -> BarProblem {
@@ -79,9 +77,8 @@ fn without_steps<const D: usize, const N: usize>(
     memory: &History<D>,
     all: &ContactResults<D>,
 ) {
-    let mut recorder = ContactRecorder::new(problem, times);
-    memory.replay(&mut recorder).unwrap();
-    assert_eq!(recorder.finish(), ContactResults { steps: None, ..all.clone() });
+    let results = ContactRecorder::new(problem, times).replay(memory).unwrap();
+    assert_eq!(results, ContactResults { steps: None, ..all.clone() });
 }
 
 /// On the body at the instants of the maps; off the contact surface zeros, and the status -1.

@@ -2,7 +2,7 @@
 
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
-use percute_core::history::{History, StepSink, StepSource};
+use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
@@ -109,7 +109,7 @@ pub(crate) fn replayed(path: &Path, problem: &TriangleProblem) -> Result<History
     let AnyHistoryFile::Plane(file) = open(path)? else { panic!("bars") };
     let source = file.source(problem)?;
     let mut history = History::new(source.times());
-    match source.replay(&mut history) {
+    match source.replay(&mut |step| history.push(step)) {
         Ok(()) => Ok(history),
         Err(error) => Err(*error.downcast::<FileError>().unwrap()),
     }

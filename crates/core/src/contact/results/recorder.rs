@@ -4,7 +4,7 @@ use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::Frame;
-use crate::history::{SinkError, State, Step, StepCheck, StepSink};
+use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 use thiserror::Error;
@@ -27,7 +27,6 @@ pub struct ContactMemoryError {
 pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
-    check: StepCheck,
     laws: Vec<TangentialLaw>,
     now: Vec<NodeState<D>>,
     results: ContactResults<D>,
@@ -56,7 +55,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
-        Self { problem, times, check: StepCheck::default(), laws, now, results }
+        Self { problem, times, laws, now, results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -117,21 +116,28 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StepSink<D> for ContactRecorder<'_, D, N> {
-    fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        self.check.check(self.problem, self.times, step)?;
-        self.check.accept(step);
-        self.record(step);
-        Ok(())
-    }
-
-    fn push_state(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.record(&state.step);
+impl<const D: usize, const N: usize> StateSink<D> for ContactRecorder<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        self.record(state.step());
         Ok(())
     }
 }
 
 impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
+    /// The contact results of a history. No force is computed: its steps are only checked.
+    ///
+    /// # Errors
+    /// A step that cannot be read or does not fit.
+    pub fn replay(mut self, source: &dyn StepSource<D>) -> Result<ContactResults<D>, SinkError> {
+        let mut check = StepCheck::default();
+        source.replay(&mut |step| {
+            check.advance(self.problem, self.times, step)?;
+            self.record(step);
+            Ok(())
+        })?;
+        Ok(self.finish())
+    }
+
     /// Records a checked step.
     fn record(&mut self, step: &Step<'_, D>) {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];

@@ -62,7 +62,7 @@ impl<const D: usize> AuxiliarySolution<D> {
 
     /// Takes in the energy of the simulation at a step.
     pub(super) fn watch(&mut self, simulated: &SimulatedStep<'_, D>, mass: &[f64]) {
-        self.peak_energy = self.peak_energy.max(simulated.state.strain + kinetic_energy(simulated.velocity, mass));
+        self.peak_energy = self.peak_energy.max(simulated.state.strain() + kinetic_energy(simulated.velocity, mass));
     }
 
     /// Whether it has become unstable, as it does where a history of another scheme takes steps above the critical one. A

@@ -104,7 +104,7 @@ impl<const D: usize, const N: usize> Reconstruction<D, N> for Corrected<'_, D, N
 
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
     fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
-        let (state, step, problem) = (simulated.state, &simulated.state.step, self.problem);
+        let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
         let contact = match &mut self.impulse_smoothing {
             Some(smoothing) => smoothing.advance(problem, self.times, step.index, step.reaction, &state.acceleration()),
             None => step.reaction.to_vec(),
