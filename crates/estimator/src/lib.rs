@@ -37,24 +37,3 @@ pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};
 pub use residual::Residuals;
-
-use percute_core::dynamics::{Simulation, simulate};
-use percute_core::observer::Observer;
-use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
-
-/// Simulates and estimates beside the run. If the observer breaks, the steps done are estimated.
-///
-/// # Errors
-/// [`RunError`]: a simulation that fails, options out of range, or maps that cannot be kept.
-pub fn run<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    options: Options,
-    request: &Request,
-    observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate<D>), RunError> {
-    let mut estimator = Estimator::new(problem, times, options)?.keeping(request)?;
-    let simulation = simulate(problem, times, &mut estimator, observer)?;
-    Ok((simulation, estimator.finish()?))
-}

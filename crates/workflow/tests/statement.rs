@@ -12,9 +12,10 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Options, Reconstruction, Request};
+use percute_estimator::{Acceleration, Options, Reconstruction};
 use percute_testkit::{Random, strategy::rectangle};
 use percute_workflow::case::{Case, NotRepresentable, Source, parse, problem_from, statement};
+use percute_workflow::run::{Analysis, Storage, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -196,7 +197,9 @@ fn as_good_as_the_case<const D: usize, const N: usize>(problem: &Problem<D, N>, 
     same(problem, &options);
     let (problem_again, options_again) = again(problem, &options);
     let estimate = |problem, options| {
-        percute_estimator::run(problem, times, options, &Request::default(), &mut Unobserved).unwrap()
+        let (analysis, storage) = (Analysis { options, ..Analysis::default() }, Storage { file: None, memory: None });
+        let results = run(problem, times, &analysis, storage, &mut Unobserved).unwrap();
+        (results.simulation, results.estimate)
     };
     assert_eq!(estimate(problem, options), estimate(&problem_again, options_again));
 }

@@ -3,6 +3,8 @@
 // Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../common/beside.rs"]
+mod beside;
 #[path = "../common/mod.rs"]
 mod common;
 mod hand;
@@ -54,7 +56,7 @@ fn grid(bar: &Bar) -> TimeGrid {
 
 /// The estimate of the program.
 fn estimate(bar: &Bar, options: Options) -> Estimate<1> {
-    percute_estimator::run(&problem(bar), &grid(bar), options, &Request::default(), &mut Unobserved).unwrap().1
+    beside::run(&problem(bar), &grid(bar), options, &Request::default(), &mut Unobserved).1
 }
 
 /// Estimates with the reconstructions in [`RECONSTRUCTIONS`], and the true error \[60\].

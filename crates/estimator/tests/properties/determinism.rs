@@ -1,5 +1,6 @@
 //! The same bits for all numbers of threads and window sizes, beside the run and from a history.
 
+use crate::beside::run;
 use crate::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
 use crate::estimating::{estimate, estimate_with_maps, history, reactions};
 use percute_core::history::Discard;
@@ -7,7 +8,7 @@ use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request, run};
+use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request};
 use percute_testkit::{disc, random_rectangle};
 
 /// Every number of an estimate; those of its maps come last.
@@ -52,7 +53,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
     assert!(reactions(&history) > 3, "{what}");
     // Energies and works that the steps tell are those of the run.
     let none = Request::default();
-    let (simulation, _) = run(problem, times, Options::default(), &none, &mut Unobserved).unwrap();
+    let (simulation, _) = run(problem, times, Options::default(), &none, &mut Unobserved);
     let (told, _) =
         percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Discard, &mut Unobserved)
             .unwrap();
@@ -71,7 +72,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
                     let options = Options { threads: Some(threads), window, ..options };
                     let replayed = bits(&estimate_with_maps(problem, &history, options, &request));
                     assert!(replayed == expected, "{what}, replayed: {options:?}");
-                    let (_, beside) = run(problem, times, options, &request, &mut Unobserved).unwrap();
+                    let (_, beside) = run(problem, times, options, &request, &mut Unobserved);
                     assert!(bits(&beside) == expected, "{what}, beside the run: {options:?}");
                 }
             }

@@ -1,5 +1,6 @@
 //! Edge cases: defined, and admissible like all others.
 
+use crate::beside::run;
 use crate::bodies::{gravity, plane_below, steps, swinging, thrown};
 use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
 use percute_core::contact::Obstacle;
@@ -9,7 +10,7 @@ use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Progress;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Options, Reconstruction, Request, run};
+use percute_estimator::{Estimate, Options, Reconstruction, Request};
 use percute_testkit::{random_rectangle, rotated};
 use std::ops::ControlFlow;
 
@@ -157,7 +158,7 @@ fn a_run_that_is_stopped() {
     let problem = impact();
     let times = steps(&problem, 0.9, 40);
     let mut stop = |p: Progress| if p.done >= 17 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-    let (simulation, stopped) = run(&problem, &times, Options::default(), &Request::default(), &mut stop).unwrap();
+    let (simulation, stopped) = run(&problem, &times, Options::default(), &Request::default(), &mut stop);
     assert!(simulation.interrupted);
     assert_eq!((stopped.steps, stopped.end), (17, times.instants()[17]));
     let complete = history(&problem, &times);

@@ -5,6 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod anything;
+#[path = "../common/beside.rs"]
+mod beside;
 mod bodies;
 mod chatter;
 mod consistency;

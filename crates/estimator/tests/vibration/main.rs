@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod bar;
+#[path = "../common/beside.rs"]
+mod beside;
 mod block;
 mod nothing;
 

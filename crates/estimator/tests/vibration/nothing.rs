@@ -18,8 +18,7 @@ fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, ener
     for acceleration in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
         for &reconstruction in Reconstruction::ALL {
             let options = Options { acceleration, reconstruction, ..Options::default() };
-            let (_, estimate) =
-                percute_estimator::run(problem, &times, options, &Request::default(), &mut Unobserved).unwrap();
+            let (_, estimate) = crate::beside::run(problem, &times, options, &Request::default(), &mut Unobserved);
             let error = estimate.error.sup / energy.sqrt();
             assert!(error < 1e-12, "{acceleration}, {reconstruction}: {error}");
         }

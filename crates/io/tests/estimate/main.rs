@@ -5,13 +5,13 @@
 
 use percute_core::contact::ContactResults;
 use percute_core::contact::Obstacle;
-use percute_core::dynamics::critical_time_step;
+use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Options, Request, run};
+use percute_estimator::{Estimate, Estimator, Options, Request};
 use percute_io::estimate_file::{EstimateContents, EstimateFile, open, write};
 use percute_io::{Case, FileCause, FileError, Kind, Overwrite, history, kind};
 use std::path::Path;
@@ -33,7 +33,9 @@ fn block() -> TriangleProblem {
 fn estimated<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize, fields: bool) -> Estimate<D> {
     let times = TimeGrid::uniform(0.9 * critical_time_step(problem) * 20.0, 20).unwrap();
     let request = Request { fields, ..Request::evenly(&times, count, 1) };
-    run(problem, &times, Options::default(), &request, &mut Unobserved).unwrap().1
+    let mut estimator = Estimator::new(problem, &times, Options::default()).unwrap().keeping(&request).unwrap();
+    simulate(problem, &times, &mut estimator, &mut Unobserved).unwrap();
+    estimator.finish().unwrap()
 }
 
 fn written<const D: usize, const N: usize>(

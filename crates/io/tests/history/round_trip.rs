@@ -8,7 +8,7 @@ use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, Request, estimate, run as run_and_estimate};
+use percute_estimator::{Estimator, Options, Request, estimate};
 use percute_io::history::{Plan, open, recover};
 use percute_io::{Kind, Overwrite, kind};
 use percute_testkit::Random;
@@ -129,8 +129,9 @@ fn estimates_from_the_file_are_those_beside_the_run() {
     let times = steps(&problem, 60);
     let plan = Plan::new(&problem, &times, STATEMENT, None);
     let mut writer = plan.create(&path, Overwrite::Refuse).unwrap();
-    let beside = run_and_estimate(&problem, &times, Options::default(), &Request::default(), &mut Unobserved).unwrap();
-    simulate(&problem, &times, &mut writer, &mut Unobserved).unwrap();
+    let mut estimator = Estimator::new(&problem, &times, Options::default()).unwrap();
+    let simulation = simulate(&problem, &times, &mut (&mut writer, &mut estimator), &mut Unobserved).unwrap();
+    let beside = (simulation, estimator.finish().unwrap());
     writer.finish().unwrap();
 
     let file = plane_file(&path);

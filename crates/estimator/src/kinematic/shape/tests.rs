@@ -4,7 +4,7 @@ use super::*;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use percute_core::contact::Obstacle;
-use percute_core::dynamics::critical_time_step;
+use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
@@ -162,9 +162,9 @@ fn chatter_meets_windows_that_penetrate() {
         let end = 250.0 * courant * critical_time_step(&problem);
         let times = TimeGrid::uniform(end, 250).unwrap();
         let before = SHAPED.get();
-        let (_, estimate) =
-            crate::run(&problem, &times, crate::Options::default(), &crate::Request::default(), &mut Unobserved)
-                .unwrap();
+        let mut estimator = crate::Estimator::new(&problem, &times, crate::Options::default()).unwrap();
+        simulate(&problem, &times, &mut estimator, &mut Unobserved).unwrap();
+        let estimate = estimator.finish().unwrap();
         assert!(SHAPED.get() > before, "case {k}: no window was solved again");
         // What the method allows.
         assert!(estimate.residuals.penetration_between_instants <= 1e-12, "case {k}");
