@@ -13,12 +13,6 @@ use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law};
 use percute_core::problem::Problem;
 
-/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
-pub(crate) const MOMENTS: usize = 12;
-
-/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
-pub(crate) type Form = [[f64; MOMENTS]; MOMENTS];
-
 /// The part of one element in η and d at one sample (J), contact apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ElementError {
@@ -182,45 +176,15 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         ElementError { kinetic, elastic, reference: 2.0 * (kinetic + elastic) + 4.0 * products }
     }
 
-    /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
-    /// the stress of the displacement that is equilibrated.
-    pub(crate) fn moment_slope(
-        &self,
-        equilibration: &Equilibration<'_, D, N>,
-        level: &Equilibrated<D>,
-    ) -> [f64; MOMENTS] {
-        let mut loading = self.balanced(equilibration, level, &[None; N], Side::After).loading;
-        self.subtract_tractions(&level.stress()[self.id.index()], &mut loading);
-        self.slope_of(&loading)
-    }
-
-    /// Its derivative.
-    pub(crate) fn moment_form(&self) -> Form {
-        std::array::from_fn(|i| {
-            let mut moments = [[[0.0; D]; D]; N];
-            moments[i / 4][i / 2 % 2][i % 2] = 1.0;
-            let loading = Loading { traction: self.tractions(&moments), volume: [[0.0; D]; N] };
-            self.slope_of(&loading)
-        })
-    }
-
-    fn slope_of(&self, loading: &Loading<D, N>) -> [f64; MOMENTS] {
-        let slope = self.stress.traction_slope(loading);
-        let mut moments = [0.0; MOMENTS];
-        // Tractions are D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
-        for (k, slope) in slope.iter().enumerate() {
-            for c in 0..D {
-                let sum: f64 = slope.iter().map(|s| s[c]).sum();
-                for p in 0..D {
-                    moments[4 * k + 2 * p + c] = D as f64 * ((D + 1) as f64 * slope[p][c] - sum);
-                }
-            }
-        }
-        moments
+    /// The slope of the energy of the stress in the tractions of a loading.
+    #[inline]
+    pub(crate) fn traction_slope(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
+        self.stress.traction_slope(loading)
     }
 
     /// |e|F̂ at the nodes of each facet, from its outward moments there.
-    fn tractions(&self, moments: &[[[f64; D]; D]; N]) -> [[[f64; D]; D]; N] {
+    #[inline]
+    pub(crate) fn tractions(&self, moments: &[[[f64; D]; D]; N]) -> [[[f64; D]; D]; N] {
         let mut traction = [[[0.0; D]; D]; N];
         for k in 0..N {
             for c in 0..D {
@@ -234,7 +198,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// Takes the tractions of a constant stress off a loading.
-    fn subtract_tractions(&self, stress: &[[f64; D]; D], loading: &mut Loading<D, N>) {
+    #[inline]
+    pub(crate) fn subtract_tractions(&self, stress: &[[f64; D]; D], loading: &mut Loading<D, N>) {
         for k in 0..N {
             let pull = self.element.internal_force(k, stress);
             for c in 0..D {

@@ -6,7 +6,8 @@
 //! - around each node that is surrounded by unknown edges, the same force and the same couple through all of
 //!   them: three for each such node.
 
-use super::{Form, LANES, Lanes, MOMENTS};
+use super::energy::{Form, MOMENTS};
+use super::{LANES, Lanes};
 use crate::stress::facet_node;
 use percute_core::ids::{FacetId, NodeId};
 use percute_core::problem::Problem;

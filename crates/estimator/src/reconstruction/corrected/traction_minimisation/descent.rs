@@ -1,7 +1,8 @@
 //! Preconditioned conjugate gradients over the modes.
 
 use super::basis::{Basis, FacetMoments, Modes, apply};
-use super::{Form, LANES, Lanes, MOMENTS};
+use super::energy::{Form, MOMENTS};
+use super::{LANES, Lanes};
 
 /// The change of the moments that a number of steps bring, given the slope of the energy of each element in its
 /// moments.

@@ -10,12 +10,14 @@
 
 mod basis;
 mod descent;
+mod energy;
 
 use crate::element::Element;
-use crate::measure::{ElementMeasure, Form, MOMENTS};
+use crate::measure::ElementMeasure;
 use crate::options::Acceleration;
 use crate::traction::{Equilibrated, Equilibration};
 use basis::Basis;
+use energy::{Form, MOMENTS, moment_form, moment_slope};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -50,7 +52,7 @@ impl<const D: usize> TractionMinimisation<D> {
         }
         let form = |(e, element): (usize, &Element<D, N>)| {
             // Energy does not depend on Γ_DA here: any choice will do.
-            ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::default()).moment_form()
+            moment_form(&ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::default()))
         };
         let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
         Some(Self { basis: Basis::new(problem, &forms), forms })
@@ -83,7 +85,7 @@ impl<const D: usize> TractionMinimisation<D> {
         slopes.par_chunks_mut(count).zip(&equilibration.elements).enumerate().for_each(|(e, (slopes, element))| {
             let measure = ElementMeasure::new(problem, element, ElementId::new(e), choice);
             for (slope, level) in slopes.iter_mut().zip(levels.iter()) {
-                *slope = measure.moment_slope(equilibration, level);
+                *slope = moment_slope(&measure, &level.stress()[e], equilibration, level);
             }
         });
         levels.par_chunks_mut(LANES).enumerate().for_each(|(chunk, levels)| {

@@ -1,0 +1,53 @@
+//! The energy of an element as a function of the moments on its edges.
+
+use crate::measure::ElementMeasure;
+use crate::stress::Loading;
+use crate::time_level::Side;
+use crate::traction::{Equilibrated, Equilibration};
+
+/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
+pub(super) const MOMENTS: usize = 12;
+
+/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
+pub(super) type Form = [[f64; MOMENTS]; MOMENTS];
+
+/// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
+/// the stress of the displacement that is equilibrated.
+#[inline]
+pub(super) fn moment_slope<const D: usize, const N: usize>(
+    measure: &ElementMeasure<'_, D, N>,
+    stress: &[[f64; D]; D],
+    equilibration: &Equilibration<'_, D, N>,
+    level: &Equilibrated<D>,
+) -> [f64; MOMENTS] {
+    let mut loading = measure.balanced(equilibration, level, &[None; N], Side::After).loading;
+    measure.subtract_tractions(stress, &mut loading);
+    slope_of(measure, &loading)
+}
+
+/// Its derivative.
+pub(super) fn moment_form<const D: usize, const N: usize>(measure: &ElementMeasure<'_, D, N>) -> Form {
+    std::array::from_fn(|i| {
+        let mut moments = [[[0.0; D]; D]; N];
+        moments[i / 4][i / 2 % 2][i % 2] = 1.0;
+        slope_of(measure, &Loading { traction: measure.tractions(&moments), volume: [[0.0; D]; N] })
+    })
+}
+
+#[inline]
+fn slope_of<const D: usize, const N: usize>(
+    measure: &ElementMeasure<'_, D, N>,
+    loading: &Loading<D, N>,
+) -> [f64; MOMENTS] {
+    let mut moments = [0.0; MOMENTS];
+    // Tractions are D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
+    for (k, slope) in measure.traction_slope(loading).iter().enumerate() {
+        for c in 0..D {
+            let sum: f64 = slope.iter().map(|s| s[c]).sum();
+            for p in 0..D {
+                moments[4 * k + 2 * p + c] = D as f64 * ((D + 1) as f64 * slope[p][c] - sum);
+            }
+        }
+    }
+    moments
+}
