@@ -125,7 +125,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     ) -> Balanced<D, N> {
         // Outward moments of each facet at its nodes: entering moments with the other sign.
         let mut moments = [[[0.0; D]; D]; N];
-        let mut acceleration = self.element.gather(&level.forces.acceleration);
+        let mut acceleration = self.element.gather(&level.forces().acceleration);
         for i in 0..N {
             let (entry, exit) = equilibration.moments_around(level, self.element, i, contact[i], side);
             for (facet, moment) in equilibration.crossing[i].into_iter().zip([entry.map(|f| -f), *exit]) {
@@ -133,11 +133,11 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                     moments[k][facet_position::<N>(k, i)] = moment;
                 }
             }
-            if let (Some(at), Side::Before, Some(before)) = (contact[i], side, &level.forces.before) {
+            if let (Some(at), Side::Before, Some(before)) = (contact[i], side, &level.forces().before) {
                 acceleration[i] = before.acceleration[at];
             }
         }
-        let body = level.forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
+        let body = level.forces().level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
         let terms = acceleration.iter().flatten().fold(0.0_f64, |m, a| m.max(self.law.density() * a.abs()));
         let terms = body.iter().fold(terms, |m, f| m.max(f.abs()));
         let mut volume = self.inertia.apply(&acceleration);
@@ -216,7 +216,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         level: &Equilibrated<D>,
     ) -> ([[f64; D]; D], [f64; D]) {
         let balanced = self.balanced(equilibration, level, &[None; N], Side::After);
-        let inertia = self.inertia.apply(&self.element.gather(&level.forces.acceleration));
+        let inertia = self.inertia.apply(&self.element.gather(&level.forces().acceleration));
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
         (self.stress.mean(&balanced.loading), acceleration)
     }

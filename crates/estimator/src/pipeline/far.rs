@@ -64,14 +64,14 @@ impl FarBlock {
             let (from, to) = (&pair[0], &pair[1]);
             let after = balanced(to);
             sampler.check(&after, to, CHECK, &mut self.residuals);
-            let start = (begins && k == 0).then(|| gather(&from.forces.now));
-            let mid = to.forces.mid.as_ref().filter(|_| to.index() == from.index() + 1).map(gather);
+            let start = (begins && k == 0).then(|| gather(&from.forces().now));
+            let mid = to.forces().mid.as_ref().filter(|_| to.index() == from.index() + 1).map(gather);
             let interval = ElementInterval {
                 steps: [from.index(), to.index()],
                 balanced: [&before, &after],
                 start: start.as_ref(),
                 mid: mid.as_ref(),
-                end: &gather(&to.forces.now),
+                end: &gather(&to.forces().now),
                 contact: [0.0; 3],
             };
             let [start, middle, end] = sampler.sample(&interval, course, &mut self.kept);

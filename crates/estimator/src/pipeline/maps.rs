@@ -132,8 +132,8 @@ fn fields<const D: usize, const N: usize>(
     });
     let (stress, acceleration) = means.into_iter().unzip();
     AdmissibleFields {
-        displacement: level.forces.now.motion.displacement().to_vec(),
-        velocity: level.forces.now.motion.velocity().to_vec(),
+        displacement: level.forces().now.motion.displacement().to_vec(),
+        velocity: level.forces().now.motion.velocity().to_vec(),
         stress,
         compatible_stress: Vec::new(),
         acceleration,

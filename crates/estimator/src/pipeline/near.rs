@@ -106,7 +106,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let sampler = ElementSampler::new(context.shared, self.element);
         let begins = self.start.is_none();
         if begins {
-            let mut first = self.at(sampler.element, &levels[0].forces.now, 0, 0.0);
+            let mut first = self.at(sampler.element, &levels[0].forces().now, 0, 0.0);
             self.settle(context, &mut first);
             self.check_start(context, sampler.element, &first.velocities);
             self.start = Some(first);
@@ -126,18 +126,18 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     ) {
         let start = sampler.balanced(from, &self.contact, Side::After);
         let end = sampler.balanced(to, &self.contact, Side::Before);
-        let begins = first || from.forces.before.is_some();
+        let begins = first || from.forces().before.is_some();
         if begins {
             sampler.check(&start, from, CHECK, &mut self.residuals);
         }
         sampler.check(&end, to, CHECK, &mut self.residuals);
-        let forces = &to.forces;
+        let forces = to.forces();
         let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
         let single = to.index() == from.index() + 1;
         let mid = forces.mid.as_ref().filter(|_| single);
         let mid = mid.map(|mid| self.at(sampler.element, mid, 2 * to.index() - 1, friction(0)));
         let stop = self.at(sampler.element, &forces.now, 2 * to.index(), friction(1));
-        let touches = |level: &Equilibrated<D>, at: usize| level.forces.level.surface.touching[at];
+        let touches = |level: &Equilibrated<D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
         let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact)).collect();

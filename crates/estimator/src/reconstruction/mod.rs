@@ -1,7 +1,7 @@
 //! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are balanced.
 //!
-//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`Reconstruction`] makes
-//! it, and decides on all that goes with it. [`new`] is the one place where a choice becomes its reconstruction.
+//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`Reconstruction`]
+//! makes it, and decides on all that goes with it. [`new`] is the one place where a choice becomes its reconstruction.
 
 mod admissibility;
 mod consistent;
@@ -103,7 +103,7 @@ pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + 
         NormalMisfit::default()
     }
 
-    /// Improves the tractions of levels.
+    /// Improves the tractions of levels; their other fields cannot change any more.
     fn improve(
         &self,
         _equilibration: &Equilibration<'_, D, N>,

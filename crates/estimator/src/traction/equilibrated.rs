@@ -28,7 +28,7 @@ impl<const D: usize> FemStress<D> {
 /// A level of which all fields are known. Only [`Equilibration`] makes one.
 #[derive(Clone, Debug)]
 pub(crate) struct Equilibrated<const D: usize> {
-    pub(crate) forces: ForcesKnown<D>,
+    forces: ForcesKnown<D>,
     stress: FemStress<D>,
     /// Projected traction moments on the links of all stars (N).
     moments: Vec<[f64; D]>,
@@ -41,6 +41,18 @@ impl<const D: usize> Equilibrated<D> {
     #[inline]
     pub(crate) fn index(&self) -> usize {
         self.forces.level.index
+    }
+
+    /// The fields that the stars were solved for.
+    #[inline]
+    pub(crate) fn forces(&self) -> &ForcesKnown<D> {
+        &self.forces
+    }
+
+    /// For tests that spoil them.
+    #[cfg(test)]
+    pub(crate) fn forces_mut(&mut self) -> &mut ForcesKnown<D> {
+        &mut self.forces
     }
 
     /// σ_h of each element (Pa).

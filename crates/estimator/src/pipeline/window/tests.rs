@@ -116,7 +116,7 @@ fn a_wrong_acceleration_shows_in_the_resultants() {
     let mut levels = run.solve();
     let (level, [_, far]) = run.places();
     let node = run.window.equilibration.elements[far].nodes[1].index();
-    levels[level].forces.acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
+    levels[level].forces_mut().acceleration[node].iter_mut().for_each(|a| *a *= 1.01);
     let found = run.residuals(&levels);
     assert!(found.element_resultants > SHOWS && found.star_compatibility < 1e-12, "{found:?}");
 }
@@ -130,7 +130,7 @@ fn wrong_initial_conditions_show() {
         let mut levels = run.solve();
         let (_, [near, _]) = run.places();
         let node = run.window.equilibration.elements[near].nodes[0].index();
-        let [displacement, velocity] = levels[0].forces.now.motion.parts_mut();
+        let [displacement, velocity] = levels[0].forces_mut().now.motion.parts_mut();
         if change == 0 {
             velocity[node][0] *= 1.01;
         } else {
