@@ -6,6 +6,7 @@
 mod admissibility;
 mod consistent;
 mod corrected;
+mod friction;
 mod published;
 
 use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact};
@@ -13,7 +14,7 @@ use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::options::{Acceleration, Options, ReconstructionChoice};
-use crate::time_level::SurfaceStep;
+use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{Equilibrated, Equilibration};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
@@ -101,6 +102,19 @@ pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + 
     /// The part of the contact law that such densities miss, for the motion in the tracks.
     fn normal_misfit(&self, _pressures: &FacetPressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
         NormalMisfit::default()
+    }
+
+    /// The friction part of η on each candidate facet (J), up to the middle and the end of the step from `now` to `next`;
+    /// `length` is that of the step (s), `density` F_DA at its end.
+    fn friction(
+        &self,
+        problem: &Problem<D, N>,
+        length: f64,
+        now: &ForcesKnown<D>,
+        next: &MotionKnown<D>,
+        density: &Densities<D>,
+    ) -> Vec<[f64; 2]> {
+        friction::friction(problem, length, now, next, density)
     }
 
     /// Improves the tractions of levels; their other fields cannot change any more.

@@ -2,9 +2,8 @@
 
 use super::Preparation;
 use crate::acceleration::accelerate;
-use crate::contact_density::{Densities, OffContact, driving_forces, misfit_power};
+use crate::contact_density::{Densities, OffContact, driving_forces};
 use crate::increment::Increment;
-use crate::kinematic::NodalMotion;
 use crate::reconstruction::{self, SurfaceSteps};
 use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, MotionKnown, Velocities};
 
@@ -68,12 +67,12 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         density: Densities<D>,
         off_contact: Option<OffContact<D>>,
     ) -> ForcesBefore<D> {
-        let friction = self.friction(now, &next, &density);
+        let length = self.times.step(now.level.index);
+        let friction = self.reconstruction.friction(self.problem, length, now, &next, &density);
         let MotionKnown { level, now: motion, mid, force } = next;
         let surface_force = self.on_surface(&force);
         let pull = driving_forces(self.problem, &density);
         let acceleration = accelerate(self.problem, self.dynamics.inverse_mass(), force, &pull);
-        let length = self.times.step(now.level.index);
         let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
         let forces = ForcesKnown {
             level,
@@ -86,29 +85,6 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             friction,
         };
         ForcesBefore { forces, surface_force }
-    }
-
-    /// Friction part of η on each candidate facet up to the middle and the end of the step from `now` to `next`: the
-    /// trapezoidal rule over its three half-step instants.
-    fn friction(&self, now: &ForcesKnown<D>, next: &MotionKnown<D>, density: &Densities<D>) -> Vec<[f64; 2]> {
-        let problem = self.problem;
-        let dt = self.times.step(now.level.index);
-        let mut friction = Vec::with_capacity(problem.surface().facets().len());
-        for (f, facet) in problem.surface().facets().iter().enumerate() {
-            let (start, end) = (&now.density[f], &density[f]);
-            let mut middle = *start;
-            (0..D).for_each(|p| (0..D).for_each(|c| middle[p][c] = 0.5 * (start[p][c] + end[p][c])));
-            let power = |motion: &NodalMotion<D>, density| {
-                let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
-                misfit_power(problem, facet, density, &velocity)
-            };
-            let (a, b) = (power(&now.now.motion, start), power(&next.now, end));
-            let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &middle));
-            let so_far = now.friction[f][1];
-            // 2∫[…], twice over half a step each.
-            friction.push([so_far + 0.5 * dt * (a + m), so_far + 0.5 * dt * (a + 2.0 * m + b)]);
-        }
-        friction
     }
 
     /// The values of a nodal field on the contact surface.
