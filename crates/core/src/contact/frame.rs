@@ -7,6 +7,9 @@ pub struct Frame<const D: usize> {
 }
 
 impl<const D: usize> Frame<D> {
+    /// Number of tangential directions.
+    pub(super) const TANGENTS: usize = D - 1;
+
     /// The frame of a unit normal.
     #[inline]
     pub(super) fn new(normal: [f64; D]) -> Self {

@@ -61,7 +61,7 @@ impl<const D: usize> Obstacle<D> {
         if !friction.is_finite() || friction < 0.0 {
             return Err(ObstacleError::Friction { friction });
         }
-        if D == 1 && friction != 0.0 {
+        if Frame::<D>::TANGENTS == 0 && friction != 0.0 {
             return Err(ObstacleError::FrictionInOneDimension { friction });
         }
         Ok(Self { shape, law: Coulomb::new(friction), group })
