@@ -11,7 +11,7 @@ pub const MOST_THREADS: usize = 1024;
 /// How the admissible contact force and the fields that balance it are built.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ReconstructionChoice {
+pub enum Reconstruction {
     /// No reaction is dropped: the densities hold all reactions, those that brake a node before contact included. The
     /// normal contact law is measured where they act off contact. An auxiliary solution with less dispersion is balanced,
     /// with tractions of least energy.
@@ -38,7 +38,7 @@ pub enum Acceleration {
     Weak,
 }
 
-/// A part that [`ReconstructionChoice::Corrected`] leaves out, or changes, to show its effect: no choice for an estimate. The
+/// A part that [`Reconstruction::Corrected`] leaves out, or changes, to show its effect: no choice for an estimate. The
 /// other reconstructions have no such parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ablation {
@@ -66,7 +66,7 @@ pub enum Ablation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Options {
     /// Reconstruction of the contact force.
-    pub reconstruction: ReconstructionChoice,
+    pub reconstruction: Reconstruction,
     /// Choice of Γ_DA.
     pub acceleration: Acceleration,
     /// For evidence only.
@@ -85,7 +85,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            reconstruction: ReconstructionChoice::default(),
+            reconstruction: Reconstruction::default(),
             acceleration: Acceleration::default(),
             ablation: Ablation::default(),
             every: 1,
@@ -134,7 +134,7 @@ macro_rules! named {
     };
 }
 
-named!(ReconstructionChoice: Corrected = "corrected", Consistent = "consistent", Published = "published");
+named!(Reconstruction: Corrected = "corrected", Consistent = "consistent", Published = "published");
 named!(
     Ablation:
         None = "none",
@@ -157,12 +157,9 @@ mod tests {
         for &choice in Acceleration::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        for &choice in ReconstructionChoice::ALL {
+        for &choice in Reconstruction::ALL {
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
-        assert_eq!(
-            "blunt".parse::<ReconstructionChoice>().unwrap_err().known,
-            ["corrected", "consistent", "published"]
-        );
+        assert_eq!("blunt".parse::<Reconstruction>().unwrap_err().known, ["corrected", "consistent", "published"]);
     }
 }

@@ -1,7 +1,7 @@
 //! Small problems for the tests of this module, and their steps prepared.
 
 use super::prepare::Preparation;
-use crate::options::{Options, ReconstructionChoice};
+use crate::options::{Options, Reconstruction};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::Evaluation;
 use percute_core::dynamics::{critical_time_step, simulate};
@@ -67,7 +67,7 @@ pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
 pub(super) fn prepared<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    reconstruction: ReconstructionChoice,
+    reconstruction: Reconstruction,
 ) -> Preparation<'p, 2, 3> {
     prepared_until(problem, times, reconstruction, times.step_count())
 }
@@ -76,7 +76,7 @@ pub(super) fn prepared<'p>(
 pub(super) fn prepared_until<'p>(
     problem: &'p TriangleProblem,
     times: &'p TimeGrid,
-    reconstruction: ReconstructionChoice,
+    reconstruction: Reconstruction,
     last: usize,
 ) -> Preparation<'p, 2, 3> {
     let mut history = History::new(times);

@@ -7,7 +7,7 @@ use crate::contact_density::{FacetPressures, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
 use crate::measure::Balanced;
-use crate::reconstruction::Reconstruction;
+use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
 use crate::traction::Equilibrated;
@@ -96,7 +96,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
 #[derive(Clone, Copy)]
 pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
     pub(super) shared: &'a Sampling<'a, 'p, D, N>,
-    pub(super) reconstruction: &'a dyn Reconstruction<D, N>,
+    pub(super) reconstruction: &'a dyn ReconstructionMethod<D, N>,
     pub(super) tracks: &'a [ContactTrack],
 }
 

@@ -11,7 +11,7 @@ use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, NodalMotion, NormalStep};
 use crate::loaded::LoadedFacets;
 use crate::options::Options;
-use crate::reconstruction::{self, BalancedFields, Reconstruction, SimulatedStep};
+use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, SimulatedStep};
 use crate::residual::{Residuals, worse};
 use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, SurfaceStep, TimeLevel};
 pub(crate) use impulse::Impulse;
@@ -29,7 +29,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     dynamics: Dynamics<'p, D, N>,
     loaded: LoadedFacets<'p, D, N>,
-    reconstruction: Box<dyn Reconstruction<D, N> + 'p>,
+    reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
     every: usize,
     motion: FreeMotion<D>,
     tracks: Vec<ContactTrack>,
@@ -80,7 +80,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.reconstruction.prepare(elements);
     }
 
-    pub(super) fn reconstruction(&self) -> &dyn Reconstruction<D, N> {
+    pub(super) fn reconstruction(&self) -> &dyn ReconstructionMethod<D, N> {
         &*self.reconstruction
     }
 

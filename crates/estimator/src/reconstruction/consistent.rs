@@ -1,6 +1,6 @@
 //! Densities on the facets that touch throughout a step, statically equivalent to the reactions.
 
-use super::{Reconstruction, StepDensities, SurfaceSteps};
+use super::{ReconstructionMethod, StepDensities, SurfaceSteps};
 use crate::contact_density::Densities;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -18,7 +18,7 @@ impl<'p, const D: usize, const N: usize> Consistent<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Reconstruction<D, N> for Consistent<'_, D, N> {
+impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Consistent<'_, D, N> {
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
         let (problem, now, next) = (self.problem, steps.now, steps.next);
         let touches = |k: usize| now.touching[k] && next.touching[k];

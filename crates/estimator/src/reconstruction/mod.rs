@@ -1,6 +1,6 @@
 //! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are balanced.
 //!
-//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`Reconstruction`]
+//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`ReconstructionMethod`]
 //! makes it, and decides on all that goes with it. [`new`] is the one place where a choice becomes its reconstruction.
 
 mod admissibility;
@@ -13,7 +13,7 @@ use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
-use crate::options::{Acceleration, Options, ReconstructionChoice};
+use crate::options::{Acceleration, Options, Reconstruction};
 use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{Equilibrated, Equilibration};
 pub(crate) use admissibility::check;
@@ -66,7 +66,7 @@ pub(crate) struct BalancedFields<const D: usize> {
 }
 
 /// A way to build dynamically admissible fields.
-pub(crate) trait Reconstruction<const D: usize, const N: usize>: Debug + Send + Sync {
+pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + Send + Sync {
     /// Prepares the maps of the elements.
     fn prepare(&mut self, _elements: &[Element<D, N>]) {}
 
@@ -132,11 +132,11 @@ pub(crate) fn new<'p, const D: usize, const N: usize>(
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     options: &Options,
-) -> Box<dyn Reconstruction<D, N> + 'p> {
+) -> Box<dyn ReconstructionMethod<D, N> + 'p> {
     match options.reconstruction {
-        ReconstructionChoice::Published => Box::new(Published::new(problem)),
-        ReconstructionChoice::Consistent => Box::new(Consistent::new(problem)),
-        ReconstructionChoice::Corrected => Box::new(Corrected::new(problem, times, options.ablation)),
+        Reconstruction::Published => Box::new(Published::new(problem)),
+        Reconstruction::Consistent => Box::new(Consistent::new(problem)),
+        Reconstruction::Corrected => Box::new(Corrected::new(problem, times, options.ablation)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The densities of the paper, eq. \[45\]–\[50\].
 
-use super::{Reconstruction, StepDensities, SurfaceSteps};
+use super::{ReconstructionMethod, StepDensities, SurfaceSteps};
 use crate::contact_density::Densities;
 use crate::time_level::SurfaceStep;
 use percute_core::contact::ContactFacet;
@@ -67,7 +67,7 @@ impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Reconstruction<D, N> for Published<'_, D, N> {
+impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Published<'_, D, N> {
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
         let SurfaceSteps { before, now, next, after } = *steps;
         let at_start = |before: &SurfaceStep<D>| self.at(&before.touching, now, Some(&next.touching));

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::contact_density::nodal_forces;
-use crate::options::ReconstructionChoice::{self, Consistent, Corrected, Published};
+use crate::options::Reconstruction::{self, Consistent, Corrected, Published};
 use crate::residual::Residuals;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
@@ -31,7 +31,7 @@ fn residuals(densities: &StepDensities<2>) -> Residuals {
 }
 
 /// The densities that a reconstruction makes of these steps.
-fn made(choice: ReconstructionChoice, problem: &TriangleProblem, steps: &SurfaceSteps<'_, 2>) -> StepDensities<2> {
+fn made(choice: Reconstruction, problem: &TriangleProblem, steps: &SurfaceSteps<'_, 2>) -> StepDensities<2> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
     new(problem, &times, &Options { reconstruction: choice, ..Options::default() }).densities(steps)
 }

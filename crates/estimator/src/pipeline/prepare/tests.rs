@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::contact_density::Densities;
-use crate::options::ReconstructionChoice;
+use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
 use crate::time_level::BeforeJump;
 use percute_core::dynamics::Evaluation;
@@ -48,7 +48,7 @@ fn wrong_initial_conditions_show() {
 #[test]
 fn a_missed_support_shows() {
     let (problem, times) = driven();
-    let mut preparation = prepared(&problem, &times, ReconstructionChoice::Consistent);
+    let mut preparation = prepared(&problem, &times, Reconstruction::Consistent);
     assert!(preparation.residuals.largest() < 1e-13);
     let last = times.step_count();
     let Some(level) = preparation.ready.back() else { panic!("no levels") };
@@ -72,7 +72,7 @@ fn a_missed_support_shows() {
 #[test]
 fn every_reconstruction_is_checked_at_every_step() {
     let (problem, times) = impact();
-    for &choice in ReconstructionChoice::ALL {
+    for &choice in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, choice);
         assert!(preparation.residuals.largest() < 1e-13);
         assert!(preparation.impulse.kept > 0.0);
@@ -97,7 +97,7 @@ fn power(length: f64, friction: f64, force: [[f64; 2]; 2], sliding: [f64; 2]) ->
 #[test]
 fn the_contact_part_step_by_step() {
     let (problem, times) = sticking();
-    for &choice in ReconstructionChoice::ALL {
+    for &choice in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, choice);
         let levels = &preparation.ready;
         let (mut turning, mut inside) = (0, 0);
@@ -135,7 +135,7 @@ fn the_contact_part_step_by_step() {
 #[test]
 fn a_guided_node_keeps_its_tangential_motion() {
     let (problem, times) = guided();
-    for &choice in ReconstructionChoice::ALL {
+    for &choice in Reconstruction::ALL {
         let preparation = prepared(&problem, &times, choice);
         let at = problem.surface().nodes().iter().position(|contact| contact.guided).unwrap();
         let node = problem.surface().nodes()[at].node.index();
@@ -157,11 +157,11 @@ fn a_guided_node_keeps_its_tangential_motion() {
 #[test]
 fn an_open_phase_has_its_force_at_the_last_step() {
     let (problem, times) = impact();
-    let all = prepared(&problem, &times, ReconstructionChoice::Published);
+    let all = prepared(&problem, &times, Reconstruction::Published);
     let first = all.ready.iter().position(|level| level.level.surface.touching.contains(&true)).unwrap();
     assert!(all.ready[first].level.surface.touching.iter().all(|t| *t), "a flat bottom touches all at once");
     for (last, acts) in [(first, false), (first + 1, true), (first + 2, true)] {
-        let ended = prepared_until(&problem, &times, ReconstructionChoice::Published, last);
+        let ended = prepared_until(&problem, &times, Reconstruction::Published, last);
         let pressed = |d: &Densities<2>| d.iter().flatten().any(|f| f[1] > 0.0);
         let level = ended.ready.back().unwrap();
         assert_eq!((level.level.index, pressed(before(level))), (last, acts));

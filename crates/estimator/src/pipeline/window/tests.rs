@@ -1,7 +1,7 @@
 //! Residuals of the parallel part rise when its fields are changed.
 
 use super::*;
-use crate::options::ReconstructionChoice;
+use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, impact, prepared};
 use crate::request::Request;
 use crate::traction::FemStress;
@@ -15,7 +15,7 @@ struct Run<'p> {
 
 /// Nothing changed yet.
 fn run<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> Run<'p> {
-    let mut preparation = prepared(problem, times, ReconstructionChoice::Consistent);
+    let mut preparation = prepared(problem, times, Reconstruction::Consistent);
     let maps = Maps::new(Request::default(), problem).unwrap();
     let window = LevelWindow::new(problem, times, &Options::default(), maps);
     let mut levels = Vec::new();

@@ -6,7 +6,7 @@ mod impulse_smoothing;
 mod moment_correction;
 mod traction_minimisation;
 
-use super::{BalancedFields, Reconstruction, SimulatedStep, StepDensities, SurfaceSteps};
+use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
 use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
@@ -79,7 +79,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Reconstruction<D, N> for Corrected<'_, D, N> {
+impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
