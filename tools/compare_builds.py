@@ -32,8 +32,8 @@ RENAMED = {
     "penetration_at_knots": "penetration_at_instants",
     "penetration_between_knots": "penetration_between_instants",
 }
-# Clock, versions, texts in the case language and paths: no results.
-SKIPPED = {"version", "seconds", "elapsed", "wall", "file", "path", "duration", "case"}
+# Clock, versions, number of the layout, texts in the case language and paths: no results.
+SKIPPED = {"version", "format", "seconds", "elapsed", "wall", "file", "path", "duration", "case"}
 
 
 def command(binary: Path, *arguments: str) -> str:

@@ -62,7 +62,7 @@ def write(path: Path, history: pc.History, given: tuple[str, ...]) -> None:
         for name in ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"):
             grid[f"Steps/{name}"] = np.zeros(steps if name in ("PartOffsets", "PointOffsets") else (steps, 1), dtype="i8")
         own = file.create_group("percute")
-        own.attrs["kind"], own.attrs["layout"], own.attrs["dimension"] = "history", np.int64(1), np.int64(d)
+        own.attrs["kind"], own.attrs["layout"], own.attrs["dimension"] = "history", np.int64(2), np.int64(d)
         own.attrs["program"] = "h5py"
         own["problem"] = STATEMENTS[d]
         own["initial_velocity"] = history.problem.initial_velocity

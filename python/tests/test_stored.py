@@ -174,6 +174,14 @@ def test_an_attribute_that_is_wrong(attribute: str, good: Path, tmp_path: Path) 
         pc.open(file)
 
 
+def test_a_file_of_an_earlier_layout(good: Path, tmp_path: Path) -> None:
+    def change(file: h5py.File) -> None:
+        file["percute"].attrs["layout"] = 1
+
+    with pytest.raises(pc.FileFormatError, match=r"has layout 1, but .* reads 2 only; simulate or estimate again"):
+        pc.open(changed(good, tmp_path, change))
+
+
 def test_a_file_that_is_removed_or_cut_while_it_is_open(good: Path, tmp_path: Path) -> None:
     file = changed(good, tmp_path, lambda file: None)
     first, second = pc.open(file), pc.open(file)

@@ -73,6 +73,9 @@ pub enum FileCause {
     /// Written by a later percute.
     #[error("the file has layout {found}, but this version of percute reads {known} only; use a newer percute")]
     NewerLayout { found: i64, known: i64 },
+    /// Written by an earlier percute.
+    #[error("the file has layout {found}, but this version of percute reads {known} only; simulate or estimate again")]
+    OlderLayout { found: i64, known: i64 },
     /// A missing part.
     #[error("`{name}` is missing; the layout of the file requires it")]
     MissingPart { name: String },

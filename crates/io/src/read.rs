@@ -20,8 +20,8 @@ use std::sync::MutexGuard;
 /// First bytes of an HDF5 file.
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 
-/// The latest layout of histories and estimates known here.
-pub(crate) const LAYOUT: i64 = 1;
+/// The layout of histories and estimates.
+pub(crate) const LAYOUT: i64 = 2;
 
 /// A file open for reading, with exclusive use of the library.
 pub(crate) struct Opened {
@@ -65,7 +65,7 @@ impl Opened {
         }
     }
 
-    /// Refuses another kind or a later layout.
+    /// Refuses another kind or another layout.
     pub(crate) fn expect(&self, wanted: Kind) -> Result<(), FileCause> {
         let found = self.kind()?;
         if found != wanted {
@@ -73,8 +73,9 @@ impl Opened {
         }
         let layout = self.root().group("percute")?.integer_attribute("layout")?;
         match layout {
-            1..=LAYOUT => Ok(()),
-            _ if layout > LAYOUT => Err(FileCause::NewerLayout { found: layout, known: LAYOUT }),
+            LAYOUT => Ok(()),
+            1.. if layout < LAYOUT => Err(FileCause::OlderLayout { found: layout, known: LAYOUT }),
+            1.. => Err(FileCause::NewerLayout { found: layout, known: LAYOUT }),
             _ => {
                 let detail = format!("there is no layout {layout}");
                 Err(FileCause::Value { name: "percute.layout".to_string(), detail })

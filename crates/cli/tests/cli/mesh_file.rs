@@ -180,7 +180,7 @@ fn info_names_the_groups_of_a_mesh() {
     }
     let names = |key: &str| document[key].as_array().unwrap().iter().map(|g| g["name"].clone()).collect::<Vec<_>>();
     assert_eq!(names("element_groups"), ["30", "aluminium", "steel"]);
-    assert!(names("facet_groups").contains(&Value::from("bottom")));
+    assert!(names("edge_groups").contains(&Value::from("bottom")));
     let said = stdout(&bench(CASE, "4.1").percute(&["info", "meshes/block.msh"]));
     assert!(said.contains("group \"steel\" of") && said.contains("(0, 0) to (50.00, 40.00)"), "{said}");
 }

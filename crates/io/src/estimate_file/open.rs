@@ -46,7 +46,7 @@ pub struct EstimateFile {
 /// Opens an estimate file.
 ///
 /// # Errors
-/// As for a history: a file that is missing, locked, damaged, of another program, another kind or a later
+/// As for a history: a file that is missing, locked, damaged, of another program, another kind or another
 /// layout; a part that is missing, or of a wrong type or shape.
 pub fn open(path: impl AsRef<Path>) -> Result<EstimateFile, FileError> {
     reading(path.as_ref(), |opened| {

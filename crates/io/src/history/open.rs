@@ -14,7 +14,7 @@ use std::path::Path;
 /// Opens a history.
 ///
 /// # Errors
-/// A file that is missing, locked, damaged, of another program, another kind or a later layout; a part that
+/// A file that is missing, locked, damaged, of another program, another kind or another layout; a part that
 /// is missing, or of a wrong type, shape or value.
 pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     let path = path.as_ref();

@@ -75,7 +75,8 @@ fn other_kinds_and_layouts() {
     };
     assert_says(&spoilt(|f| kind(f, "estimate")), &["this is an estimate, but a history is needed here"]);
     assert_says(&spoilt(|f| kind(f, "song")), &["`percute.kind`", "\"song\" is not a known kind"]);
-    assert_says(&spoilt(|f| attribute(f, "layout", 2)), &["layout 2", "reads 1 only", "newer percute"]);
+    assert_says(&spoilt(|f| attribute(f, "layout", 3)), &["layout 3", "reads 2 only", "newer percute"]);
+    assert_says(&spoilt(|f| attribute(f, "layout", 1)), &["layout 1", "reads 2 only", "simulate or estimate again"]);
     assert_says(&spoilt(|f| attribute(f, "layout", -3)), &["`percute.layout`", "there is no layout -3"]);
     assert_says(
         &spoilt(|f| attribute(f, "dimension", 3)),

@@ -22,7 +22,7 @@ pub struct MeshInfo {
     pub reoriented_elements: usize,
     pub lower_corner: Vec<f64>,
     pub upper_corner: Vec<f64>,
-    pub facet_groups: Vec<GroupInfo>,
+    pub edge_groups: Vec<GroupInfo>,
     pub element_groups: Vec<GroupInfo>,
     pub warnings: Vec<Warning>,
 }
@@ -56,7 +56,7 @@ fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshI
         reoriented_elements: mesh.reoriented_elements(),
         lower_corner: corner(f64::INFINITY, f64::min),
         upper_corner: corner(f64::NEG_INFINITY, f64::max),
-        facet_groups: mesh.facet_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
+        edge_groups: mesh.facet_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
         element_groups: mesh.element_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
         warnings: reported(mesh).collect(),
     }
@@ -71,7 +71,7 @@ impl MeshInfo {
         let (lower, upper) = (corner(&self.lower_corner), corner(&self.upper_corner));
         lines.push(("box", format!("({lower}) to ({upper}): metres, unless the case has a `scale`")));
         for (title, groups, members) in [
-            ("edges", &self.facet_groups, if plane { "edges" } else { "ends" }),
+            ("edges", &self.edge_groups, if plane { "edges" } else { "ends" }),
             ("elements", &self.element_groups, "elements"),
         ] {
             let titles = std::iter::once(title).chain(std::iter::repeat(""));

@@ -25,7 +25,7 @@ use percute_estimator::{ErrorMeasures, Given, Options, Parts, Residuals, Sample}
 use serde::Serialize;
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
-pub(crate) const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 2;
 /// Residuals above this mean that a field is not admissible.
 pub(crate) const ADMISSIBLE: f64 = 1e-10;
 
