@@ -1,7 +1,7 @@
 //! What an estimate file holds.
 
 use super::{Info, writer};
-use crate::message::{bytes, short, trimmed};
+use crate::message::{bytes, counted, short, trimmed};
 use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions};
 use percute_io::Provenance;
@@ -57,7 +57,7 @@ impl EstimateInfo {
         let ends = self.instants.first().zip(self.instants.last());
         let ends = ends.map_or_else(String::new, |(a, b)| format!(" from {} to {} s", trimmed(*a, 5), trimmed(*b, 5)));
         let fields = if self.fields { ", with the admissible fields" } else { "" };
-        lines.push(("holds", format!("{} instants{ends}{fields}", self.instants.len())));
+        lines.push(("holds", counted(self.instants.len(), "instant") + &ends + fields));
         if let [Some(sup), Some(mean)] = ["sup", "mean"].map(|key| self.report["error"][key].as_f64()) {
             lines.push(("error", format!("sup {} J^½, mean {} J^½", short(sup, 4), short(mean, 4))));
         }

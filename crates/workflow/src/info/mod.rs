@@ -12,7 +12,7 @@ pub use setting::{MaterialInfo, PlaneInfo};
 
 use crate::case::{CaseOf, NotRepresentable, Output};
 use crate::history::{Stored, plan};
-use crate::message::{bytes, trimmed};
+use crate::message::{bytes, counted, trimmed};
 use crate::report::build::problem_summary;
 use crate::report::summary::{body, layout, step};
 use crate::report::{FORMAT, ProblemSummary, Versions};
@@ -94,7 +94,7 @@ impl TimeInfo {
 
     fn lines(&self) -> [(&'static str, String); 2] {
         [
-            ("time", format!("{} s in {} steps;", trimmed(self.end, 5), self.steps_planned)),
+            ("time", format!("{} s in {};", trimmed(self.end, 5), counted(self.steps_planned, "step"))),
             ("", step(self.time_step, self.critical_time_step)),
         ]
     }
@@ -199,7 +199,7 @@ impl HistoryInfo {
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", body(&self.problem)));
         lines.extend(self.time.lines());
-        let held = self.steps.map_or_else(|| "no step".to_string(), |steps| format!("{steps} steps"));
+        let held = self.steps.map_or_else(|| "no step".to_string(), |steps| counted(steps, "step"));
         let ended = if self.complete { "complete" } else { "INCOMPLETE (running, or killed)" };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];

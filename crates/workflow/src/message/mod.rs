@@ -3,5 +3,5 @@
 mod number;
 mod spelling;
 
-pub use number::{bytes, percent, short, trimmed};
+pub use number::{bytes, counted, percent, short, trimmed};
 pub use spelling::{hint, list};

@@ -29,6 +29,12 @@ pub fn percent(fraction: f64) -> String {
     format!("{} %", short(100.0 * fraction, 3))
 }
 
+/// A number of things, such as `1 step` or `2 steps`.
+#[must_use]
+pub fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A size in the unit that suits it.
 #[must_use]
 pub fn bytes(count: u64) -> String {
@@ -57,6 +63,7 @@ mod tests {
     #[test]
     fn sizes_have_three_digits() {
         let shown = [0, 999, 1000, 1_234_567, 56_700_000_000, u64::MAX].map(bytes);
+        assert_eq!([0, 1, 2].map(|n| counted(n, "step")), ["0 steps", "1 step", "2 steps"]);
         assert_eq!(shown, ["0 bytes", "999 bytes", "1.00 kB", "1.23 MB", "56.7 GB", "18.4 EB"]);
     }
 }

@@ -3,7 +3,7 @@
 use super::Subject;
 use super::build::problem_summary;
 use super::summary::{body, drift, energy, layout, step};
-use crate::message::{bytes, short, trimmed};
+use crate::message::{bytes, counted, short, trimmed};
 use percute_core::dynamics::Simulation;
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub fn simulated<const D: usize, const N: usize>(
     let reached = trimmed(times.instants()[steps], 5);
     let time = match steps < planned {
         true => format!("INTERRUPTED at step {steps} of {planned}, t = {reached} s;"),
-        false => format!("{reached} s in {steps} steps;"),
+        false => format!("{reached} s in {};", counted(steps, "step")),
     };
     let size = std::fs::metadata(file).map_or(0, |found| found.len());
     let (version, seconds) = (env!("CARGO_PKG_VERSION"), short(seconds, 3));

@@ -1,7 +1,7 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
 use super::{ADMISSIBLE, ProblemSummary, Report, meaning};
-use crate::message::{percent, short, trimmed};
+use crate::message::{counted, percent, short, trimmed};
 use percute_core::dynamics::Balance;
 
 /// The summary of a run.
@@ -81,7 +81,7 @@ fn time(report: &Report) -> String {
     let Report { steps, steps_planned: planned, .. } = *report;
     let end = trimmed(report.end, 5);
     match report.held.map(|instants| instants.saturating_sub(1)) {
-        _ if !report.interrupted => format!("{end} s in {steps} steps;"),
+        _ if !report.interrupted => format!("{end} s in {};", counted(steps, "step")),
         Some(held) if held == steps => format!("INCOMPLETE history of {steps} of {planned} steps, t = {end} s;"),
         Some(held) if held < planned => {
             format!("INTERRUPTED at step {steps} of {held} ({planned} planned), t = {end} s;")

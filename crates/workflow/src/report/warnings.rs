@@ -1,7 +1,7 @@
 //! What the user should look at before trusting a result.
 
 use super::{LargestResidual, ProblemSummary};
-use crate::message::percent;
+use crate::message::{counted, percent};
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
 use percute_estimator::Reconstruction;
@@ -152,7 +152,8 @@ pub(crate) fn few_samples(every: usize, steps: usize) -> Option<Warning> {
         return None;
     }
     let message = format!(
-        "is {every}, but the run has {steps} steps: the error is sampled at its start and its end only; give a smaller number"
+        "is {every}, but the run has {}: the error is sampled at its start and its end only; give a smaller number",
+        counted(steps, "step")
     );
     Some(Warning { name: "few_samples", brief: "the error is sampled twice".to_string(), message })
 }
