@@ -37,7 +37,7 @@ def open(path: str | os.PathLike[str]) -> History | Estimate:
     MissingFileError
         There is no such file.
     FileFormatError
-        The file is neither a history nor an estimate, is damaged or inconsistent, or has a newer layout.
+        The file is neither a history nor an estimate, is damaged or inconsistent, or has another layout.
     StorageError
         It cannot be read, or another program is writing it.
     """
@@ -123,6 +123,8 @@ def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     if not isinstance(case, str | os.PathLike):
         raise wrong("case", case, "the name of a case file, or its text")
     path = Path(file_name("case", case))
+    if path.exists() and not (path.is_file() or path.is_dir() or path.is_fifo()):
+        raise StorageError(f"`case`: {os.fspath(path)!r} is not a regular file; name a case file")
     try:
         return encodable(os.fspath(path)), path.read_text(encoding="utf-8"), os.fspath(path)
     except FileNotFoundError:

@@ -11,6 +11,10 @@ use std::str::FromStr;
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the completed steps is still printed).";
 
+/// The remedy for `percute reproduce` without the Python package.
+pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
+    in the source folder. Its command `percute` computes the evidence";
+
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "percute", version, after_help = EXIT_CODES)]
@@ -142,7 +146,7 @@ pub struct RecoverArguments {
 
 /// Arguments of `percute reproduce`.
 #[derive(Clone, Debug, Args)]
-#[command(disable_help_flag = true)]
+#[command(after_help = NEEDS_PYTHON)]
 pub struct ReproduceArguments {
     /// Its arguments, which the Python package reads
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]

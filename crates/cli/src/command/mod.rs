@@ -5,12 +5,11 @@ mod info;
 mod new;
 mod outputs;
 mod recover;
-mod reproduce;
 mod result;
 mod run;
 mod simulate;
 
-use crate::args::{Arguments, Command};
+use crate::args::{Arguments, Command, NEEDS_PYTHON};
 use crate::exit::{BAD_INPUT, DONE, FAILED, code};
 use clap::Parser;
 use percute_io::is_hdf5;
@@ -19,8 +18,13 @@ use percute_workflow::case::{Case, CaseOf, Source, parse};
 use percute_workflow::message::hint;
 use percute_workflow::report::Warning;
 use std::ffi::OsString;
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
+
+/// Most bytes of a case; pipes may have no end.
+const MOST: u64 = 1 << 30;
 
 /// Where a command prints, and what may stop it.
 pub struct Console<'a> {
@@ -48,7 +52,11 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
-            Command::Reproduce(_) => Ok(reproduce::command(console)),
+            // The command of the Python package does it.
+            Command::Reproduce(_) => {
+                console.say(&format!("error: {NEEDS_PYTHON}"));
+                Ok(FAILED)
+            }
         },
         Err(error) => return clap_says(&error, console),
     };
@@ -120,12 +128,20 @@ fn read(file: &Path) -> Result<Source, Failure> {
     if !file.exists() {
         return Err(Failure::Argument(format!("{name}: there is no file of this name{}", similar(file))));
     }
+    let kind = file.metadata().map_err(unreadable)?.file_type();
+    if !kind.is_file() && !kind.is_fifo() {
+        return Err(Failure::Argument(format!("{name}: this is not a regular file; name a case file")));
+    }
     // Asked first: a history may be larger than memory.
     if is_hdf5(file).map_err(unreadable)? {
         let message = "this is an HDF5 file, not a case; use `percute estimate` for a history, `percute info` for any";
         return Err(Failure::Argument(format!("{name}: {message}")));
     }
-    let bytes = std::fs::read(file).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    File::open(file).and_then(|file| file.take(MOST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+    if bytes.len() as u64 > MOST {
+        return Err(Failure::Argument(format!("{name}: a case file has at most 1 GiB; name a mesh file in the case")));
+    }
     let folder = file.parent().unwrap_or(file);
     String::from_utf8(bytes).map(|text| Source::new(&name, text).in_folder(folder)).map_err(|error| {
         let line = 1 + error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();

@@ -14,7 +14,7 @@ pub(super) fn command(arguments: &RecoverArguments, console: &mut Console<'_>) -
     let (shown, steps) = (file.display(), recovered.count.saturating_sub(1));
     let held = format!("{steps} of {planned} planned steps");
     console.print(&match (recovered.was_complete, recovered.count) {
-        (true, _) => format!("{shown} was completed by its run and has {held}; nothing was changed"),
+        (true, _) => format!("{shown} is complete already and has {held}; nothing was changed"),
         (false, 0) => {
             format!("{shown}: the run was killed before it wrote its first step; there is nothing to estimate")
         }

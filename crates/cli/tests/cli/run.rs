@@ -216,3 +216,27 @@ fn new_cases_are_the_examples() {
         assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
     }
 }
+
+/// Such files have no end.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_is_no_case() {
+    for command in ["run", "simulate", "info"] {
+        let output = Bench::new(BLOCK).percute(&[command, "/dev/full"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        assert!(stderr(&output).contains("/dev/full: ") && stderr(&output).contains("not a regular file"), "{command}");
+    }
+}
+
+#[test]
+fn the_help_of_reproduce_names_the_python_package() {
+    let bench = Bench::new(BLOCK);
+    for flag in ["--help", "-h"] {
+        let help = bench.percute(&["reproduce", flag]);
+        assert!(help.status.success() && help.stderr.is_empty(), "{flag}: {}", stderr(&help));
+        assert!(stdout(&help).contains("needs the Python package"), "{flag}: {}", stdout(&help));
+    }
+    let refused = bench.percute(&["reproduce", "table1", "--small"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(stderr(&refused).starts_with("error: `percute reproduce` needs the Python package"));
+}
