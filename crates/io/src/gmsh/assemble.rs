@@ -42,9 +42,10 @@ where
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);
-    let places = kept.flat()?;
+    let shape = simplex::Element::<D, N>.shape();
+    let places = kept.flat(shape)?;
     let cells = kept.numbered(&located);
-    let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?)?;
+    let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?, shape)?;
     let parts = raw.named(D, &members, |at| at);
     let reported = [
         import_warnings::dropped(&kept.dropped, D),

@@ -4,6 +4,7 @@ use super::error::{Fault, GmshCause};
 use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::Raw;
+use percute_core::simplex::Shape;
 use std::collections::{BTreeMap, HashMap};
 
 /// The boundary groups of the file.
@@ -21,12 +22,17 @@ pub(super) fn boundary<const D: usize, const N: usize>(
     kept: &Kept,
     cells: &[[usize; N]],
     facets: &Sorted<D>,
+    shape: Shape,
 ) -> Result<Boundary<D>, Fault> {
     let located: Vec<_> = nodes.located(&facets.elements)?.into_iter().map(|facet| kept.facet(facet)).collect();
     let around = owners(cells, located.iter().flatten());
     let owners_of = |facet: &Option<[usize; D]>| facet.and_then(|f| around.get(&sorted(f)).copied()).unwrap_or(0);
     let counts: Vec<usize> = located.iter().map(owners_of).collect();
-    if let Some(at) = counts.iter().enumerate().position(|(at, &count)| count == 0 && (D == 2 || named(facets, at))) {
+    let required = |at: usize| match shape {
+        Shape::Bar => named(facets, at),
+        Shape::Triangle => true,
+    };
+    if let Some(at) = (0..counts.len()).find(|&at| counts[at] == 0 && required(at)) {
         return Err(lone(raw, facets, at));
     }
     let none = [0; D];

@@ -3,6 +3,7 @@
 use super::source::CaseError;
 use super::table::Table;
 use percute_core::material::{Elastic, MaterialError};
+use percute_core::simplex::Shape;
 
 const BAR_KEYS: [&str; 4] = ["young", "density", "section", "group"];
 const PLANE_KEYS: [&str; 6] = ["young", "poisson", "density", "plane", "thickness", "group"];
@@ -11,7 +12,7 @@ const PLANE_KEYS: [&str; 6] = ["young", "poisson", "density", "plane", "thicknes
 pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
 
 /// Reads all materials, each with its group of elements.
-pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
+pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
     let tables = root.tables("material")?;
     if tables.is_empty() {
         return Err(root.error(
@@ -19,7 +20,10 @@ pub(super) fn read<const D: usize>(root: &Table<'_>) -> Result<Vec<(Option<Strin
         ));
     }
     let one = |table: &Table<'_>| {
-        let law = if D == 1 { bar(table)? } else { plane(table)? };
+        let law = match shape {
+            Shape::Bar => bar(table)?,
+            Shape::Triangle => plane(table)?,
+        };
         let group = table.get("group").map(|v| v.text("the name of a group of elements")).transpose()?;
         Ok((group.map(str::to_string), law))
     };

@@ -32,14 +32,15 @@ pub(super) fn stated<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
 ) -> Result<Builder<D, N>, CaseError> {
+    let shape = mesh.simplex().shape();
     let mut builder = Problem::builder(mesh);
-    for (group, law) in material::read::<D>(root)? {
+    for (group, law) in material::read(root, shape)? {
         builder = match group {
             Some(group) => builder.material_of(group, law),
             None => builder.material(law),
         };
     }
-    for plane in obstacle::read(root)? {
+    for plane in obstacle::read(root, shape)? {
         builder = builder.obstacle(plane);
     }
     for support in support::read(root)? {

@@ -1,6 +1,7 @@
 //! A mesh as parts of a geometry: elements that are in the same groups.
 
 use percute_core::mesh::Mesh;
+use percute_core::simplex::Shape;
 use std::collections::BTreeMap;
 
 /// Elements or facets that are in the same groups.
@@ -34,16 +35,15 @@ impl Parts {
             names.push((D, names.len() + 1, name.clone()));
             members.iter().for_each(|cell| cells[cell.index()].push(names.len()));
         }
-        let mut facets = parts(facets.into_iter());
-        if D == 1 {
-            // A point of the geometry is one point.
-            let alone = |part: GroupedPart| {
-                part.members
-                    .into_iter()
-                    .map(move |facet| GroupedPart { groups: part.groups.clone(), members: vec![facet] })
-            };
-            facets = facets.into_iter().flat_map(alone).collect();
-        }
+        let facets = parts(facets.into_iter());
+        // A point of the geometry is one point.
+        let alone = |GroupedPart { groups, members }: GroupedPart| {
+            members.into_iter().map(move |facet| GroupedPart { groups: groups.clone(), members: vec![facet] })
+        };
+        let facets = match mesh.simplex().shape() {
+            Shape::Bar => facets.into_iter().flat_map(alone).collect(),
+            Shape::Triangle => facets,
+        };
         Self { names, facets, cells: parts(cells.into_iter().enumerate()) }
     }
 }
