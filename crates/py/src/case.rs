@@ -20,7 +20,7 @@ impl CaseData {
     #[new]
     fn parse(py: Python<'_>, name: String, text: String, folder: PathBuf) -> PyResult<Self> {
         let case = bridge::blocking(py, None, move |_| parse(Source::new(name, text).in_folder(folder)))?;
-        Ok(Self { case: case.map_err(|error| errors::case(py, &error))? })
+        Ok(Self { case: case.map_err(|error| errors::input(py, error))? })
     }
 
     /// Its plausibility warnings; with `in_memory`, its history is kept in memory.

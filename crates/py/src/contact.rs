@@ -1,9 +1,7 @@
 //! Contact results as arrays.
 
-use crate::bridge;
-use crate::errors;
 use crate::run::Run;
-use crate::view;
+use crate::{bridge, errors, view};
 use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods};
 use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant};
 use pyo3::prelude::*;

@@ -3,14 +3,11 @@
 use percute_core::contact::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
-use percute_core::mesh::MeshError;
 use percute_core::problem::{Cause, HeldBy, InputError, Place};
-use percute_core::time::TimeError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
 use percute_workflow::Failure;
-use percute_workflow::case::CaseError;
 use percute_workflow::message::hint;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -32,23 +29,13 @@ pub(crate) fn percute_error(py: Python<'_>, message: &str) -> PyErr {
 }
 
 /// Bad input.
-pub(crate) fn input(py: Python<'_>, message: &str) -> PyErr {
-    exception(py, "InputError", message)
-}
-
-/// A mesh that was refused.
-pub(crate) fn mesh(py: Python<'_>, error: &MeshError) -> PyErr {
-    input(py, &error.to_string())
-}
-
-/// Instants that were refused.
-pub(crate) fn time(py: Python<'_>, error: &TimeError) -> PyErr {
-    input(py, &error.to_string())
+pub(crate) fn input(py: Python<'_>, message: impl ToString) -> PyErr {
+    exception(py, "InputError", &message.to_string())
 }
 
 /// A problem that was refused, with the argument's name; `groups` are the keys of `material`.
 pub(crate) fn problem(py: Python<'_>, error: &InputError, groups: &[Option<String>]) -> PyErr {
-    input(py, &format!("`{}`: {}", argument(error.place, groups), cause(&error.cause)))
+    input(py, format!("`{}`: {}", argument(error.place, groups), cause(&error.cause)))
 }
 
 /// The argument of `Problem` and `simulate` at a place.
@@ -110,9 +97,7 @@ fn cause(cause: &Cause) -> String {
 /// A simulation that failed.
 pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
     match error {
-        SimulationError::StartsTooNear { obstacle, .. } => {
-            input(py, &format!("`obstacles[{obstacle}].point`: {error}"))
-        }
+        SimulationError::StartsTooNear { obstacle, .. } => input(py, format!("`obstacles[{obstacle}].point`: {error}")),
         SimulationError::Sink { cause, .. } => match cause.downcast_ref::<MemoryError>() {
             Some(MemoryError::Full { .. }) => PyMemoryError::new_err(format!("{cause}: give `store` the name of one")),
             _ => steps(py, cause),
@@ -127,7 +112,7 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
         RunError::Simulation(error) => simulation(py, error),
         RunError::Estimate(
             EstimateError::Zero { .. } | EstimateError::TooManyThreads { .. } | EstimateError::Request(_),
-        ) => input(py, &error.to_string()),
+        ) => input(py, error),
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),
     }
@@ -139,7 +124,7 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
         Failure::Run(error) => estimate(py, error),
         Failure::File(error) => file(py, error),
         Failure::Contact(error) => PyMemoryError::new_err(error.to_string()),
-        other => input(py, &other.to_string()),
+        other => input(py, other.to_string()),
     }
 }
 
@@ -163,8 +148,8 @@ pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
 pub(crate) fn gmsh(py: Python<'_>, error: &GmshError) -> PyErr {
     match &error.cause {
         GmshCause::File(cause) => of_file(py, &error.path, cause, &error.to_string()),
-        cause @ GmshCause::Scale { .. } => input(py, &format!("`scale`: {cause}")),
-        GmshCause::Name { .. } => input(py, &error.to_string()),
+        cause @ GmshCause::Scale { .. } => input(py, format!("`scale`: {cause}")),
+        GmshCause::Name { .. } => input(py, error),
         _ => exception(py, "FileFormatError", &error.to_string()),
     }
 }
@@ -200,11 +185,6 @@ pub(crate) fn output(py: Python<'_>, error: &Failure) -> PyErr {
             exception(py, "ExistingFileError", &message)
         }
         Failure::Unwritable { .. } => exception(py, "StorageError", &error.to_string()),
-        other => input(py, &other.to_string()),
+        other => input(py, other.to_string()),
     }
-}
-
-/// A case file that is wrong.
-pub(crate) fn case(py: Python<'_>, error: &CaseError) -> PyErr {
-    input(py, &error.to_string())
 }

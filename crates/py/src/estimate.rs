@@ -3,7 +3,7 @@
 use crate::history::HistoryData;
 use crate::options::{Wanted, analysis, options};
 use crate::problem::ProblemData;
-use crate::run::{Run, Stoppable};
+use crate::run::Run;
 use crate::{bridge, contact, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute_core::contact::ContactResults;
@@ -84,20 +84,12 @@ pub(crate) fn estimate(
     fields: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
-    let ablation =
-        ablation.parse().map_err(|error: UnknownName| errors::input(py, &format!("`_ablation`: {error}")))?;
+    let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, format!("`_ablation`: {error}")))?;
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, every)? };
     let instants = instants.map(Instants::from);
-    Ok(EstimateData {
-        made: match &history.run {
-            ByDimension::Bar(run) => {
-                ByDimension::Bar(estimate_one(py, run, options, instants.as_ref(), fields, progress)?)
-            }
-            ByDimension::Plane(run) => {
-                ByDimension::Plane(estimate_one(py, run, options, instants.as_ref(), fields, progress)?)
-            }
-        },
-    })
+    let made =
+        map_dimension!(&history.run, run => estimate_one(py, run, options, instants.as_ref(), fields, progress)?);
+    Ok(EstimateData { made })
 }
 
 /// The meaning of the error with a reconstruction, by its name; a file may name one of a newer version.
@@ -119,7 +111,7 @@ fn estimate_one<const D: usize, const N: usize>(
     let work = {
         let run = run.clone();
         move |mut watch: bridge::Watch| {
-            let source = Stoppable { source: run.source(), watch: watch.clone() };
+            let source = run.stoppable(watch.clone());
             percute_workflow::run::estimate(&run.problem, &source, &analysis, &mut watch)
         }
     };
@@ -156,9 +148,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let report = ReportSource::Now { simulation, contact: Arc::new(contact), held, seconds };
         Self { problem, times, options, estimate, report }
     }
-}
 
-impl<const D: usize, const N: usize> Made<D, N> {
     /// The document of `percute run --json`.
     fn report(&self, name: &str) -> Result<String, String> {
         let Self { problem, times, options, estimate, report } = self;
@@ -172,9 +162,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
             }
         }
     }
-}
 
-impl<const D: usize, const N: usize> Made<D, N> {
     fn save(
         &self,
         path: &Path,

@@ -2,7 +2,7 @@
 
 use crate::history::HistoryData;
 use crate::reference::{TrueErrorColumns, told};
-use crate::run::{Run, Stoppable};
+use crate::run::Run;
 use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
 use percute_core::dynamics::replay;
@@ -119,7 +119,7 @@ impl ExactData {
         rows: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let Some(function) = self.functions.get(name) else {
-            return Err(errors::input(py, &format!("there is no function `{name}`")));
+            return Err(errors::input(py, format!("there is no function `{name}`")));
         };
         let columns = rows.as_array().ncols().max(1);
         Ok(PyArray1::from_iter(py, rows.as_slice()?.chunks_exact(columns).map(function)))
@@ -159,13 +159,12 @@ pub(crate) fn true_error_of_bar_impact<'py>(
     };
     let run = run.clone();
     let outcome = bridge::blocking(py, None, move |watch| true_error(&run, &impact(values), watch))?;
-    let error = outcome.map_err(|message| errors::input(py, &format!("`history`: {message}")))?;
+    let error = outcome.map_err(|message| errors::input(py, format!("`history`: {message}")))?;
     told(py, &error)
 }
 
 fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: bridge::Watch) -> Result<TrueError, String> {
     let mut motion = Motion::default();
-    let source = Stoppable { source: run.source(), watch };
-    replay(&run.problem, &source, &mut motion).map_err(|error| error.to_string())?;
+    replay(&run.problem, &run.stoppable(watch), &mut motion).map_err(|error| error.to_string())?;
     bar_impact_error(&run.problem, &motion, exact).map_err(|error: ReferenceError| error.to_string())
 }

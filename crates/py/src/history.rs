@@ -41,7 +41,7 @@ impl HistoryData {
         options: (String, String, usize),
     ) -> PyResult<Self> {
         let (reconstruction, acceleration, every) = options;
-        let times = TimeGrid::from_instants(times).map_err(|error| errors::time(py, &error))?;
+        let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
             options: options::options(py, &reconstruction, &acceleration, every)?,
             count: touching.as_array().nrows(),
@@ -230,7 +230,7 @@ impl Given<'_> {
                 velocity: None,
                 acceleration: None,
             };
-            history.push(&step).map_err(|error| errors::input(py, &error.to_string()))?;
+            history.push(&step).map_err(|error| errors::input(py, error))?;
         }
         Ok(Run::new(problem.clone(), history, self.options, None))
     }

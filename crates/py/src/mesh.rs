@@ -4,8 +4,7 @@ use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
-use percute_core::simplex::ByDimension;
-use percute_core::simplex::{Element, Simplex};
+use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
@@ -29,19 +28,19 @@ impl MeshData {
     #[staticmethod]
     fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
-        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::input(py, e))?)) })
     }
 
     #[staticmethod]
     fn disc(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| TriangleMesh::disc(radius, rings))?;
-        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::input(py, e))?)) })
     }
 
     #[staticmethod]
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
         let mesh = bridge::blocking(py, None, move |_| BarMesh::uniform_bar(length, elements))?;
-        Ok(Self { mesh: ByDimension::Bar(Arc::new(mesh.map_err(|e| errors::mesh(py, &e))?)) })
+        Ok(Self { mesh: ByDimension::Bar(Arc::new(mesh.map_err(|e| errors::input(py, e))?)) })
     }
 
     /// The mesh with each element cut into halves (a bar) or quarters, so many times.
@@ -50,7 +49,7 @@ impl MeshData {
         for _ in 0..times {
             mesh = map_dimension!(mesh, mesh => {
                 let finer = bridge::blocking(py, None, move |_| mesh.refined())?;
-                Arc::new(finer.map_err(|e| errors::mesh(py, &e))?)
+                Arc::new(finer.map_err(|e| errors::input(py, e))?)
             });
         }
         Ok(Self { mesh })
@@ -181,14 +180,14 @@ where
         elements.insert(name.clone(), members.into_iter().flatten().collect());
     }
     let mesh = bridge::blocking(py, None, move |_| Mesh::new(points, &cells, &edges, &elements))?;
-    mesh.map(Arc::new).map_err(|error| errors::mesh(py, &error))
+    mesh.map(Arc::new).map_err(|error| errors::input(py, error))
 }
 
 /// Rows of indices, none of them negative.
 fn indices<const C: usize>(py: Python<'_>, name: &str, numbers: &[i64]) -> PyResult<Vec<[usize; C]>> {
     if let Some(at) = numbers.iter().position(|&n| n < 0) {
         let message = format!("`{name}`: entry {} is {}; numbers are counted from 0", at / C, numbers[at]);
-        return Err(errors::input(py, &message));
+        return Err(errors::input(py, message));
     }
     Ok(numbers.as_chunks::<C>().0.iter().map(|row| row.map(|n| n as usize)).collect())
 }

@@ -28,7 +28,7 @@ impl From<Wanted> for Instants {
 pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, every: usize) -> PyResult<Options> {
     let unknown = |name: &str, error: UnknownName| {
         let hint = hint(&error.given, error.known.iter().copied());
-        errors::input(py, &format!("`{name}`: {error}{hint}"))
+        errors::input(py, format!("`{name}`: {error}{hint}"))
     };
     let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
     let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;

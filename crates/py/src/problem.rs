@@ -230,7 +230,7 @@ fn field<const D: usize>(py: Python<'_>, name: &str, given: &Field<'_>) -> PyRes
         let message = format!(
             "`{name}` has {columns} numbers in a row; it must have {needed}: one row for all nodes, or one for each"
         );
-        return Err(errors::input(py, &message));
+        return Err(errors::input(py, message));
     }
     let rows = array.as_slice()?.as_chunks::<D>().0;
     Ok(if let [row] = rows { Initial::Uniform(*row) } else { Initial::Nodal(rows.to_vec()) })

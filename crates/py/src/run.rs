@@ -68,6 +68,11 @@ impl<const D: usize, const N: usize> Run<D, N> {
         }
     }
 
+    /// The same until `watch` asks for a stop.
+    pub(crate) fn stoppable(&self, watch: Watch) -> Stoppable<'_, D> {
+        Stoppable { source: self.source(), watch }
+    }
+
     /// The file, if that is where the steps are.
     pub(crate) fn file(&self) -> Option<&HistoryFile<D, N>> {
         match &self.steps {
@@ -118,7 +123,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
             return Ok(balance);
         }
         let mut balancing = Balancing::new(&self.problem, self.times());
-        replay(&self.problem, &Stoppable { source: self.source(), watch }, &mut balancing)?;
+        replay(&self.problem, &self.stoppable(watch), &mut balancing)?;
         Ok(self.balance.get_or_init(|| balancing.finish()))
     }
 
@@ -128,14 +133,14 @@ impl<const D: usize, const N: usize> Run<D, N> {
             return Ok(contact.clone());
         }
         let recorder = ContactRecorder::new(&self.problem, self.times()).keeping_steps()?;
-        let contact = recorder.replay(&Stoppable { source: self.source(), watch })?;
+        let contact = recorder.replay(&self.stoppable(watch))?;
         Ok(self.contact.get_or_init(|| Arc::new(contact)).clone())
     }
 
     /// v_n and a_n by the scheme, or as the history brings them.
     pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
         let mut motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
-        replay(&self.problem, &Stoppable { source: self.source(), watch }, &mut motion)?;
+        replay(&self.problem, &self.stoppable(watch), &mut motion)?;
         Ok(motion)
     }
 }

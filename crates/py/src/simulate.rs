@@ -87,17 +87,16 @@ pub(crate) fn run_case(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, EstimateData)> {
     let instants = instants.map(Instants::from);
-    let (threads, window) = pace;
+    let analysis = each_dimension!(&case.case, case => {
+        let options = Options { threads: pace.0, window: pace.1, ..case.options };
+        analysis(options, instants.as_ref(), fields, contact_steps, &case.times)
+    });
     let (history, made) = match &case.case {
         ByDimension::Bar(case) => {
-            let options = Options { threads, window, ..case.options };
-            let analysis = analysis(options, instants.as_ref(), fields, contact_steps, &case.times);
             let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Bar)?;
             (history, ByDimension::Bar(made))
         }
         ByDimension::Plane(case) => {
-            let options = Options { threads, window, ..case.options };
-            let analysis = analysis(options, instants.as_ref(), fields, contact_steps, &case.times);
             let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Plane)?;
             (history, ByDimension::Plane(made))
         }
@@ -180,9 +179,7 @@ impl Store {
     fn new(path: PathBuf, overwrite: bool, options: Options, case: Option<Source>) -> Self {
         Self { path, overwrite, options, case, ours: Arc::default() }
     }
-}
 
-impl Store {
     /// Makes the file.
     fn begin<const D: usize, const N: usize>(
         &self,

@@ -12,7 +12,7 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Something is wrong with `name`.
 fn wrong(py: Python<'_>, name: &str, message: impl std::fmt::Display) -> PyErr {
-    errors::input(py, &format!("`{name}` {message}"))
+    errors::input(py, format!("`{name}` {message}"))
 }
 
 /// A vector with a component for each axis of the mesh.
@@ -36,40 +36,30 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
     let poisson: Option<f64> = attribute(given, "poisson")?;
     let plane: Option<String> = attribute(given, "plane")?;
     let (thickness, section): (f64, Option<f64>) = (attribute(given, "thickness")?, attribute(given, "section")?);
-    let refused = |error: MaterialError| {
-        wrong(
-            py,
-            &format!("{name}.{}", error.name),
-            format!("is {} {}; it must be {}", error.value, error.unit, error.allowed),
-        )
+    let bad = |key: &str, message: &str| wrong(py, &format!("{name}.{key}"), message);
+    let refused = |MaterialError { name, value, unit, allowed, .. }| {
+        bad(name, &format!("is {value} {unit}; it must be {allowed}"))
     };
     if D == 1 {
         for (key, there) in
             [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
         {
             if there {
-                return Err(wrong(py, &format!("{name}.{key}"), "does not apply to a bar; give a `section` (m²)"));
+                return Err(bad(key, "does not apply to a bar; give a `section` (m²)"));
             }
         }
-        let section =
-            section.ok_or_else(|| wrong(py, &format!("{name}.section"), "is missing: a bar needs it (m²)"))?;
+        let section = section.ok_or_else(|| bad("section", "is missing: a bar needs it (m²)"))?;
         return Elastic::bar(young, density, section).map_err(refused);
     }
     if section.is_some() {
-        return Err(wrong(py, &format!("{name}.section"), "applies to bars only; a plane body has a `thickness` (m)"));
+        return Err(bad("section", "applies to bars only; a plane body has a `thickness` (m)"));
     }
-    let poisson = poisson.ok_or_else(|| wrong(py, &format!("{name}.poisson"), "is missing: a plane body needs it"))?;
+    let poisson = poisson.ok_or_else(|| bad("poisson", "is missing: a plane body needs it"))?;
     match plane.as_deref() {
         Some("stress") => Elastic::plane_stress(young, poisson, density, thickness).map_err(refused),
         Some("strain") => Elastic::plane_strain(young, poisson, density, thickness).map_err(refused),
-        Some(other) => {
-            Err(wrong(py, &format!("{name}.plane"), format!("is {other:?}; it must be \"stress\" or \"strain\"")))
-        }
-        None => Err(wrong(
-            py,
-            &format!("{name}.plane"),
-            "is missing; give \"stress\" (a thin plate) or \"strain\" (a long body)",
-        )),
+        Some(other) => Err(bad("plane", &format!("is {other:?}; it must be \"stress\" or \"strain\""))),
+        None => Err(bad("plane", "is missing; give \"stress\" (a thin plate) or \"strain\" (a long body)")),
     }
 }
 
@@ -80,7 +70,7 @@ pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyR
     let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?)?;
     let made = Obstacle::plane(point, normal, attribute(given, "friction")?, attribute(given, "group")?);
     // The message begins with the name of the value.
-    made.map_err(|error: ObstacleError| errors::input(py, &format!("`{name}`: {error}")))
+    made.map_err(|error: ObstacleError| errors::input(py, format!("`{name}`: {error}")))
 }
 
 /// One support: `velocity` has a column for each component, in their order.
@@ -157,8 +147,8 @@ fn table<const D: usize>(
                 format!("has {values} entries and `time` has {times}; they must be equally many, and at least one");
             wrong(py, &format!("{name}.{key}"), message)
         }
-        TableError::Order { .. } => errors::input(py, &format!("`{name}.time`: {error}")),
-        TableError::NotFinite { .. } => errors::input(py, &format!("`{name}.{key}`: {error}")),
+        TableError::Order { .. } => errors::input(py, format!("`{name}.time`: {error}")),
+        TableError::NotFinite { .. } => errors::input(py, format!("`{name}.{key}`: {error}")),
     })
 }
 

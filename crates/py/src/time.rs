@@ -16,7 +16,7 @@ pub(crate) fn grid(
     steps: Option<Vec<f64>>,
     critical: f64,
 ) -> PyResult<TimeGrid> {
-    let refused = |message: String| errors::input(py, &message);
+    let refused = |message: String| errors::input(py, message);
     let made = match (courant, step, steps) {
         (Some(courant), None, None) => {
             if !(courant > 0.0 && courant <= 1.0) {
@@ -40,7 +40,7 @@ pub(crate) fn grid(
             return Err(refused(format!("give exactly one of {ways}")));
         }
     };
-    let grid = made.map_err(|error| errors::time(py, &error))?;
+    let grid = made.map_err(|error| errors::input(py, error))?;
     match end {
         Some(end) if !grid.ends_at(end) => Err(refused(format!(
             "`end` is {end:?} s, but `steps` add up to {:?} s; leave `end` out or make the two agree",
@@ -62,5 +62,5 @@ fn below(py: Python<'_>, name: &str, step: f64, critical: f64) -> PyResult<()> {
         "`{name}` is {step:?} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable: \
          give less, or courant=0.9"
     );
-    Err(errors::input(py, &message))
+    Err(errors::input(py, message))
 }

@@ -41,10 +41,8 @@ pub fn check(
             return Err(Failure::Argument(format!("{what} {shown} is the {name} itself; give another name")));
         }
         if let Some(other) = all[..i].iter().find(|other| writable::same(file, other.file)) {
-            return Err(Failure::Argument(format!(
-                "{what} {shown} is the file of {} too; give it another",
-                other.what
-            )));
+            let message = format!("{what} {shown} is the file of {} too; give it another", other.what);
+            return Err(Failure::Argument(message));
         }
     }
     for OutputFile { what, file } in outputs.iter().flatten() {

@@ -11,10 +11,8 @@ use std::path::{Path, PathBuf};
 pub fn check(file: &Path) -> Result<()> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.exists() {
-        return Err(Error::other(format!(
-            "there is no folder {}; create it first, or give another name",
-            folder.display()
-        )));
+        let folder = folder.display();
+        return Err(Error::other(format!("there is no folder {folder}; create it first, or give another name")));
     }
     // Not the target of a link: a link to nothing must not be taken for a new file and removed.
     let new = match std::fs::symlink_metadata(file) {

@@ -1,7 +1,7 @@
 //! `percute estimate`.
 
 use super::Console;
-use super::outputs::{check, with_work};
+use super::outputs::check;
 use super::result::{Finished, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
@@ -33,7 +33,7 @@ where
     Problem<D, N>: Drawn,
 {
     let EstimateArguments { maps, print, work, .. } = arguments;
-    let options = with_work(options(stored.options, arguments), work.threads, work.window);
+    let options = options(stored.options, arguments);
     let instants = maps.instants.clone().unwrap_or_default();
     let times = stored.file.times();
     within("--instants", &instants, times.end())?;
@@ -54,6 +54,8 @@ fn options(stored: Options, arguments: &EstimateArguments) -> Options {
         reconstruction: arguments.reconstruction.unwrap_or(stored.reconstruction),
         acceleration: arguments.acceleration.unwrap_or(stored.acceleration),
         every: arguments.every.unwrap_or(stored.every),
+        threads: arguments.work.threads,
+        window: arguments.work.window,
         ..stored
     }
 }

@@ -2,7 +2,6 @@
 
 use super::Console;
 use crate::picture::check_path;
-use percute_estimator::Options;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
 use percute_workflow::Failure;
@@ -45,9 +44,4 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }
     Ok(writer)
-}
-
-/// Options of a case or a history with what the command line says of them.
-pub(super) fn with_work(options: Options, threads: Option<usize>, window: Option<usize>) -> Options {
-    Options { threads, window, ..options }
 }

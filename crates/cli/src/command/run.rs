@@ -1,6 +1,6 @@
 //! `percute run`.
 
-use super::outputs::{begin_history, check, with_work};
+use super::outputs::{begin_history, check};
 use super::result::{Finished, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
@@ -9,7 +9,7 @@ use crate::picture::Drawn;
 use crate::progress::Watch;
 use percute_core::each_dimension;
 use percute_core::problem::Problem;
-use percute_estimator::{EstimateError, Request, RunError};
+use percute_estimator::{EstimateError, Options, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::history::stored_case;
@@ -32,7 +32,7 @@ where
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
     check(&case.inputs(Some(&arguments.case)), &[history, stored], print.picture.as_deref(), work.force)?;
-    let options = with_work(case.options, work.threads, work.window);
+    let options = Options { threads: work.threads, window: work.window, ..case.options };
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
     within("--instants", instants, case.times.end())?;

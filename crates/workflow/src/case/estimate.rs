@@ -3,8 +3,7 @@
 use super::source::CaseError;
 use super::table::Table;
 use crate::message::hint;
-use percute_estimator::Options;
-use percute_estimator::UnknownName;
+use percute_estimator::{Options, UnknownName};
 use std::str::FromStr;
 
 /// Reads the options; all have a default.
