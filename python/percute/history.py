@@ -370,6 +370,8 @@ def true_errors(
     ------
     InputError
         An argument is wrong, the meshes are not nested, or the reference ends too early.
+    SimulationError
+        The reference is unstable.
     """
     coarse = [history._data for history in items("histories", histories, History)]
     times = _times(end, courant, step, steps)

@@ -74,6 +74,13 @@ def test_errors_against_finer_histories(block_history: pc.History) -> None:
     assert block_history.error(block_history).sup < 1e-6 * error.sup
 
 
+def test_an_unstable_reference_is_an_error_of_the_simulation(bar_history: pc.History) -> None:
+    problem = bar(80)
+    steps = [problem.critical_time_step * (1.0 if i % 2 else 0.5) for i in range(4000)]
+    with pytest.raises(pc.SimulationError, match="unstable at step"):
+        pc.true_errors([bar_history], problem, steps=steps)
+
+
 def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_history: pc.History) -> None:
     with pytest.raises(pc.InputError, match="reference ends at"):
         block_history.error(pc.simulate(block(16, 12), end=5e-6, courant=0.9))

@@ -1,31 +1,24 @@
 //! The true error of histories, against finer simulations.
 
 use crate::any::AnyProblem;
-use crate::bridge::Watch;
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
-use crate::run::{AnyRun, Run, Stoppable};
+use crate::run::{AnyRun, Run};
 use crate::simulate::Times;
 use crate::{bridge, errors, time, view};
-use percute_core::dynamics::{replay, simulate};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Motion, TrueError, TrueErrorSample};
+use percute_estimator::reference::{TrueError, TrueErrorSample};
+use percute_workflow::Failure;
 use percute_workflow::report::Named;
+use percute_workflow::run::true_errors;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// Sup, mean, and time, kinetic and elastic part and their sum at each instant.
 pub(crate) type TrueErrorColumns<'py> = (f64, f64, Bound<'py, PyDict>);
-
-/// The steps of a reference: of a history, or of a simulation whose steps are not kept.
-#[derive(Clone)]
-enum Source<const D: usize, const N: usize> {
-    Kept(Arc<Run<D, N>>),
-    Made(Arc<Problem<D, N>>, TimeGrid),
-}
 
 /// The true errors of histories against one history on a mesh in which theirs are nested.
 #[pyfunction]
@@ -35,8 +28,12 @@ pub(crate) fn errors_against_history<'py>(
     reference: &HistoryData,
 ) -> PyResult<Vec<TrueErrorColumns<'py>>> {
     match &reference.run {
-        ByDimension::Bar(run) => compared(py, bars(py, &histories)?, Source::Kept(run.clone()), None),
-        ByDimension::Plane(run) => compared(py, planes(py, &histories)?, Source::Kept(run.clone()), None),
+        ByDimension::Bar(run) => {
+            compared(py, bars(py, &histories)?, (run.problem.clone(), run.times().clone()), Some(run.clone()), None)
+        }
+        ByDimension::Plane(run) => {
+            compared(py, planes(py, &histories)?, (run.problem.clone(), run.times().clone()), Some(run.clone()), None)
+        }
     }
 }
 
@@ -52,8 +49,8 @@ pub(crate) fn errors_against_simulation<'py>(
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     match &problem.problem {
-        AnyProblem::Bar(fine) => compared(py, bars(py, &histories)?, Source::Made(fine.clone(), times), progress),
-        AnyProblem::Plane(fine) => compared(py, planes(py, &histories)?, Source::Made(fine.clone(), times), progress),
+        AnyProblem::Bar(fine) => compared(py, bars(py, &histories)?, (fine.clone(), times), None, progress),
+        AnyProblem::Plane(fine) => compared(py, planes(py, &histories)?, (fine.clone(), times), None, progress),
     }
 }
 
@@ -73,48 +70,25 @@ fn planes(py: Python<'_>, histories: &[PyRef<'_, HistoryData>]) -> PyResult<Vec<
     histories.iter().map(plane).collect()
 }
 
+/// Compares `runs` with the steps of `kept`; without it, with a simulation of the reference.
 fn compared<'py, const D: usize, const N: usize>(
     py: Python<'py>,
     runs: Vec<Arc<Run<D, N>>>,
-    reference: Source<D, N>,
+    (fine, times): (Arc<Problem<D, N>>, TimeGrid),
+    kept: Option<Arc<Run<D, N>>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Vec<TrueErrorColumns<'py>>> {
-    let found = bridge::blocking(py, progress, move |watch| match &reference {
-        Source::Kept(fine) => {
-            let source = Stoppable { source: fine.source(), watch: watch.clone() };
-            compare(&runs, &fine.problem, &watch, |sink| replay(&fine.problem, &source, sink).map_err(text))
-        }
-        Source::Made(fine, times) => compare(&runs, fine, &watch, |sink| {
-            simulate(fine, times, sink, &mut watch.clone()).map(|_| ()).map_err(text)
-        }),
+    let found = bridge::blocking(py, progress, move |mut watch| {
+        let sources: Vec<_> = runs.iter().map(|run| run.stoppable(watch.clone())).collect();
+        let runs: Vec<_> = runs.iter().zip(&sources).map(|(run, source)| (&*run.problem, source as _)).collect();
+        let steps = kept.as_ref().map(|kept| kept.stoppable(watch.clone()));
+        true_errors(&runs, (&fine, &times), steps.as_ref().map(|steps| steps as _), &mut watch)
     })?;
-    let found = found.map_err(|message| errors::input(py, &format!("`reference`: {message}")))?;
+    let found = found.map_err(|failure| match failure {
+        Failure::Reference(error) => errors::input(py, format!("`reference`: {error}")),
+        failure => errors::run(py, &failure),
+    })?;
     found.iter().map(|error| told(py, error)).collect()
-}
-
-/// Compares the motions of `runs` with the steps that `drive` hands to a comparison.
-fn compare<const D: usize, const N: usize>(
-    runs: &[Arc<Run<D, N>>],
-    fine: &Problem<D, N>,
-    watch: &Watch,
-    drive: impl FnOnce(&mut Comparison<'_, D, N>) -> Result<(), String>,
-) -> Result<Vec<TrueError>, String> {
-    let mut motions = Vec::new();
-    for run in runs {
-        let mut motion = Motion::default();
-        replay(&run.problem, &Stoppable { source: run.source(), watch: watch.clone() }, &mut motion).map_err(text)?;
-        motions.push(motion);
-    }
-    let mut comparison = Comparison::new(fine);
-    for (run, motion) in runs.iter().zip(&motions) {
-        comparison.add(&run.problem, motion).map_err(text)?;
-    }
-    drive(&mut comparison)?;
-    comparison.finish().map_err(text)
-}
-
-fn text(error: impl ToString) -> String {
-    error.to_string()
 }
 
 /// A true error as Python takes it.

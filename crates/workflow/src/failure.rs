@@ -4,6 +4,7 @@ use crate::case::{CaseError, NotRepresentable};
 use percute_core::contact::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
+use percute_estimator::reference::ReferenceError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::FileError;
 use std::path::PathBuf;
@@ -38,6 +39,9 @@ pub enum Failure {
     /// A history that does not fit its own problem.
     #[error("{file}: {cause}", file = .file.display())]
     History { file: PathBuf, cause: EstimateError },
+    /// A reference that does not fit.
+    #[error(transparent)]
+    Reference(#[from] ReferenceError),
     /// A problem that cannot be written down.
     #[error(transparent)]
     NotRepresentable(#[from] NotRepresentable),
@@ -67,6 +71,7 @@ impl Failure {
             | Self::Argument(_)
             | Self::Exists { .. }
             | Self::History { .. }
+            | Self::Reference(_)
             | Self::NotRepresentable(_) => true,
             Self::File(error) => !error.cause.is_of_the_system(),
             Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => false,

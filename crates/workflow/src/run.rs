@@ -4,11 +4,12 @@
 use crate::case::CaseOf;
 use crate::failure::Failure;
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
-use percute_core::dynamics::{Simulation, SimulationError};
+use percute_core::dynamics::{Simulation, SimulationError, replay};
 use percute_core::history::{Discard, StateSink, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
 use percute_io::history::Writer;
 
@@ -104,6 +105,35 @@ pub fn estimate<const D: usize, const N: usize>(
         error => error.into(),
     })?;
     Ok(Results { simulation, estimate, contact: contact.finish() })
+}
+
+/// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the
+/// steps of the reference it is simulated.
+///
+/// # Errors
+/// Steps that cannot be read, meshes that are not nested, a reference that ends early; as [`simulate`].
+pub fn true_errors<'p, const D: usize, const N: usize>(
+    runs: &[(&'p Problem<D, N>, &'p dyn StepSource<D>)],
+    (fine, times): (&'p Problem<D, N>, &'p TimeGrid),
+    steps: Option<&dyn StepSource<D>>,
+    observer: &mut dyn Observer,
+) -> Result<Vec<TrueError>, Failure> {
+    let unread = |cause| Failure::from_sink(cause, RunError::Source);
+    let mut motions = Vec::new();
+    for (problem, steps) in runs {
+        let mut motion = Motion::default();
+        replay(problem, *steps, &mut motion).map_err(unread)?;
+        motions.push(motion);
+    }
+    let mut comparison = Comparison::new(fine);
+    for ((problem, _), motion) in runs.iter().zip(&motions) {
+        comparison.add(problem, motion)?;
+    }
+    match steps {
+        Some(steps) => replay(fine, steps, &mut comparison).map_err(unread)?,
+        None => _ = percute_core::dynamics::simulate(fine, times, &mut comparison, observer)?,
+    }
+    Ok(comparison.finish()?)
 }
 
 /// The failure of the run of a case: a refused start is a mistake in the case, with its line.
