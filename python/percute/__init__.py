@@ -17,6 +17,7 @@ d'erreur en relation de comportement pour les problèmes d'impact*.
 
 from percute import exact
 from percute._percute import Progress, __version__
+from percute.balance import Balance
 from percute.contact import Contact, ContactStatus, Resultants
 from percute.errors import (
     EstimateError,
@@ -34,7 +35,7 @@ from percute.estimation import Estimate, estimate
 from percute.evidence import reproduce
 from percute.exact import Effectivity, TrueError
 from percute.files import open, run
-from percute.history import Balance, History, simulate, true_errors
+from percute.history import History, simulate, true_errors
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.records import ElementMap, OverTime, Parts, WorstElement

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.balance import Balance
 from percute.checks import encodable, flag, instance, items, numbers, optional_number, warn
 from percute.checks import path as file_name
 from percute.contact import Contact
@@ -27,35 +27,9 @@ if TYPE_CHECKING:
 
     from percute.exact import TrueError
 
-__all__ = ["Balance", "History", "simulate", "true_errors"]
+__all__ = ["History", "simulate", "true_errors"]
 
 MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction": np.dtype("<f8"), "touching": np.dtype("u1")}
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Balance:
-    """Energies and works (J) and drifts at each instant, each of shape (instants,)."""
-
-    kinetic: NDArray[np.float64]
-    """Kinetic energy."""
-    strain: NDArray[np.float64]
-    """Strain energy."""
-    work_of_loads: NDArray[np.float64]
-    """Work of tractions and body forces."""
-    work_of_supports: NDArray[np.float64]
-    """Work of support reactions."""
-    work_of_contact: NDArray[np.float64]
-    """Work of contact reactions, including friction."""
-    friction: NDArray[np.float64]
-    """Energy dissipated by friction."""
-    energy_drift: NDArray[np.float64]
-    """Largest error of the energy balance so far, over the largest energy or work."""
-    impulse_drift: NDArray[np.float64]
-    """The same for momentum and impulses."""
-
-    def __repr__(self) -> str:
-        drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"
-        return f"<percute.Balance: {len(self.kinetic)} instants, {drifts}>"
 
 
 class History(Immutable):

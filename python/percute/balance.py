@@ -1,0 +1,34 @@
+"""Energies, works and drifts of a simulation over time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Balance"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Balance:
+    """Energies and works (J) and drifts at each instant, each of shape (instants,)."""
+
+    kinetic: NDArray[np.float64]
+    """Kinetic energy."""
+    strain: NDArray[np.float64]
+    """Strain energy."""
+    work_of_loads: NDArray[np.float64]
+    """Work of tractions and body forces."""
+    work_of_supports: NDArray[np.float64]
+    """Work of support reactions."""
+    work_of_contact: NDArray[np.float64]
+    """Work of contact reactions, including friction."""
+    friction: NDArray[np.float64]
+    """Energy dissipated by friction."""
+    energy_drift: NDArray[np.float64]
+    """Largest error of the energy balance so far, over the largest energy or work."""
+    impulse_drift: NDArray[np.float64]
+    """The same for momentum and impulses."""
+
+    def __repr__(self) -> str:
+        drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"
+        return f"<percute.Balance: {len(self.kinetic)} instants, {drifts}>"
