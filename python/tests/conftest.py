@@ -1,10 +1,14 @@
 """Problems that the tests share."""
 
+import signal
+
 import matplotlib
 import percute as pc
 import pytest
 
 matplotlib.use("Agg")
+# A background job of a shell ignores SIGINT, and so would all processes that the tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def block(nx: int = 8, ny: int = 6, friction: float = 0.2) -> pc.Problem:
