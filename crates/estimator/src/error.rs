@@ -1,6 +1,6 @@
 //! Reasons why an estimate cannot be made.
 
-use crate::options::MOST_THREADS;
+use crate::options::{MOST_THREADS, UnsuitableAcceleration};
 use crate::request::RequestError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{SinkError, StepError};
@@ -16,6 +16,9 @@ pub enum EstimateError {
     /// More threads than make sense.
     #[error("`threads` is {threads}; it must be a whole number from 1 to {MOST_THREADS}")]
     TooManyThreads { threads: usize },
+    /// Choices that cannot be combined.
+    #[error("`acceleration` {0}")]
+    Acceleration(#[from] UnsuitableAcceleration),
     /// Maps that cannot be kept.
     #[error(transparent)]
     Request(#[from] RequestError),

@@ -4,9 +4,10 @@ use crate::options::Acceleration;
 
 /// The linear map, constant in time, from nodal ã to the nodal values of Γ_DA/ρ.
 ///
-/// All three choices balance the resultant and the moment of the equilibrated tractions, which do
-/// the lumped work ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. As the map is linear, it turns
-/// ∫ã dt into ∫Γ_DA/ρ dt as well.
+/// All choices balance the resultant and the moment of the equilibrated tractions. These do the lumped work
+/// ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. With `mixed` they do the work ∫ρ ã_h·u + ρ|E|/(D+1) Σ o_i·u_i, o the
+/// lumping difference: ρ ã_h lacks only the resultant and the moment of o. As the map is linear, it turns the time integrals
+/// of ã and o into ∫Γ_DA/ρ dt as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
@@ -50,23 +51,34 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         Self { choice, rotations }
     }
 
-    /// Γ_DA/ρ at the nodes (m/s²), or its time integral.
+    /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã and the lumping difference, which `mixed` has, or from theirs.
     #[inline(always)]
-    pub(crate) fn apply(&self, nodal: &[[f64; D]; N]) -> [[f64; D]; N] {
-        let mut mean = [0.0; D];
-        for value in nodal {
-            (0..D).for_each(|c| mean[c] += value[c] / N as f64);
-        }
+    pub(crate) fn apply(
+        &self,
+        acceleration: &[[f64; D]; N],
+        lumping_difference: Option<&[[f64; D]; N]>,
+    ) -> [[f64; D]; N] {
+        let mean = mean(acceleration);
         // The lumped moment is D + 2 times that of the linear field.
-        let (mut field, factor) = match self.choice {
+        match self.choice {
             // Add the other D + 1.
-            Acceleration::Closest => (*nodal, (D + 1) as f64),
-            Acceleration::Rigid => ([mean; N], (D + 2) as f64),
+            Acceleration::Closest => self.turned(*acceleration, (D + 1) as f64, acceleration),
+            Acceleration::Rigid => self.turned([mean; N], (D + 2) as f64, acceleration),
             // M_consistent Γ/ρ = M_lumped ã.
             Acceleration::Weak => {
-                return nodal.map(|a| std::array::from_fn(|c| (D + 2) as f64 * a[c] - N as f64 * mean[c]));
+                acceleration.map(|a| std::array::from_fn(|c| (D + 2) as f64 * a[c] - N as f64 * mean[c]))
             }
-        };
+            Acceleration::Mixed => lumping_difference.map_or(*acceleration, |difference| {
+                let mean = self::mean(difference);
+                let shifted = acceleration.map(|a| std::array::from_fn(|c| a[c] + mean[c]));
+                self.turned(shifted, (D + 2) as f64, difference)
+            }),
+        }
+    }
+
+    /// A field with this multiple of the rotation that is nearest to a nodal field.
+    #[inline(always)]
+    fn turned(&self, mut field: [[f64; D]; N], factor: f64, nodal: &[[f64; D]; N]) -> [[f64; D]; N] {
         for rotation in &self.rotations[..rotation_count(D)] {
             let turning = factor * (rotation.work_on(nodal) * rotation.inverse);
             for i in 0..N {
@@ -75,6 +87,16 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         }
         field
     }
+}
+
+/// The mean over the nodes.
+#[inline(always)]
+fn mean<const D: usize, const N: usize>(nodal: &[[f64; D]; N]) -> [f64; D] {
+    let mut mean = [0.0; D];
+    for value in nodal {
+        (0..D).for_each(|c| mean[c] += value[c] / N as f64);
+    }
+    mean
 }
 
 impl<const D: usize, const N: usize> Rotation<D, N> {
@@ -116,6 +138,7 @@ pub(crate) fn mass_product<const D: usize, const N: usize>(mass: f64, a: &[[f64;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{DMatrix, DVector};
 
     const POINTS: [[f64; 2]; 3] = [[0.1, 0.2], [1.3, 0.4], [0.3, 0.9]];
     const NODAL: [[f64; 2]; 3] = [[1.0, -2.0], [0.5, 3.0], [-4.0, 0.7]];
@@ -125,7 +148,7 @@ mod tests {
     fn resultant_and_moment_are_those_of_the_lumped_mass() {
         for choice in [Acceleration::Closest, Acceleration::Rigid, Acceleration::Weak] {
             let map = Inertia::new(choice, &arms(&POINTS));
-            let field = map.apply(&NODAL);
+            let field = map.apply(&NODAL, None);
             let rotation = POINTS.map(|p| [-p[1], p[0]]);
             for test in [[[1.0, 0.0]; 3], [[0.0, 1.0]; 3], rotation] {
                 let lumped: f64 = (0..3).map(|i| (NODAL[i][0] * test[i][0] + NODAL[i][1] * test[i][1]) / 3.0).sum();
@@ -135,12 +158,49 @@ mod tests {
         }
     }
 
+    const LUMPING: [[f64; 2]; 3] = [[0.3, 1.0], [-2.0, 0.4], [0.9, -0.1]];
+
+    /// `mixed` gives, of all linear fields that do the work of the consistent mass on ã and of the lumped mass on o on rigid
+    /// motions, the nearest to ã: the solution g of the least-squares problem |g − ã|² → min, Bg = f with a multiplier for
+    /// each rigid motion.
+    #[test]
+    fn mixed_solves_the_least_squares_problem() {
+        let arms = arms(&POINTS);
+        let rigid = [[[1.0, 0.0]; 3], [[0.0, 1.0]; 3], arms.map(|d| [-d[1], d[0]])];
+        let unit = |k: usize| std::array::from_fn(|i| std::array::from_fn(|c| f64::from(u8::from(2 * i + c == k))));
+        let (mut matrix, mut right) = (DMatrix::zeros(9, 9), DVector::zeros(9));
+        for k in 0..6 {
+            (0..6).for_each(|l| matrix[(k, l)] = mass_product(1.0, &unit(k), &unit(l)));
+            right[k] = mass_product(1.0, &unit(k), &NODAL);
+            for (r, motion) in rigid.iter().enumerate() {
+                let work = mass_product(1.0, &unit(k), motion);
+                (matrix[(k, 6 + r)], matrix[(6 + r, k)]) = (work, work);
+            }
+        }
+        for (r, motion) in rigid.iter().enumerate() {
+            let lumped: f64 = (0..3).map(|i| (LUMPING[i][0] * motion[i][0] + LUMPING[i][1] * motion[i][1]) / 3.0).sum();
+            right[6 + r] = mass_product(1.0, &NODAL, motion) + lumped;
+        }
+        let nearest = matrix.lu().solve(&right).unwrap();
+        let field = Inertia::new(Acceleration::Mixed, &arms).apply(&NODAL, Some(&LUMPING));
+        for (k, value) in field.as_flattened().iter().enumerate() {
+            assert!((value - nearest[k]).abs() < 1e-13, "{value} against {}", nearest[k]);
+        }
+    }
+
+    /// In a bar nothing turns: `mixed` adds the mean of o.
+    #[test]
+    fn mixed_bar() {
+        let map = Inertia::new(Acceleration::Mixed, &arms(&[[0.0], [2.0]]));
+        assert_eq!(map.apply(&[[1.0], [4.0]], Some(&[[0.5], [1.0]])), [[1.75], [4.75]]);
+    }
+
     /// `closest` is the L2-nearest of all fields that balance: its distance from ã is orthogonal to
     /// the fields without resultant and moment, here to the two others.
     #[test]
     fn closest_is_nearest() {
         let distance = |choice| {
-            let field = Inertia::new(choice, &arms(&POINTS)).apply(&NODAL);
+            let field = Inertia::new(choice, &arms(&POINTS)).apply(&NODAL, None);
             let mut difference = field;
             (0..3).for_each(|i| (0..2).for_each(|c| difference[i][c] -= NODAL[i][c]));
             mass_product(1.0, &difference, &difference)
@@ -169,7 +229,7 @@ mod tests {
     /// In 1D the consistent mass matrix inverts to the weak field.
     #[test]
     fn weak_bar() {
-        let field = Inertia::new(Acceleration::Weak, &arms(&[[0.0], [2.0]])).apply(&[[1.0], [4.0]]);
+        let field = Inertia::new(Acceleration::Weak, &arms(&[[0.0], [2.0]])).apply(&[[1.0], [4.0]], None);
         // (1/6)(2Γ_0 + Γ_1) = ½·1 and (1/6)(Γ_0 + 2Γ_1) = ½·4 give Γ = (−2, 7).
         assert_eq!(field, [[-2.0], [7.0]]);
     }

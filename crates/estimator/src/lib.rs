@@ -32,7 +32,7 @@ mod traction;
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
 pub use map::{AdmissibleFields, ElementMap};
-pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName};
+pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};
 pub use pipeline::{Estimator, memory};
 pub use replay::estimate;
 pub use request::{Request, RequestError};

@@ -1,13 +1,12 @@
 //! η of one element (§4.2), exact in space.
 
 use crate::element::Element;
-use crate::increment::ElementIncrement;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node, facet_position};
-use crate::time_level::Side;
+use crate::time_level::{Side, Velocities};
 use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law};
@@ -140,7 +139,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let body = level.forces().level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]);
         let terms = acceleration.iter().flatten().fold(0.0_f64, |m, a| m.max(self.law.density() * a.abs()));
         let terms = body.iter().fold(terms, |m, f| m.max(f.abs()));
-        let mut volume = self.inertia.apply(&acceleration);
+        let lumping = level.forces().level.lumping_difference.as_ref().map(|field| self.element.gather(field));
+        let mut volume = self.inertia.apply(&acceleration, lumping.as_ref());
         for value in &mut volume {
             (0..D).for_each(|c| value[c] = self.law.density() * value[c] - body[c]);
         }
@@ -148,19 +148,26 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         Balanced { forces: self.nodal_forces(&loading), terms, loading }
     }
 
-    /// The error at one sample.
+    /// ∫Γ_DA/ρ dt at the nodes (m/s) \[13\].
+    #[inline]
+    pub(crate) fn increment(&self, velocities: &Velocities<D>) -> [[f64; D]; N] {
+        let nodes = &self.element.nodes;
+        let lumping = velocities.lumping_increment.as_ref().map(|increment| increment.gather(nodes));
+        self.inertia.apply(&velocities.increment.gather(nodes), lumping.as_ref())
+    }
+
+    /// The error at one sample, with ∫Γ_DA/ρ dt there.
     pub(crate) fn error(
         &self,
         balanced: &Balanced<D, N>,
-        increment: &ElementIncrement<D, N>,
+        increment: &[[f64; D]; N],
         motion: &ElementMotion<D, N>,
     ) -> ElementError {
         let mass = N as f64 * self.element.nodal_mass;
-        let integral = self.inertia.apply(increment.values());
         let (mut dynamic, mut misfit) = (self.start, [[0.0; D]; N]);
         for i in 0..N {
             for c in 0..D {
-                dynamic[i][c] += integral[i][c];
+                dynamic[i][c] += increment[i][c];
                 misfit[i][c] = dynamic[i][c] - motion.velocity()[i][c];
             }
         }
@@ -216,7 +223,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         level: &Equilibrated<D>,
     ) -> ([[f64; D]; D], [f64; D]) {
         let balanced = self.balanced(equilibration, level, &[None; N], Side::After);
-        let inertia = self.inertia.apply(&self.element.gather(&level.forces().acceleration));
+        let lumping = level.forces().level.lumping_difference.as_ref().map(|field| self.element.gather(field));
+        let inertia = self.inertia.apply(&self.element.gather(&level.forces().acceleration), lumping.as_ref());
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
         (self.stress.mean(&balanced.loading), acceleration)
     }

@@ -36,6 +36,31 @@ pub enum Acceleration {
     Rigid,
     /// The linear one that does the lumped work on each shape function.
     Weak,
+    /// The one nearest to ρ ã_h if the tractions balance the consistent mass term and, lumped, by how much lumping changes
+    /// the acceleration. For `corrected` only.
+    Mixed,
+}
+
+impl Acceleration {
+    /// Those that a reconstruction can be combined with.
+    #[must_use]
+    pub fn of(reconstruction: Reconstruction) -> &'static [Self] {
+        match reconstruction {
+            Reconstruction::Corrected => Self::ALL,
+            _ => &[Self::Closest, Self::Rigid, Self::Weak],
+        }
+    }
+
+    /// Refuses a reconstruction that this cannot be combined with.
+    ///
+    /// # Errors
+    /// [`UnsuitableAcceleration`].
+    pub fn check(self, reconstruction: Reconstruction) -> Result<(), UnsuitableAcceleration> {
+        match Self::of(reconstruction).contains(&self) {
+            true => Ok(()),
+            false => Err(UnsuitableAcceleration { acceleration: self, reconstruction }),
+        }
+    }
 }
 
 /// A part that [`Reconstruction::Corrected`] leaves out, or changes, to show its effect: no choice for an estimate. The
@@ -105,6 +130,19 @@ pub struct UnknownName {
     pub known: Vec<&'static str>,
 }
 
+/// A choice of Γ_DA that the reconstruction cannot be combined with.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error(
+    "is \"{acceleration}\"; with reconstruction = \"{reconstruction}\" it must be one of \"closest\", \"rigid\", \"weak\" \
+     (\"{acceleration}\" needs reconstruction = \"corrected\")"
+)]
+pub struct UnsuitableAcceleration {
+    /// The choice of Γ_DA.
+    pub acceleration: Acceleration,
+    /// The reconstruction.
+    pub reconstruction: Reconstruction,
+}
+
 /// Gives the variants of an option their names, for reading and printing.
 macro_rules! named {
     ($type:ident: $($variant:ident = $name:literal),+) => {
@@ -146,7 +184,7 @@ named!(
         NormalWork = "normal work",
         DoubledWork = "doubled work"
 );
-named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak");
+named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak", Mixed = "mixed");
 
 #[cfg(test)]
 mod tests {

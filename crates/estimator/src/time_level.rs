@@ -37,6 +37,8 @@ pub(crate) struct TimeLevel<const D: usize> {
     /// Prescribed moments on the loaded facets (N).
     pub(crate) load_moments: Vec<[[f64; D]; D]>,
     pub(crate) surface: SurfaceStep<D>,
+    /// M⁻¹(M − M_c)ã (m/s²), which `mixed` needs.
+    pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
 }
 
 /// A level of which the motion is known.
@@ -56,6 +58,8 @@ pub(crate) struct MotionKnown<const D: usize> {
 pub(crate) struct Velocities<const D: usize> {
     pub(crate) motion: NodalMotion<D>,
     pub(crate) increment: Increment<D>,
+    /// The same of the lumping difference.
+    pub(crate) lumping_increment: Option<Increment<D>>,
 }
 
 /// A level of which the fields before t_n are known, ã and the contact density among them.

@@ -7,6 +7,7 @@
 //! the pseudo-inverse of the star matrix, in as many operations as the star has facets.
 
 mod equilibrated;
+mod mass_term;
 mod star_solver;
 
 use crate::contact_density::Densities;
@@ -14,6 +15,7 @@ use crate::element::Element;
 use crate::loaded::LoadedFacets;
 use crate::time_level::TimeLevel;
 pub(crate) use equilibrated::{Equilibrated, FemStress};
+use mass_term::MassTerm;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::material::Law;
 use percute_core::mesh::Star;
@@ -92,14 +94,14 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         level: &TimeLevel<D>,
         stress: &FemStress<D>,
         node: NodeId,
-        acceleration: &[f64; D],
+        mass_term: MassTerm<'_, D>,
         densities: &Densities<D>,
         moments: &mut [[f64; D]],
     ) -> Compatibility {
         let star = self.problem.mesh().stars().star(node);
         let ends = self.ends(level, densities, node, &star);
         let stress = &stress.of_element;
-        let solver = StarSolver { all: self, level, stress, node, acceleration, elements: star.elements, ends: &ends };
+        let solver = StarSolver { all: self, level, stress, node, mass_term, elements: star.elements, ends: &ends };
         let mut scale: f64 = 0.0;
         let lack = solver.along(moments, &mut scale);
         let miss = ends.close(&lack, moments);

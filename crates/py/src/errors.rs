@@ -111,7 +111,10 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Simulation(error) => simulation(py, error),
         RunError::Estimate(
-            EstimateError::Zero { .. } | EstimateError::TooManyThreads { .. } | EstimateError::Request(_),
+            EstimateError::Zero { .. }
+            | EstimateError::TooManyThreads { .. }
+            | EstimateError::Acceleration(_)
+            | EstimateError::Request(_),
         ) => input(py, error),
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),

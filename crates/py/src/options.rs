@@ -2,7 +2,7 @@
 
 use crate::errors;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, Request, UnknownName};
+use percute_estimator::{Acceleration, Options, Request, UnknownName};
 use percute_workflow::case::Instants;
 use percute_workflow::message::hint;
 use percute_workflow::run::Analysis;
@@ -31,7 +31,8 @@ pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, 
         errors::input(py, format!("`{name}`: {error}{hint}"))
     };
     let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
-    let acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
+    let acceleration: Acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
+    acceleration.check(reconstruction).map_err(|error| errors::input(py, format!("`acceleration` {error}")))?;
     Ok(Options { reconstruction, acceleration, every, ..Options::default() })
 }
 

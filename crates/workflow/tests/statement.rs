@@ -158,7 +158,8 @@ fn anything<const D: usize, const N: usize>(
 
 fn options(random: &mut Random) -> Options {
     let reconstruction = Reconstruction::ALL[random.bits() as usize % Reconstruction::ALL.len()];
-    let acceleration = Acceleration::ALL[random.bits() as usize % Acceleration::ALL.len()];
+    let accelerations = Acceleration::of(reconstruction);
+    let acceleration = accelerations[random.bits() as usize % accelerations.len()];
     Options { reconstruction, acceleration, every: 1 + random.bits() as usize % 1000, ..Options::default() }
 }
 

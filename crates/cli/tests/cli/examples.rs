@@ -47,7 +47,8 @@ fn examples_run_with_every_option() {
     for name in cases {
         let case = std::fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap();
         let body = case.split("[estimate]").next().unwrap();
-        let pairs = Reconstruction::ALL.iter().flat_map(|force| Acceleration::ALL.iter().map(move |a| (force, a)));
+        let pairs =
+            Reconstruction::ALL.iter().flat_map(|force| Acceleration::of(*force).iter().map(move |a| (force, a)));
         for (force, acceleration) in pairs {
             let options = format!("reconstruction = \"{force}\"\nacceleration = \"{acceleration}\"");
             let bench = Bench::new(&format!("{body}\n[estimate]\n{options}\nevery = 7\n"));

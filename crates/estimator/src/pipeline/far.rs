@@ -1,7 +1,7 @@
 //! Elements without a candidate node of contact, sampled as soon as a level is equilibrated.
 
 use super::maps::Contribution;
-use super::sampling::{Course, ElementInterval, ElementSampler, ElementVelocities, Sampling};
+use super::sampling::{Course, ElementInterval, ElementSampler, Sampling};
 use super::totals::FarSums;
 use crate::element::BLOCK;
 use crate::residual::Residuals;
@@ -54,7 +54,7 @@ impl FarBlock {
         course: &mut Course,
     ) {
         let balanced = |level| sampler.balanced(level, &[None; N], Side::After);
-        let gather = |velocities: &Velocities<D>| ElementVelocities::gather(velocities, sampler.element);
+        let gather = |velocities: &Velocities<D>| sampler.velocities(velocities);
         let mut before = balanced(&levels[0]);
         let begins = first == 0;
         if begins {

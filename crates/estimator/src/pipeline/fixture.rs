@@ -72,6 +72,15 @@ pub(super) fn prepared<'p>(
     prepared_until(problem, times, reconstruction, times.step_count())
 }
 
+/// The same with all options.
+pub(super) fn prepared_with<'p>(
+    problem: &'p TriangleProblem,
+    times: &'p TimeGrid,
+    options: &Options,
+) -> Preparation<'p, 2, 3> {
+    prepare(problem, times, options, times.step_count())
+}
+
 /// Its steps up to one of them.
 pub(super) fn prepared_until<'p>(
     problem: &'p TriangleProblem,
@@ -79,9 +88,18 @@ pub(super) fn prepared_until<'p>(
     reconstruction: Reconstruction,
     last: usize,
 ) -> Preparation<'p, 2, 3> {
+    prepare(problem, times, &Options { reconstruction, ..Options::default() }, last)
+}
+
+fn prepare<'p>(
+    problem: &'p TriangleProblem,
+    times: &'p TimeGrid,
+    options: &Options,
+    last: usize,
+) -> Preparation<'p, 2, 3> {
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
-    let mut preparation = Preparation::new(problem, times, &Options { reconstruction, ..Options::default() });
+    let mut preparation = Preparation::new(problem, times, options);
     let mut evaluation = Evaluation::new(problem, times);
     for n in 0..=last {
         let step = history.step(n).unwrap();

@@ -106,7 +106,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let sampler = ElementSampler::new(context.shared, self.element);
         let begins = self.start.is_none();
         if begins {
-            let mut first = self.at(sampler.element, &levels[0].forces().now, 0, 0.0);
+            let mut first = self.at(&sampler, &levels[0].forces().now, 0, 0.0);
             self.settle(context, &mut first);
             self.check_start(context, sampler.element, &first.velocities);
             self.start = Some(first);
@@ -135,8 +135,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
         let single = to.index() == from.index() + 1;
         let mid = forces.mid.as_ref().filter(|_| single);
-        let mid = mid.map(|mid| self.at(sampler.element, mid, 2 * to.index() - 1, friction(0)));
-        let stop = self.at(sampler.element, &forces.now, 2 * to.index(), friction(1));
+        let mid = mid.map(|mid| self.at(sampler, mid, 2 * to.index() - 1, friction(0)));
+        let stop = self.at(sampler, &forces.now, 2 * to.index(), friction(1));
         let touches = |level: &Equilibrated<D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
@@ -146,12 +146,12 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
 
     fn at(
         &self,
-        element: &Element<D, N>,
+        sampler: &ElementSampler<'_, '_, D, N>,
         velocities: &Velocities<D>,
         instant: usize,
         friction: f64,
     ) -> ContactInstant<D, N> {
-        ContactInstant { instant, velocities: ElementVelocities::gather(velocities, element), friction }
+        ContactInstant { instant, velocities: sampler.velocities(velocities), friction }
     }
 
     /// Number of half-step instants at which the motion of all contact nodes is known.

@@ -163,13 +163,15 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.residuals.supports = worse(self.residuals.supports, miss);
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
-        let BalancedFields { displacement, force, contact } = self.reconstruction.advance(&self.dynamics, &simulated);
+        let balanced = self.reconstruction.advance(&self.dynamics, &simulated);
+        let BalancedFields { displacement, force, contact, lumping_difference } = balanced;
         let level = TimeLevel {
             index: n,
             displacement,
             body_force: problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
             surface: SurfaceStep { reaction: step.reaction.to_vec(), force: contact, touching: step.touching.to_vec() },
+            lumping_difference,
         };
         let motion = MotionKnown { level, now, mid, force };
         if n == 0 {

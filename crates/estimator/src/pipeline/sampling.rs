@@ -2,7 +2,6 @@
 
 use super::maps::{Contribution, Maps};
 use crate::element::Element;
-use crate::increment::ElementIncrement;
 use crate::kinematic::ElementMotion;
 use crate::measure::{Balanced, ElementError, ElementMeasure};
 use crate::options::Acceleration;
@@ -48,17 +47,8 @@ pub(super) struct Course {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ElementVelocities<const D: usize, const N: usize> {
     pub(super) motion: ElementMotion<D, N>,
-    increment: ElementIncrement<D, N>,
-}
-
-impl<const D: usize, const N: usize> ElementVelocities<D, N> {
-    #[inline]
-    pub(super) fn gather(velocities: &Velocities<D>, element: &Element<D, N>) -> Self {
-        Self {
-            motion: ElementMotion::gather(&velocities.motion, &element.nodes),
-            increment: velocities.increment.gather(&element.nodes),
-        }
-    }
+    /// ∫Γ_DA/ρ dt (m/s).
+    increment: [[f64; D]; N],
 }
 
 /// One interval between sampled levels.
@@ -98,6 +88,15 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     pub(super) fn new(shared: &'a Sampling<'a, 'p, D, N>, id: ElementId) -> Self {
         let element = &shared.equilibration.elements[id.index()];
         Self { shared, id, element, measure: ElementMeasure::new(shared.problem, element, id, shared.choice) }
+    }
+
+    /// The fields of the element at a half-step instant.
+    #[inline]
+    pub(super) fn velocities(&self, velocities: &Velocities<D>) -> ElementVelocities<D, N> {
+        ElementVelocities {
+            motion: ElementMotion::gather(&velocities.motion, &self.element.nodes),
+            increment: self.measure.increment(velocities),
+        }
     }
 
     /// The fields that balance at a level; `contact` gives the contact node at each local node.

@@ -30,15 +30,16 @@ const LEVELS: std::ops::RangeInclusive<usize> = 8..=64;
 const WORK: usize = 2_000_000;
 
 /// Memory of one level (bytes).
-fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
+fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
     let mesh = problem.mesh();
-    8 * D * (8 * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
+    let fields = if options.acceleration == Acceleration::Mixed { 11 } else { 8 };
+    8 * D * (fields * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
 }
 
 /// Number of intervals worked on at once.
 fn size<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
     let wanted = (WORK / problem.mesh().element_count()).clamp(*LEVELS.start(), *LEVELS.end());
-    options.window.unwrap_or_else(|| wanted.min(MODEST_MEMORY / bytes_of_level(problem)).max(1))
+    options.window.unwrap_or_else(|| wanted.min(MODEST_MEMORY / bytes_of_level(problem, options)).max(1))
 }
 
 /// About how much memory (bytes) an estimate takes beside its problem: its levels and the data that it keeps of
@@ -53,7 +54,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let steps = times.step_count() / options.every.max(1) + 1;
     let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
     levels
-        .saturating_mul(bytes_of_level(problem))
+        .saturating_mul(bytes_of_level(problem, options))
         .saturating_add(reconstruction::new(problem, times, options).memory(levels, threads))
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(step.saturating_mul(steps))

@@ -63,6 +63,8 @@ pub(crate) struct BalancedFields<const D: usize> {
     pub(crate) force: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
+    /// M⁻¹(M − M_c)ã (m/s²), for `mixed` alone.
+    pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
 }
 
 /// A way to build dynamically admissible fields.
@@ -88,7 +90,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
         let (state, step) = (simulated.state, simulated.state.step());
         let force = state.force_without_contact(dynamics.problem().surface());
-        BalancedFields { displacement: step.displacement.to_vec(), force, contact: step.reaction.to_vec() }
+        let (displacement, contact) = (step.displacement.to_vec(), step.reaction.to_vec());
+        BalancedFields { displacement, force, contact, lumping_difference: None }
     }
 
     /// F_DA over a step.
@@ -136,7 +139,7 @@ pub(crate) fn new<'p, const D: usize, const N: usize>(
     match options.reconstruction {
         Reconstruction::Published => Box::new(Published::new(problem)),
         Reconstruction::Consistent => Box::new(Consistent::new(problem)),
-        Reconstruction::Corrected => Box::new(Corrected::new(problem, times, options.ablation)),
+        Reconstruction::Corrected => Box::new(Corrected::new(problem, times, options)),
     }
 }
 

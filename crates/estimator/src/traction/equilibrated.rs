@@ -1,6 +1,6 @@
 //! A time level with the stress of the finite elements and equilibrated tractions.
 
-use super::Equilibration;
+use super::{Equilibration, MassTerm};
 use crate::element::{BLOCK, Element};
 use crate::residual::worse;
 use crate::time_level::{ForcesKnown, Side};
@@ -111,8 +111,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             for node in nodes.map(NodeId::new) {
                 let (moments, others) = std::mem::take(&mut block).split_at_mut(stars.link_range(node).len());
                 block = others;
-                let acceleration = &forces.acceleration[node.index()];
-                let star = self.solve_star(&forces.level, &stress, node, acceleration, &forces.density, moments);
+                let mass_term = MassTerm::new(&forces, node);
+                let star = self.solve_star(&forces.level, &stress, node, mass_term, &forces.density, moments);
                 worst = worse(worst, self.star_residual(star, &forces.level, &stress, node));
             }
             worst
@@ -130,8 +130,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let mut worst: f64 = 0.0;
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
             let links = &mut moments[self.contact_links[at]..self.contact_links[at + 1]];
-            let acceleration = &before.acceleration[at];
-            let star = self.solve_star(&forces.level, stress, contact.node, acceleration, &before.density, links);
+            let mass_term = MassTerm::Lumped(&before.acceleration[at]);
+            let star = self.solve_star(&forces.level, stress, contact.node, mass_term, &before.density, links);
             worst = worse(worst, self.star_residual(star, &forces.level, stress, contact.node));
         }
         Some((moments, worst))

@@ -1,6 +1,6 @@
 //! One star problem, solved from facet to facet.
 
-use super::Equilibration;
+use super::{Equilibration, MassTerm};
 use crate::residual::worse;
 use crate::time_level::TimeLevel;
 use percute_core::ids::{ElementId, NodeId};
@@ -56,7 +56,7 @@ pub(super) struct StarSolver<'a, 'p, const D: usize, const N: usize> {
     /// σ_h of each element (Pa).
     pub(super) stress: &'a [[[f64; D]; D]],
     pub(super) node: NodeId,
-    pub(super) acceleration: &'a [f64; D],
+    pub(super) mass_term: MassTerm<'a, D>,
     pub(super) elements: &'a [ElementId],
     pub(super) ends: &'a Ends<D>,
 }
@@ -90,7 +90,7 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
         std::array::from_fn(|c| target_sum[c] - sum[c])
     }
 
-    /// r_i^E = ∫σ_h∇φ_i + ρV/(D+1) ã_i − ∫f_dφ_i.
+    /// r_i^E = ∫σ_h∇φ_i + mass term − ∫f_dφ_i.
     #[inline]
     fn residual_of(&self, element: ElementId, scale: &mut f64) -> [f64; D] {
         let e = element.index();
@@ -98,8 +98,8 @@ impl<const D: usize, const N: usize> StarSolver<'_, '_, D, N> {
         let i = data.nodes.iter().position(|&n| n == self.node).unwrap_or(0);
         let mut r = data.internal_force(i, &self.stress[e]);
         for c in 0..D {
-            let inertia = data.nodal_mass * self.acceleration[c];
-            *scale = scale.max(r[c].abs()).max(inertia.abs());
+            let [inertia, size] = self.mass_term.at(data, i, c).map(|a| data.nodal_mass * a);
+            *scale = scale.max(r[c].abs()).max(size);
             r[c] += inertia;
             if let Some(force) = self.level.body_force.get(e) {
                 r[c] -= data.volume / N as f64 * force[c];

@@ -230,20 +230,42 @@ impl Bar {
         })
     }
 
+    /// M⁻¹(M − M_c) of a nodal field at a node: an element of mass m gives m/6 times the difference to its other node.
+    fn lumping_difference(&self, field: &[f64], i: usize) -> f64 {
+        let apart = |other: Option<&f64>| other.map_or(0.0, |other| field[i] - other);
+        let sum = apart(i.checked_sub(1).map(|j| &field[j])) + apart(field.get(i + 1));
+        self.share() / 3.0 * sum / self.mass(i)
+    }
+
     /// η_E and d_E of an element: ã and its integral at its ends, Q, N of the simulation in the
     /// element and its neighbours, and the kinematic field.
     fn measure(&self, e: usize, state: &State<'_>, choice: Acceleration) -> [f64; 2] {
         let (h, inertia) = (self.element(), self.density * self.section);
-        let gamma = |a: f64, b: f64| match choice {
-            Acceleration::Closest => [a, b],
-            Acceleration::Rigid => [0.5 * (a + b); 2],
-            // (2Γ_0 + Γ_1)/6 = ã_0/2.
-            Acceleration::Weak => [2.0 * a - b, 2.0 * b - a],
+        let gamma = |nodal: &[f64]| {
+            let (a, b) = (nodal[e], nodal[e + 1]);
+            match choice {
+                Acceleration::Closest => [a, b],
+                Acceleration::Rigid => [0.5 * (a + b); 2],
+                // (2Γ_0 + Γ_1)/6 = ã_0/2.
+                Acceleration::Weak => [2.0 * a - b, 2.0 * b - a],
+                Acceleration::Mixed => {
+                    let mean = 0.5 * (self.lumping_difference(nodal, e) + self.lumping_difference(nodal, e + 1));
+                    [a + mean, b + mean]
+                }
+            }
         };
-        let acceleration = gamma(state.acceleration[e], state.acceleration[e + 1]);
-        let gained = gamma(state.gained[e], state.gained[e + 1]);
+        let (acceleration, gained) = (gamma(state.acceleration), gamma(state.gained));
         let force = state.force;
-        let left = if e == 0 { -state.push } else { 0.5 * (force[e - 1] + force[e]) };
+        let left = match (e, choice) {
+            (0, _) => -state.push,
+            // N + (M_c ã + M o of the element before at its end).
+            (_, Acceleration::Mixed) => {
+                let (before, here) = (state.acceleration[e - 1], state.acceleration[e]);
+                let difference = self.lumping_difference(state.acceleration, e);
+                force[e - 1] + self.share() * ((2.0 * here + before) / 3.0 + difference)
+            }
+            _ => 0.5 * (force[e - 1] + force[e]),
+        };
         let (u, v) = state.motion;
         let own = self.young * self.section * (u[e + 1] - u[e]) / h;
         let (mut error, mut sum) = (0.0, 0.0);

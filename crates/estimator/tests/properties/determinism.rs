@@ -8,7 +8,9 @@ use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request};
+use percute_estimator::{
+    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request,
+};
 use percute_testkit::{disc, random_rectangle};
 
 /// Every number of an estimate; those of its maps come last.
@@ -58,10 +60,11 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
         percute_estimator::estimate(problem, &history, Options::default(), &none, &mut Discard, &mut Unobserved)
             .unwrap();
     assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
-    for &reconstruction in Reconstruction::ALL {
+    let closest = Reconstruction::ALL.iter().map(|&reconstruction| (reconstruction, Acceleration::Closest));
+    for (reconstruction, acceleration) in closest.chain([(Reconstruction::Corrected, Acceleration::Mixed)]) {
         for every in [1, 3] {
-            let options =
-                Options { reconstruction, every, window: Some(1_000_000), threads: Some(1), ..Options::default() };
+            let (window, threads) = (Some(1_000_000), Some(1));
+            let options = Options { reconstruction, acceleration, every, window, threads, ..Options::default() };
             // Maps at the start and the end, and at what lies between on one side of a window or the other.
             let request = Request { fields: true, ..Request::evenly(times, 9, every) };
             let expected = bits(&estimate_with_maps(problem, &history, options, &request));

@@ -5,7 +5,9 @@ use crate::estimating::{Evaluated, cause, history};
 use percute_core::history::{Step, StepError};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Estimator, MOST_THREADS, Options, Reconstruction};
+use percute_estimator::{
+    Acceleration, EstimateError, Estimator, MOST_THREADS, Options, Reconstruction, UnsuitableAcceleration,
+};
 use percute_testkit::random_rectangle;
 
 /// A step that can be spoilt.
@@ -151,6 +153,12 @@ fn too_few_steps_and_impossible_options() {
     let options = Options { threads: Some(MOST_THREADS + 1), ..Options::default() };
     let refused = Estimator::new(&problem, &times, options).err();
     assert_eq!(refused, Some(EstimateError::TooManyThreads { threads: 1025 }));
+    for reconstruction in [Reconstruction::Consistent, Reconstruction::Published] {
+        let options = Options { reconstruction, acceleration: Acceleration::Mixed, ..Options::default() };
+        let refused = Estimator::new(&problem, &times, options).err();
+        let expected = UnsuitableAcceleration { acceleration: Acceleration::Mixed, reconstruction };
+        assert_eq!(refused, Some(EstimateError::Acceleration(expected)));
+    }
 }
 
 /// Finite, but too large for what is made of it: the estimate must not look sound.

@@ -8,6 +8,7 @@ mod bar;
 mod beside;
 mod block;
 mod nothing;
+mod turning;
 
 #[path = "../common/mod.rs"]
 mod common;

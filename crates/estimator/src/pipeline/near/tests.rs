@@ -28,7 +28,7 @@ fn checked(track: &ContactTrack) -> Residuals {
     let reconstruction = reconstruction::new(&problem, &times, &Options::default());
     let context = ContactSampling { shared: &shared, reconstruction: &*reconstruction, tracks: &tracks };
     let mut near = near_elements(&problem).remove(0);
-    let element = &equilibration.elements[near.element.index()];
+    let sampler = ElementSampler::new(&shared, near.element);
     let surface = problem.surface().nodes().len();
     let step = Step {
         index: 0,
@@ -41,8 +41,9 @@ fn checked(track: &ContactTrack) -> Residuals {
     };
     let mut evaluation = Evaluation::new(&problem, &times);
     let (_, motion) = FreeMotion::new(&problem).advance(&problem, &times, &evaluation.advance(&step).unwrap());
-    let velocities = Velocities { motion, increment: Increment::zero(problem.mesh().node_count()) };
-    let mut stop = near.at(element, &velocities, 2, 0.0);
+    let velocities =
+        Velocities { motion, increment: Increment::zero(problem.mesh().node_count()), lumping_increment: None };
+    let mut stop = near.at(&sampler, &velocities, 2, 0.0);
     near.settle(&context, &mut stop);
     let touching = near.contact.map(|at| at.is_some());
     near.check_contact(&context, &stop.velocities, &touching);

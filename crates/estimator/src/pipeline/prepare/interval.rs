@@ -29,10 +29,11 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     pub(super) fn first(&self, first: MotionKnown<D>) -> ForcesBefore<D> {
         let MotionKnown { level, now: motion, force, .. } = first;
         let increment = Increment::zero(force.len());
+        let lumping_increment = level.lumping_difference.as_ref().map(|_| increment.clone());
         let surface_force = self.on_surface(&force);
         let forces = ForcesKnown {
             level,
-            now: Velocities { motion, increment },
+            now: Velocities { motion, increment, lumping_increment },
             mid: None,
             acceleration: accelerate(self.problem, self.dynamics.inverse_mass(), force, &[]),
             density: Densities::none(self.problem),
@@ -59,7 +60,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     }
 
     /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã is
-    /// linear over the step.
+    /// linear over the step, like the lumping difference.
     fn reach(
         &self,
         now: &ForcesKnown<D>,
@@ -74,10 +75,14 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let pull = driving_forces(self.problem, &density);
         let acceleration = accelerate(self.problem, self.dynamics.inverse_mass(), force, &pull);
         let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
+        let lumping_difference = now.level.lumping_difference.as_deref().zip(level.lumping_difference.as_deref());
+        let lumping = now.now.lumping_increment.as_ref().zip(lumping_difference);
+        let lumping = lumping.map(|(so_far, (start, end))| <(_, _)>::from(so_far.advance(length, start, end)));
+        let (lumping_middle, lumping_increment) = lumping.unzip();
         let forces = ForcesKnown {
             level,
-            now: Velocities { motion, increment },
-            mid: mid.map(|motion| Velocities { motion, increment: middle }),
+            now: Velocities { motion, increment, lumping_increment },
+            mid: mid.map(|motion| Velocities { motion, increment: middle, lumping_increment: lumping_middle }),
             acceleration,
             density,
             before: None,

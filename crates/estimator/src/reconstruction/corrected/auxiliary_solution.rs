@@ -11,12 +11,12 @@
 //! uniform bar, where at the critical step both cancel and β alone is left. ã itself, of which Γ_DA and
 //! the tractions are made, balances M ã as before.
 
+use super::lumping_difference::lumping_difference;
 use crate::reconstruction::SimulatedStep;
 use percute_core::dynamics::Dynamics;
-use percute_core::ids::ElementId;
-use percute_core::material::Law;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::borrow::Cow;
 
 /// Displacement and half-step velocity, advanced beside the simulation's steps.
 #[derive(Clone, Debug)]
@@ -72,7 +72,8 @@ impl<const D: usize> AuxiliarySolution<D> {
         self.peak_energy > 0.0 && kinetic_energy(&self.half_step, mass) > UNSTABLE * self.peak_energy
     }
 
-    /// Goes on from t_n to t_{n+1} with ã_n; after the last step there is nowhere to go.
+    /// Goes on from t_n to t_{n+1} with ã_n, and with its lumping difference if it is known already; after the last step
+    /// there is nowhere to go.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -80,6 +81,7 @@ impl<const D: usize> AuxiliarySolution<D> {
         times: &TimeGrid,
         n: usize,
         acceleration: &[[f64; D]],
+        once: Option<&[[f64; D]]>,
     ) {
         if n == times.step_count() {
             return;
@@ -88,7 +90,7 @@ impl<const D: usize> AuxiliarySolution<D> {
         if self.reversals > FEW {
             self.correction.fill([0.0; D]);
         } else if self.corrected {
-            self.correct(problem, dynamics, times.step(n) * times.step(n.saturating_sub(1)), acceleration);
+            self.correct(problem, dynamics, times.step(n) * times.step(n.saturating_sub(1)), acceleration, once);
         }
         let corrected = acceleration.iter().zip(&self.correction).map(|(a, b)| std::array::from_fn(|c| a[c] + b[c]));
         percute_core::dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, corrected);
@@ -101,22 +103,19 @@ impl<const D: usize> AuxiliarySolution<D> {
         dynamics: &Dynamics<'_, D, N>,
         square_of_step: f64,
         acceleration: &[[f64; D]],
+        once: Option<&[[f64; D]]>,
     ) {
-        let inverse_mass = dynamics.inverse_mass();
-        let hold = |field: &mut [[f64; D]]| {
-            problem.prescribed().iter().for_each(|p| field[p.node.index()][p.component] = 0.0);
-        };
-        let mut once = mass_difference(problem, inverse_mass, acceleration);
-        hold(&mut once);
-        let twice = mass_difference(problem, inverse_mass, &once);
+        let difference = |field: &[[f64; D]]| lumping_difference(problem, dynamics.inverse_mass(), field);
+        let once = once.map_or_else(|| Cow::Owned(difference(acceleration)), Cow::Borrowed);
+        let twice = difference(&once);
         self.correction.fill([0.0; D]);
         dynamics.stiffness().subtract_internal_forces(acceleration, &mut self.correction);
         let (time, damping) = (square_of_step / 12.0, damping::<D>());
-        let parts = self.correction.iter_mut().zip(inverse_mass).zip(once.iter().zip(&twice));
+        let parts = self.correction.iter_mut().zip(dynamics.inverse_mass()).zip(once.iter().zip(&twice));
         for ((value, inverse), (once, twice)) in parts {
             (0..D).for_each(|c| value[c] = time * inverse * value[c] + 0.5 * once[c] - damping * twice[c]);
         }
-        hold(&mut self.correction);
+        problem.prescribed().iter().for_each(|p| self.correction[p.node.index()][p.component] = 0.0);
     }
 }
 
@@ -142,27 +141,6 @@ fn reverses(times: &TimeGrid, n: usize) -> bool {
 /// ½ v·M v (J).
 fn kinetic_energy<const D: usize>(velocity: &[[f64; D]], mass: &[f64]) -> f64 {
     velocity.iter().zip(mass).map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
-}
-
-/// M⁻¹(M − M_c) of a nodal field: an element gives m/(D+2) times the distance to the mean of its nodes.
-fn mass_difference<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    inverse_mass: &[f64],
-    field: &[[f64; D]],
-) -> Vec<[f64; D]> {
-    let mut difference = vec![[0.0; D]; field.len()];
-    for (e, nodes) in problem.mesh().cells().iter().enumerate() {
-        let id = ElementId::new(e);
-        let share = problem.material(id).density() * problem.volume(id) / (D + 2) as f64;
-        for c in 0..D {
-            let mean = nodes.iter().map(|n| field[n.index()][c]).sum::<f64>() / N as f64;
-            nodes.iter().for_each(|n| difference[n.index()][c] += share * (field[n.index()][c] - mean));
-        }
-    }
-    for (value, inverse) in difference.iter_mut().zip(inverse_mass) {
-        (0..D).for_each(|c| value[c] *= inverse);
-    }
-    difference
 }
 
 #[cfg(test)]

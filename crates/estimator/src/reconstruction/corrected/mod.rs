@@ -3,6 +3,7 @@
 
 mod auxiliary_solution;
 mod impulse_smoothing;
+mod lumping_difference;
 mod moment_correction;
 mod traction_minimisation;
 
@@ -12,10 +13,11 @@ use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
-use crate::options::{Ablation, Acceleration};
+use crate::options::{Ablation, Acceleration, Options};
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
 use impulse_smoothing::ImpulseSmoothing;
+use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
@@ -34,6 +36,8 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
+    /// Whether the lumping difference is wanted.
+    mixed: bool,
     minimises: bool,
     minimisation: Option<TractionMinimisation<D>>,
     /// Weight of the work of normal forces off contact.
@@ -41,8 +45,8 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 }
 
 impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, ablation: Ablation) -> Self {
-        let keeps = |part: Ablation| ablation != part;
+    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+        let keeps = |part: Ablation| options.ablation != part;
         Self {
             problem,
             times,
@@ -51,9 +55,10 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             auxiliary: keeps(Ablation::AuxiliarySolution)
                 .then(|| AuxiliarySolution::new(problem, keeps(Ablation::Correction))),
+            mixed: options.acceleration == Acceleration::Mixed,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
-            normal_work: match ablation {
+            normal_work: match options.ablation {
                 Ablation::NormalWork => 0.0,
                 Ablation::DoubledWork => 2.0,
                 _ => 1.0,
@@ -110,17 +115,22 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             None => step.reaction.to_vec(),
         };
         let pull = driving_forces(problem, &self.at(&contact));
+        let inverse_mass = dynamics.inverse_mass();
         let Some(auxiliary) = &mut self.auxiliary else {
-            let force = state.force_without_contact(problem.surface());
-            return BalancedFields { displacement: step.displacement.to_vec(), force, contact };
+            let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
+            let lumping_difference = self.mixed.then(|| {
+                lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
+            });
+            return BalancedFields { displacement, force, contact, lumping_difference };
         };
         auxiliary.watch(simulated, problem.mass());
         let displacement = auxiliary.displacement().to_vec();
         let mut force = vec![[0.0; D]; displacement.len()];
         dynamics.forces_without_contact(step.index, &displacement, &mut force);
-        let acceleration = accelerate(problem, dynamics.inverse_mass(), force.clone(), &pull);
-        auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration);
-        BalancedFields { displacement, force, contact }
+        let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
+        let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
+        auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration, lumping_difference.as_deref());
+        BalancedFields { displacement, force, contact, lumping_difference }
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {

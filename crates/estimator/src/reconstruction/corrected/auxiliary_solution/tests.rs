@@ -23,7 +23,7 @@ fn motion<const D: usize, const N: usize>(
         for (a, inverse) in acceleration.iter_mut().zip(dynamics.inverse_mass()) {
             (0..D).for_each(|c| a[c] *= inverse);
         }
-        auxiliary.advance(problem, &dynamics, times, n, &acceleration);
+        auxiliary.advance(problem, &dynamics, times, n, &acceleration, None);
     }
     motion
 }

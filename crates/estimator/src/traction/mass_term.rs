@@ -1,0 +1,90 @@
+//! The mass term of the star problems.
+
+use crate::element::Element;
+use crate::time_level::ForcesKnown;
+use percute_core::ids::NodeId;
+
+/// The nodal inertia forces of the elements around a node. Their sum over the star is M ã at the node.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum MassTerm<'a, const D: usize> {
+    /// ρV/(D+1) ã_i, with ã of the node.
+    Lumped(&'a [f64; D]),
+    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at all nodes.
+    Mixed { acceleration: &'a [[f64; D]], lumping_difference: &'a [[f64; D]] },
+}
+
+impl<'a, const D: usize> MassTerm<'a, D> {
+    /// That of one node at a level.
+    #[inline]
+    pub(super) fn new(forces: &'a ForcesKnown<D>, node: NodeId) -> Self {
+        match &forces.level.lumping_difference {
+            None => Self::Lumped(&forces.acceleration[node.index()]),
+            Some(lumping_difference) => Self::Mixed { acceleration: &forces.acceleration, lumping_difference },
+        }
+    }
+
+    /// Component `c` at local node `i` of an element, and the size of its parts before they cancel; both over the lumped mass
+    /// of the element there (m/s²).
+    #[inline]
+    pub(super) fn at<const N: usize>(&self, element: &Element<D, N>, i: usize, c: usize) -> [f64; 2] {
+        match *self {
+            Self::Lumped(acceleration) => [acceleration[c], acceleration[c].abs()],
+            Self::Mixed { acceleration, lumping_difference } => {
+                let nodal = element.nodes.map(|n| acceleration[n.index()][c]);
+                let lumping = lumping_difference[element.nodes[i].index()][c];
+                let consistent = nodal.iter().fold(nodal[i], |sum, a| sum + a) / (D + 2) as f64;
+                [consistent + lumping, nodal.iter().fold(lumping.abs(), |size, a| size.max(a.abs()))]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::elements;
+    use percute_core::load::Support;
+    use percute_core::material::Elastic;
+    use percute_core::problem::Problem;
+    use percute_testkit::{Random, random_rectangle};
+
+    /// Over each star the elements sum up to (M ã)_i where nothing is prescribed, and to (M_c ã)_i, which a support carries,
+    /// where o is 0.
+    #[test]
+    fn stars_sum_up_to_the_lumped_mass() {
+        let problem = Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
+            .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap())
+            .support(Support { group: "left".into(), components: [true, false], velocity: None })
+            .build()
+            .unwrap();
+        let (mesh, mut random) = (problem.mesh(), Random::new(1));
+        let nodes = mesh.node_count();
+        let acceleration: Vec<_> = (0..nodes).map(|_| [0, 1].map(|_| random.between(-1.0, 1.0))).collect();
+        // (M_c a)_i of an element is m/12 (a_i + Σa_j).
+        let elements = elements(&problem);
+        let mut consistent = vec![[0.0; 2]; nodes];
+        for element in &elements {
+            for (n, c) in element.nodes.iter().flat_map(|n| [(n.index(), 0), (n.index(), 1)]) {
+                let sum: f64 = element.nodes.iter().map(|j| acceleration[j.index()][c]).sum();
+                consistent[n][c] += element.nodal_mass / 4.0 * (acceleration[n][c] + sum);
+            }
+        }
+        let lumped = |n: usize, c: usize| problem.mass()[n] * acceleration[n][c];
+        let held = |n: usize, c: usize| problem.prescribed().iter().any(|p| (p.node.index(), p.component) == (n, c));
+        let free = |n, c| if held(n, c) { 0.0 } else { (lumped(n, c) - consistent[n][c]) / problem.mass()[n] };
+        let lumping_difference: Vec<_> = (0..nodes).map(|n| [0, 1].map(|c| free(n, c))).collect();
+        let term = MassTerm::Mixed { acceleration: &acceleration, lumping_difference: &lumping_difference };
+        let mut sums = vec![[0.0; 2]; nodes];
+        for element in &elements {
+            for (i, c) in (0..3).flat_map(|i| [(i, 0), (i, 1)]) {
+                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(element, i, c)[0];
+            }
+        }
+        assert!(problem.prescribed().len() > 3);
+        for (n, c) in (0..nodes).flat_map(|n| [(n, 0), (n, 1)]) {
+            let wanted = if held(n, c) { consistent[n][c] } else { lumped(n, c) };
+            // Rounding of a dozen terms.
+            assert!((sums[n][c] - wanted).abs() < 1e-14 * problem.mass()[n], "{n}, {c}: {} for {wanted}", sums[n][c]);
+        }
+    }
+}
