@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 import percute as pc
-from percute.verification import figures, slow, steps
+from percute.verification import figures, slow, steps, turning
 from percute.verification.choices import RECONSTRUCTIONS as NAMES
 from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, percent, short
@@ -49,6 +49,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         section.add(_kinds(results), _outside(results), table)
     steps.add(section, resolution)
     slow.add(section, resolution)
+    turning.add(section, resolution)
     section.add("### The cases and their references", _cases(results))
     if not resolution.small:
         section.add(_settled(results))
