@@ -125,13 +125,13 @@ class HistoryData:
         displacement: _Floats,
         reaction: _Floats,
         touching: NDArray[np.bool_],
-        options: tuple[str, str, int],
+        options: tuple[str, str | None, int],
     ) -> HistoryData: ...
     problem: Final[ProblemData]
     times: Final[_Floats]
     count: Final[int]
     complete: Final[bool]
-    def options(self) -> tuple[str, str, int]: ...
+    def options(self) -> tuple[str, str | None, int]: ...
     contact_nodes: Final[_Integers]
     path: Final[Path | None]
     def arrays(self) -> list[tuple[str, list[int], int]]: ...
@@ -227,7 +227,7 @@ def errors_against_simulation(histories: Sequence[HistoryData], problem: Problem
 def estimate(
     history: HistoryData,
     reconstruction: str,
-    acceleration: str,
+    acceleration: str | None,
     ablation: str,
     every: int,
     threads: int | None,

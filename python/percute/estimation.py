@@ -298,7 +298,8 @@ def estimate(
     acceleration : {"closest", "rigid", "weak", "mixed"}, optional
         The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion,
         the linear one that does the lumped work, or the closest one for tractions that balance less of the lumped mass,
-        which needs the reconstruction "corrected". By default as stated, else "closest".
+        which needs the reconstruction "corrected". By default as stated, else "mixed" for plane bodies with "corrected"
+        and "closest" for all others.
     every : int, optional
         The error is sampled at every so many steps, and at the end. By default as stated, else at every step.
     threads : int, optional

@@ -26,11 +26,10 @@ pub enum Reconstruction {
 }
 
 /// Which field Γ_DA balances the equilibrated tractions of an element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Acceleration {
     /// The one nearest to ρ ã_h: ρ ã_h plus a rotation.
-    #[default]
     Closest,
     /// A rigid motion: constant plus rotation.
     Rigid,
@@ -48,6 +47,15 @@ impl Acceleration {
         match reconstruction {
             Reconstruction::Corrected => Self::ALL,
             _ => &[Self::Closest, Self::Rigid, Self::Weak],
+        }
+    }
+
+    /// The one that is taken where none is chosen. On a bar nothing turns, and `mixed` has no advantage.
+    #[must_use]
+    pub fn default_of(reconstruction: Reconstruction, dimension: usize) -> Self {
+        match (reconstruction, dimension) {
+            (Reconstruction::Corrected, 2..) => Self::Mixed,
+            _ => Self::Closest,
         }
     }
 
@@ -92,8 +100,8 @@ pub enum Ablation {
 pub struct Options {
     /// Reconstruction of the contact force.
     pub reconstruction: Reconstruction,
-    /// Choice of Γ_DA.
-    pub acceleration: Acceleration,
+    /// Choice of Γ_DA; by default [`Acceleration::default_of`].
+    pub acceleration: Option<Acceleration>,
     /// For evidence only.
     #[serde(skip)]
     pub ablation: Ablation,
@@ -111,12 +119,26 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             reconstruction: Reconstruction::default(),
-            acceleration: Acceleration::default(),
+            acceleration: None,
             ablation: Ablation::default(),
             every: 1,
             window: None,
             threads: None,
         }
+    }
+}
+
+impl Options {
+    /// Γ_DA on bodies of this dimension.
+    #[must_use]
+    pub fn acceleration(&self, dimension: usize) -> Acceleration {
+        self.acceleration.unwrap_or(Acceleration::default_of(self.reconstruction, dimension))
+    }
+
+    /// With all that an estimate of bodies of this dimension takes by default.
+    #[must_use]
+    pub fn filled(self, dimension: usize) -> Self {
+        Self { acceleration: Some(self.acceleration(dimension)), ..self }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Estimates of histories.
 
 use crate::history::HistoryData;
-use crate::options::{Wanted, analysis, options};
+use crate::options::{self, Stated, Wanted, analysis, options};
 use crate::problem::ProblemData;
 use crate::run::Run;
 use crate::{bridge, contact, errors, view};
@@ -75,7 +75,7 @@ pub(crate) fn estimate(
     py: Python<'_>,
     history: &HistoryData,
     reconstruction: &str,
-    acceleration: &str,
+    acceleration: Option<&str>,
     ablation: &str,
     every: usize,
     threads: Option<usize>,
@@ -146,7 +146,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
     ) -> Self {
         let Results { simulation, estimate, contact } = results;
         let report = ReportSource::Now { simulation, contact: Arc::new(contact), held, seconds };
-        Self { problem, times, options, estimate, report }
+        Self { problem, times, options: options.filled(D), estimate, report }
     }
 
     /// The document of `percute run --json`.
@@ -268,9 +268,8 @@ impl EstimateData {
     }
 
     /// Names of the method's choices, and the samples taken.
-    fn options(&self) -> (String, String, usize) {
-        let options = each_dimension!(&self.made, m => m.options);
-        (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
+    fn options(&self) -> Stated {
+        options::stated(&each_dimension!(&self.made, m => m.options))
     }
 
     /// The elements that contribute most, largest first.

@@ -2,6 +2,7 @@
 
 use crate::any::AnyProblem;
 use crate::bridge::Watch;
+use crate::options::Stated;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
 use crate::{bridge, contact, errors, options, view};
@@ -38,12 +39,12 @@ impl HistoryData {
         displacement: PyReadonlyArray3<'_, f64>,
         reaction: PyReadonlyArray3<'_, f64>,
         touching: PyReadonlyArray2<'_, bool>,
-        options: (String, String, usize),
+        options: Stated,
     ) -> PyResult<Self> {
         let (reconstruction, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
-            options: options::options(py, &reconstruction, &acceleration, every)?,
+            options: options::options(py, &reconstruction, acceleration.as_deref(), every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: reaction.as_slice()?,
@@ -78,9 +79,8 @@ impl HistoryData {
     }
 
     /// Arguments of `estimate` that it takes unless told otherwise.
-    fn options(&self) -> (String, String, usize) {
-        let options = each_dimension!(&self.run, run => run.options);
-        (options.reconstruction.to_string(), options.acceleration.to_string(), options.every)
+    fn options(&self) -> Stated {
+        options::stated(&each_dimension!(&self.run, run => run.options))
     }
 
     /// Nodes of the rows of reactions and touching status.

@@ -24,15 +24,32 @@ impl From<Wanted> for Instants {
     }
 }
 
+/// Reconstruction, Γ_DA unless it is left to the reconstruction, and `every`, as Python has them.
+pub(crate) type Stated = (String, Option<String>, usize);
+
+/// Options of an estimate, for Python.
+pub(crate) fn stated(options: &Options) -> Stated {
+    (options.reconstruction.to_string(), options.acceleration.map(|name| name.to_string()), options.every)
+}
+
 /// Options of an estimate by their names.
-pub(crate) fn options(py: Python<'_>, reconstruction: &str, acceleration: &str, every: usize) -> PyResult<Options> {
+pub(crate) fn options(
+    py: Python<'_>,
+    reconstruction: &str,
+    acceleration: Option<&str>,
+    every: usize,
+) -> PyResult<Options> {
     let unknown = |name: &str, error: UnknownName| {
         let hint = hint(&error.given, error.known.iter().copied());
         errors::input(py, format!("`{name}`: {error}{hint}"))
     };
     let reconstruction = reconstruction.parse().map_err(|error| unknown("reconstruction", error))?;
-    let acceleration: Acceleration = acceleration.parse().map_err(|error| unknown("acceleration", error))?;
-    acceleration.check(reconstruction).map_err(|error| errors::input(py, format!("`acceleration` {error}")))?;
+    let acceleration = acceleration.map(str::parse::<Acceleration>).transpose();
+    let acceleration = acceleration.map_err(|error| unknown("acceleration", error))?;
+    let unsuitable = acceleration.and_then(|one| one.check(reconstruction).err());
+    if let Some(error) = unsuitable {
+        return Err(errors::input(py, format!("`acceleration` {error}")));
+    }
     Ok(Options { reconstruction, acceleration, every, ..Options::default() })
 }
 

@@ -29,6 +29,10 @@ ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
         {"_ablation": "least energy"},
         "no descent to tractions of least energy: where contact begins, and around corners, the elastic part is several times too large",
     ),
+    "lumped mass": (
+        {"acceleration": "closest"},
+        "tractions that balance the lumped mass of an element: Γ_DA turns where the motion turns the elements; on bars this is the default",
+    ),
     "no moment": (
         {"_ablation": "moment"},
         "the densities R_k/ℓ_k without the moment of the reactions: of little weight during an impact, but a sliding body turns ever "

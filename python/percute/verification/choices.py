@@ -6,12 +6,17 @@ from typing import Any
 
 RECONSTRUCTIONS = ("corrected", "consistent", "published")
 ACCELERATIONS = ("closest", "rigid", "weak")
+"""The Γ_DA that all reconstructions have."""
 CHOICES: list[dict[str, Any]] = [{"reconstruction": r, "acceleration": a} for r in RECONSTRUCTIONS for a in ACCELERATIONS]
-"""All pairs, as arguments of `percute.estimate`."""
+"""Their pairs, as arguments of `percute.estimate`."""
 DEFAULT = ACCELERATIONS[0]
-"""The default Γ_DA."""
+"""The default Γ_DA of bars."""
+DEFAULTS = {"corrected": "mixed", "consistent": DEFAULT, "published": DEFAULT}
+"""The default Γ_DA of plane bodies."""
+PLANE_CHOICES = [{"reconstruction": "corrected", "acceleration": "mixed"}, *CHOICES]
+"""All pairs of plane bodies."""
 
 
 def of_default(reconstruction: str) -> int:
-    """Give the place of a reconstruction with the default Γ_DA among the choices."""
+    """Give the place of a reconstruction with the default Γ_DA of bars among the choices."""
     return CHOICES.index({"reconstruction": reconstruction, "acceleration": DEFAULT})

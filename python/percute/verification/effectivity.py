@@ -27,7 +27,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     results = list(zip(wanted, found, strict=True))
     table = _effectivities(results)
     section.add(
-        f"Bodies of aluminium (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³) fly against a rigid plane. The estimates, with Γ_DA `closest`, are "
+        f"Bodies of aluminium (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³) fly against a rigid plane. The estimates, each with its default Γ_DA, are "
         "compared with the energy norm of the difference to a run on a much finer mesh, in which the mesh is nested: e_ref² = max or mean "
         "over the t_n of ½∫ρ|Δv|² + ½∫Δε:K:Δε, exact in space, with the reference interpolated linearly between its instants. Runs take "
         f"steps of {STEP} Δt_c, except for the short steps below, and end with the first instant past T. The velocity is 400 m/s across the "

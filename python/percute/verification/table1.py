@@ -9,7 +9,7 @@ from typing import Any
 import percute as pc
 from percute.verification import figures
 from percute.verification.block import Block
-from percute.verification.choices import ACCELERATIONS, CHOICES, DEFAULT, RECONSTRUCTIONS, of_default
+from percute.verification.choices import ACCELERATIONS, DEFAULTS, PLANE_CHOICES, RECONSTRUCTIONS
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -57,12 +57,12 @@ def compute(section: Section, resolution: Resolution) -> None:
     rows = resolution.first(FEW, PAPER)
     variants = [(name, value, changed) for name, values in VARIANTS.items() for value, changed in values]
     runs: list[dict[str, Any]] = [{"cells": row.cells, **changed} for changed in ({}, *(v[2] for v in variants)) for row in rows]
-    defaults = [CHOICES[of_default(name)] for name in RECONSTRUCTIONS]
+    defaults = [{"reconstruction": name, "acceleration": DEFAULTS[name]} for name in RECONSTRUCTIONS]
 
     def work(run: dict[str, Any], stop: Stop) -> Found:
         impact = Block(**run).impact()
         history = impact.simulate(stop)
-        choices = CHOICES if len(run) == 1 else defaults
+        choices = PLANE_CHOICES if len(run) == 1 else defaults
         return tuple(pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices)
 
     found = resolution.map(work, runs, lambda run: run["cells"][0] ** 3)
@@ -73,7 +73,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         "An aluminium block of 50 × 40 mm strikes a plane at 400 m/s along it and 400 m/s towards it, with friction (μ = "
         f"{base.friction}). The step is {base.courant} of the critical one. The table has the largest error over time, e_sup [15], and the "
         "mean, e_mean [16], for each reconstruction of the contact force and each Γ_DA, beside the paper's values. The paper's method is "
-        f"`published`; the default is `corrected` with `{DEFAULT}`.",
+        f"`published`; the default is `corrected` with `{DEFAULTS['corrected']}`.",
         "The paper does not state the distance from which the block starts, the end T of the interval, and whether the block is in plane "
         "stress or plane strain. Taken here: plane stress, a gap that the block crosses in 1.3 steps, and the first whole step past "
         f"{short(1e6 * base.past, 3)} µs. The influence of each is below.",
@@ -87,10 +87,10 @@ def compute(section: Section, resolution: Resolution) -> None:
 
 CAPTION = (
     "Absolute error over the number of elements (logarithmic): largest over time [15] on the left, mean [16] on the right, each "
-    f"reconstruction with Γ_DA `{DEFAULT}`, and the paper's values in black."
+    "reconstruction with its default Γ_DA, and the paper's values in black."
 )
 GAP_CAPTION = (
-    f"The largest error [15] over the gap in steps of flight, for each reconstruction with Γ_DA `{DEFAULT}`, one curve for each mesh: the "
+    "The largest error [15] over the gap in steps of flight, for each reconstruction with its default Γ_DA, one curve for each mesh: the "
     "instant of impact inside a step matters on all meshes."
 )
 
@@ -104,21 +104,22 @@ def deviation(errors: Sequence[tuple[float, float]]) -> float | None:
 
 
 def _tables(rows: Sequence[Row], found: Sequence[Found]) -> tuple[Table, Table]:
-    first = [Column(name) for name in ("reconstruction", "Γ_DA", "mesh", "elements")]
+    first = [Column(name) for name in ("reconstruction", "Γ_DA", "default", "mesh", "elements")]
     named = {"e_sup": "[15]", "paper's e_sup": "", "e_mean": "[16]", "paper's e_mean": ""}
-    caption = f"Absolute errors of the four meshes, beside the paper's; on the page those with Γ_DA `{DEFAULT}`."
+    caption = "Absolute errors of the four meshes, beside the paper's; on the page those with the default Γ_DA."
     columns = [*first, *(Column(name, "J^½", equation) for name, equation in named.items())]
-    absolute = Table("table1-absolute", caption, columns, on_page={"Γ_DA": DEFAULT})
+    absolute = Table("table1-absolute", caption, columns, on_page={"default": "yes"})
     named = {"ε_sup": "[22]", "paper's ε_sup": "", "ε_mean": "[22]", "paper's ε_mean": ""}
     columns = [*first, *(Column(name, "%", equation, 3) for name, equation in named.items())]
     named = {"D_sup": "[23]", "paper's D_sup": "", "D_mean": "", "paper's D_mean": ""}
     columns += [Column(name, "J^½", equation) for name, equation in named.items()]
     caption = "Relative errors and their denominators. The paper's D is its absolute over its relative error."
     relative = Table("table1-relative", caption, columns, on_page=False)
-    for c, choice in enumerate(CHOICES):
+    for c, choice in enumerate(PLANE_CHOICES):
         for row, estimates in zip(rows, found, strict=True):
             e = estimates[c]
-            names = choice["reconstruction"], choice["acceleration"], Block(row.cells).mesh, len(e.by_element)
+            default = "yes" if choice["acceleration"] == DEFAULTS[choice["reconstruction"]] else "no"
+            names = choice["reconstruction"], choice["acceleration"], default, Block(row.cells).mesh, len(e.by_element)
             absolute.add(*names, e.sup, row.absolute[0], e.mean, row.absolute[1])
             errors = 100 * e.relative_sup, row.relative[0], 100 * e.relative_mean, row.relative[1]
             relative.add(*names, *errors, e.reference_sup, row.denominators[0], e.reference_mean, row.denominators[1])
@@ -127,7 +128,7 @@ def _tables(rows: Sequence[Row], found: Sequence[Found]) -> tuple[Table, Table]:
 
 def _conclusions(rows: Sequence[Row], found: Sequence[Found]) -> list[str]:
     pieces = []
-    place = of_default("published")
+    place = PLANE_CHOICES.index({"reconstruction": "published", "acceleration": ACCELERATIONS[0]})
     off = [deviation([(each[place + k].sup, each[place + k].mean) for each in found]) for k in range(len(ACCELERATIONS))]
     if None not in off:
         each = [f"{percent(value or 0.0)} with `{name}`" for value, name in zip(off, ACCELERATIONS, strict=True)]
@@ -146,7 +147,7 @@ def _assumptions(rows: Sequence[Row], variants: Sequence[tuple[str, str, Any]], 
     columns = [Column(name) for name in ("reconstruction", "assumption", "value")]
     columns += [Column(f"{name} {Block(row.cells).mesh}", "J^½", f"[{15 + k}]") for k, name in enumerate(ABSOLUTE) for row in PAPER]
     caption = (
-        f"Absolute errors with Γ_DA `{DEFAULT}`, one assumption changed at a time. The last column is the root mean square of the eight "
+        "Absolute errors with the default Γ_DA, one assumption changed at a time. The last column is the root mean square of the eight "
         "relative differences from the paper's table."
     )
     table = Table("table1-assumptions", caption, [*columns, Column("from the paper", "%", digits=3)], on_page=False)
@@ -180,7 +181,7 @@ def _spreads(table: Table) -> str:
 
 def _draw(table: Table) -> figures.Drawing:
     def curves(measure: str) -> list[figures.Curve]:
-        of = [{"reconstruction": name, "Γ_DA": DEFAULT} for name in RECONSTRUCTIONS]
+        of = [{"reconstruction": name, "default": "yes"} for name in RECONSTRUCTIONS]
         elements = table.where("elements", of[0])
         ours = [figures.Curve(each["reconstruction"], elements, table.where(measure, each), figures.own(k), marked=True) for k, each in enumerate(of)]
         return [*ours, figures.Curve("the paper's table", elements, table.where(f"paper's {measure}", of[0]), dashed=True, marked=True)]

@@ -64,7 +64,7 @@ def _sweep(section: Section, resolution: Resolution) -> None:
     columns += [Column("largest later", "J^½", "[14]"), Column("kinetic part of it", "%", digits=3), Column("e_mean", "J^½", "[16]")]
     caption = (
         f"The largest error over time, its instant, the largest within {MOMENT:g} critical steps of the arrival and the largest after that, "
-        "with the kinetic part of η there, and the mean. Γ_DA `closest`."
+        "with the kinetic part of η there, and the mean. Γ_DA is the default of each."
     )
     sup = Table("time-steps-sup", caption, [*first, *columns], on_page=False)
     for (name, ratio, _), (estimate, impact) in zip(runs, found, strict=True):

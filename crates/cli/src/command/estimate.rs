@@ -52,7 +52,7 @@ where
 fn options(stored: Options, arguments: &EstimateArguments) -> Options {
     Options {
         reconstruction: arguments.reconstruction.unwrap_or(stored.reconstruction),
-        acceleration: arguments.acceleration.unwrap_or(stored.acceleration),
+        acceleration: arguments.acceleration.or(stored.acceleration),
         every: arguments.every.unwrap_or(stored.every),
         threads: arguments.work.threads,
         window: arguments.work.window,

@@ -59,7 +59,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         if let Some(threads) = options.threads.filter(|&threads| threads > MOST_THREADS) {
             return Err(EstimateError::TooManyThreads { threads });
         }
-        options.acceleration.check(options.reconstruction)?;
+        options.acceleration(D).check(options.reconstruction)?;
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;

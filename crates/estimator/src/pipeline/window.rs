@@ -32,7 +32,7 @@ const WORK: usize = 2_000_000;
 /// Memory of one level (bytes).
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
     let mesh = problem.mesh();
-    let fields = if options.acceleration == Acceleration::Mixed { 11 } else { 8 };
+    let fields = if options.acceleration(D) == Acceleration::Mixed { 11 } else { 8 };
     8 * D * (fields * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
 }
 
@@ -90,7 +90,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             problem,
             times,
             equilibration: Equilibration::new(problem),
-            choice: options.acceleration,
+            choice: options.acceleration(D),
             size: size(problem, options),
             carried: None,
             levels: Vec::new(),

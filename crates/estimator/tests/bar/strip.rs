@@ -52,7 +52,7 @@ fn run<const D: usize, const N: usize>(
     let estimator = Estimator::new(
         problem,
         &times,
-        Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
+        Options { reconstruction: Reconstruction::Consistent, acceleration: Some(acceleration), ..Options::default() },
     )
     .unwrap();
     let mut sink = (History::new(&times), estimator);

@@ -64,7 +64,14 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
     for (reconstruction, acceleration) in closest.chain([(Reconstruction::Corrected, Acceleration::Mixed)]) {
         for every in [1, 3] {
             let (window, threads) = (Some(1_000_000), Some(1));
-            let options = Options { reconstruction, acceleration, every, window, threads, ..Options::default() };
+            let options = Options {
+                reconstruction,
+                acceleration: Some(acceleration),
+                every,
+                window,
+                threads,
+                ..Options::default()
+            };
             // Maps at the start and the end, and at what lies between on one side of a window or the other.
             let request = Request { fields: true, ..Request::evenly(times, 9, every) };
             let expected = bits(&estimate_with_maps(problem, &history, options, &request));

@@ -12,7 +12,7 @@ pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
     Reconstruction::ALL.iter().flat_map(|&reconstruction| {
         Acceleration::of(reconstruction).iter().map(move |&acceleration| Options {
             reconstruction,
-            acceleration,
+            acceleration: Some(acceleration),
             threads: Some(1),
             ..Options::default()
         })
@@ -90,7 +90,7 @@ pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Proble
         // Each `every` meets each reconstruction; all 20 combinations would cost three times as much.
         for every in if k % 3 == 0 { vec![1, 2, 5] } else { vec![1] } {
             let options = Options { every, ..options };
-            let what = format!("{what}, {}, {}, every {every}", options.reconstruction, options.acceleration);
+            let what = format!("{what}, {}, {}, every {every}", options.reconstruction, options.acceleration(D));
             let estimate = estimate(problem, &history, options);
             assert_admissible(&what, &estimate);
         }

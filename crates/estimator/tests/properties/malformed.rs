@@ -154,7 +154,7 @@ fn too_few_steps_and_impossible_options() {
     let refused = Estimator::new(&problem, &times, options).err();
     assert_eq!(refused, Some(EstimateError::TooManyThreads { threads: 1025 }));
     for reconstruction in [Reconstruction::Consistent, Reconstruction::Published] {
-        let options = Options { reconstruction, acceleration: Acceleration::Mixed, ..Options::default() };
+        let options = Options { reconstruction, acceleration: Some(Acceleration::Mixed), ..Options::default() };
         let refused = Estimator::new(&problem, &times, options).err();
         let expected = UnsuitableAcceleration { acceleration: Acceleration::Mixed, reconstruction };
         assert_eq!(refused, Some(EstimateError::Acceleration(expected)));

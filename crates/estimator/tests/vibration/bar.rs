@@ -30,7 +30,7 @@ fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>,
     run_with(
         elements,
         courant,
-        Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
+        Options { reconstruction: Reconstruction::Consistent, acceleration: Some(acceleration), ..Options::default() },
     )
 }
 

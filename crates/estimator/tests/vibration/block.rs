@@ -89,7 +89,11 @@ fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion<2>,
         Estimator::new(
             problem,
             &times,
-            Options { reconstruction: Reconstruction::Consistent, acceleration, ..Options::default() },
+            Options {
+                reconstruction: Reconstruction::Consistent,
+                acceleration: Some(acceleration),
+                ..Options::default()
+            },
         )
         .unwrap()
     };

@@ -17,7 +17,7 @@ fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, ener
     let times = TimeGrid::uniform(40.0 * 0.9 * critical_time_step(problem), 40).unwrap();
     for &reconstruction in Reconstruction::ALL {
         for &acceleration in Acceleration::of(reconstruction) {
-            let options = Options { acceleration, reconstruction, ..Options::default() };
+            let options = Options { acceleration: Some(acceleration), reconstruction, ..Options::default() };
             let (_, estimate) = crate::beside::run(problem, &times, options, &Request::default(), &mut Unobserved);
             let error = estimate.error.sup / energy.sqrt();
             assert!(error < 1e-12, "{acceleration}, {reconstruction}: {error}");

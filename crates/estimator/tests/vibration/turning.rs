@@ -51,8 +51,9 @@ fn grid(problem: &TriangleProblem, end: f64) -> TimeGrid {
 
 /// The motion, and the estimates with `closest` and `mixed`.
 fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>; 2]) {
-    let estimator =
-        |acceleration| Estimator::new(problem, times, Options { acceleration, ..Options::default() }).unwrap();
+    let estimator = |acceleration| {
+        Estimator::new(problem, times, Options { acceleration: Some(acceleration), ..Options::default() }).unwrap()
+    };
     let pair = (estimator(Acceleration::Closest), estimator(Acceleration::Mixed));
     let mut sink = (Motion::default(), pair);
     simulate(problem, times, &mut sink, &mut Unobserved).unwrap();

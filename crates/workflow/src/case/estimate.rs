@@ -12,9 +12,9 @@ pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
     let Some(table) = root.single("estimate")? else { return Ok(options) };
     table.only(&["reconstruction", "acceleration", "every"])?;
     options.reconstruction = choice(&table, "reconstruction")?.unwrap_or_default();
-    options.acceleration = choice(&table, "acceleration")?.unwrap_or_default();
-    if let (Err(error), Some(value)) = (options.acceleration.check(options.reconstruction), table.get("acceleration")) {
-        return Err(value.error(error.to_string()));
+    options.acceleration = choice(&table, "acceleration")?;
+    if let Some((acceleration, value)) = options.acceleration.zip(table.get("acceleration")) {
+        acceleration.check(options.reconstruction).map_err(|error| value.error(error.to_string()))?;
     }
     if let Some(every) = table.get("every") {
         options.every = every.count(1)?;

@@ -65,7 +65,9 @@ pub fn statement<const D: usize, const N: usize>(
     if let Some(options) = options {
         text.table("[estimate]");
         text.key("reconstruction", quoted(&options.reconstruction.to_string()));
-        text.key("acceleration", quoted(&options.acceleration.to_string()));
+        if let Some(acceleration) = options.acceleration {
+            text.key("acceleration", quoted(&acceleration.to_string()));
+        }
         // Integers of TOML have 63 bits; no run has that many steps.
         text.key("every", i64::try_from(options.every).unwrap_or(i64::MAX).to_string());
     }

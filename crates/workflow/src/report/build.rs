@@ -59,7 +59,7 @@ impl Report {
             case: name.into(),
             problem,
             warnings,
-            options,
+            options: options.filled(D),
             time_step: times.longest_step(),
             critical_time_step: critical_step,
             steps: estimate.steps,

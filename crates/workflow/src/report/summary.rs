@@ -64,7 +64,9 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
             "options",
             format!(
                 "reconstruction {}, acceleration {}, every {}",
-                options.reconstruction, options.acceleration, options.every
+                options.reconstruction,
+                options.acceleration(report.problem.dimension),
+                options.every
             ),
         ),
     ];

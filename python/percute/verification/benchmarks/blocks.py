@@ -7,7 +7,7 @@ import numpy as np
 import percute as pc
 from percute.exact import RigidSlide
 from percute.verification.benchmarks.trial import Curve, Outcome, Quantity, Trial, filled, rectangle, values
-from percute.verification.choices import CHOICES
+from percute.verification.choices import PLANE_CHOICES
 from percute.verification.parallel import Stop
 
 STIFFNESS = (3.2e6, 1.28e7, 5.12e7, 2.048e8)
@@ -112,7 +112,7 @@ def patch(stop: Stop | None = None) -> Outcome:
     """Fly under a uniform stress: with the tractions of its stress nothing swings, and the estimate is zero for all choices."""
     history = Trial("patch", stop).history
     quantities, run = [], []
-    for choice in CHOICES:
+    for choice in PLANE_CHOICES:
         run.append(pc.estimate(history, **choice, threads=1, progress=stop).relative_sup)
         name = f"relative error, `{choice['reconstruction']}`, `{choice['acceleration']}`"
         quantities.append(Quantity(name, "", 0.0, ROUNDING, bound=1e-10))

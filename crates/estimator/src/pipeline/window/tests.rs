@@ -131,7 +131,7 @@ fn a_wrong_acceleration_shows_in_the_resultants() {
 #[test]
 fn a_wrong_lumping_difference_shows() {
     let (problem, times) = impact();
-    let options = Options { acceleration: Acceleration::Mixed, ..Options::default() };
+    let options = Options { acceleration: Some(Acceleration::Mixed), ..Options::default() };
     let change = |forces: &mut ForcesKnown<2>, node: usize| {
         let field = forces.level.lumping_difference.as_mut().unwrap();
         field[node].iter_mut().for_each(|o| *o *= 1.01);

@@ -55,7 +55,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             auxiliary: keeps(Ablation::AuxiliarySolution)
                 .then(|| AuxiliarySolution::new(problem, keeps(Ablation::Correction))),
-            mixed: options.acceleration == Acceleration::Mixed,
+            mixed: options.acceleration(D) == Acceleration::Mixed,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
             normal_work: match options.ablation {

@@ -52,7 +52,7 @@ impl<const D: usize> TractionMinimisation<D> {
         }
         let form = |(e, element): (usize, &Element<D, N>)| {
             // Energy does not depend on Γ_DA here: any choice will do.
-            moment_form(&ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::default()))
+            moment_form(&ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::Closest))
         };
         let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
         Some(Self { basis: Basis::new(problem, &forms), forms })
