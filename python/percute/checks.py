@@ -7,7 +7,7 @@ import os
 import reprlib
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,17 @@ def flag(name: str, value: object) -> bool:
     if not isinstance(value, bool | np.bool_):
         raise wrong(name, value, "True or False")
     return bool(value)
+
+
+def flags(name: str, value: object, count: int, of: str) -> list[bool]:
+    """Give an array of ``count`` truth values, one of each thing named by ``of``."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.dtype != np.bool_ or array.shape != (count,):
+        raise wrong(name, value, f"an array of {count} truth values, one for each {of}")
+    return cast("list[bool]", array.tolist())
 
 
 def text(name: str, value: object) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import encodable, flag, integers, number, numbers, table, whole, wrong
+from percute.checks import encodable, flag, flags, integers, number, numbers, table, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.immutable import Immutable
@@ -116,13 +116,31 @@ class Mesh(Immutable):
         """
         return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
 
-    def refined(self, times: int = 1) -> Mesh:
-        """Cut each element into halves (a bar) or quarters, repeatedly.
+    def refined(self, times: int = 1, *, where: ArrayLike | None = None) -> Mesh:
+        """Cut each element into halves (a bar) or quarters, repeatedly; or only some elements, once.
 
         Nodes keep their numbers and groups their edges and elements, so that the mesh is nested in the finer one: `History.error`
         compares runs on both.
+
+        Parameters
+        ----------
+        times : int, default: 1
+            How often. Without ``where`` only.
+        where : (elements,) bools, optional
+            The elements that are cut, with as many neighbours as a conforming mesh needs. Longest edges are cut first (Rivara
+            1984): the smallest angle stays at least half of that of the mesh at the start, however often meshes are refined.
+
+        Returns
+        -------
+        Mesh
+            Its elements are in the order of those that they are parts of.
         """
-        return Mesh._of(self._data.refined(whole("times", times, least=0, most=MOST_REFINEMENTS)))
+        count = whole("times", times, least=0, most=MOST_REFINEMENTS)
+        if where is None:
+            return Mesh._of(self._data.refined(count))
+        if count != 1:
+            raise InputError(f"`times` is {count}, but `where` names elements of this mesh only; leave `times` out and refine the result again")
+        return Mesh._of(self._data.refined_where(flags("where", where, len(self.cells), "element")))
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], *, scale: float = 1.0) -> Mesh:

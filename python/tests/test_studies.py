@@ -70,6 +70,24 @@ def test_refined_meshes_are_nested() -> None:
         mesh.refined(-1)
 
 
+def test_some_elements_are_refined() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    near = np.linalg.norm(mesh.points[mesh.cells].mean(axis=1), axis=1) < 0.012
+    fine = mesh.refined(where=near)
+    assert len(mesh.cells) < len(fine.cells) < 4 * len(mesh.cells)
+    assert np.array_equal(fine.points[: len(mesh.points)], mesh.points)
+    # Two edges of the group are cut, of five.
+    assert len(fine.edge_groups["bottom"]) > len(mesh.edge_groups["bottom"]) == 5
+    assert len(mesh.refined(where=np.zeros(40, bool)).cells) == 40
+    assert len(mesh.refined(where=np.ones(40, bool)).cells) == 160
+    assert len(pc.Mesh.bar(1.0, elements=3).refined(where=[True, False, False]).cells) == 4
+    for wrong in (near[:-1], near.astype(int), [near], "all", 3):
+        with pytest.raises(pc.InputError, match=r"`where` is .* 40 truth values, one for each element"):
+            mesh.refined(where=wrong)  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match=r"`times` is 2, but `where` names elements of this mesh only"):
+        mesh.refined(2, where=near)
+
+
 def test_errors_against_finer_histories(block_history: pc.History) -> None:
     fine = block(16, 12)
     reference = pc.simulate(fine, end=14e-6, courant=0.9)

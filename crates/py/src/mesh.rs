@@ -55,6 +55,16 @@ impl MeshData {
         Ok(Self { mesh })
     }
 
+    /// The mesh with the chosen elements cut into halves (a bar) or quarters, and the neighbours that must be cut too.
+    fn refined_where(&self, py: Python<'_>, chosen: Vec<bool>) -> PyResult<Self> {
+        let mesh = map_dimension!(self.mesh.clone(), mesh => {
+            let chosen = chosen.clone();
+            let finer = bridge::blocking(py, None, move |_| mesh.refined_where(|e| chosen[e.index()]))?;
+            Arc::new(finer.map_err(|e| errors::input(py, e))?)
+        });
+        Ok(Self { mesh })
+    }
+
     /// A mesh from contiguous arrays whose shapes have been checked.
     #[staticmethod]
     fn from_arrays(

@@ -9,6 +9,7 @@ mod geometry;
 mod import_warning;
 mod parts;
 mod refine;
+mod refine_locally;
 mod star;
 mod topology;
 

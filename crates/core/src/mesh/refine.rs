@@ -42,7 +42,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     }
 
     /// The nodes of each edge, ascending, in ascending order.
-    fn edges(&self) -> Vec<[usize; 2]> {
+    pub(super) fn edges(&self) -> Vec<[usize; 2]> {
         let pairs = (0..N).flat_map(|j| (0..j).map(move |i| (i, j)));
         let edges = self.cells.iter().flat_map(|cell| pairs.clone().map(|(i, j)| [cell[i].index(), cell[j].index()]));
         let mut edges: Vec<_> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
