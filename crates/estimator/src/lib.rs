@@ -8,6 +8,7 @@
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
 mod acceleration;
+mod concentrated;
 mod contact_density;
 mod element;
 mod error;

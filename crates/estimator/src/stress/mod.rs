@@ -8,7 +8,7 @@ mod triangle;
 use bar::BarStress;
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
-use triangle::TriangleStress;
+pub(crate) use triangle::TriangleStress;
 
 /// What an element's stress must balance, per unit of section or thickness.
 #[derive(Clone, Copy, Debug)]

@@ -24,7 +24,7 @@ pub(crate) struct TriangleStress {
 }
 
 impl TriangleStress {
-    pub(super) fn new(points: &[[f64; 2]; 3], law: &impl LinearLaw) -> Self {
+    pub(crate) fn new(points: &[[f64; 2]; 3], law: &impl LinearLaw) -> Self {
         let map = Matrix2::from_fn(|c, k| points[k + 1][c] - points[0][c]);
         // Elements are not degenerate.
         let (jacobian, inverse) = (map.determinant(), map.try_inverse().unwrap_or_else(Matrix2::zeros));
@@ -62,7 +62,7 @@ impl TriangleStress {
     }
 
     #[inline]
-    pub(super) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+    pub(crate) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
         let loads = self.pull_back(loading);
         // Column by column: the inner loop has no sum to wait for.
         let mut product = [0.0; LOADS];
@@ -75,7 +75,7 @@ impl TriangleStress {
     }
 
     /// 2Q l for the tractions among the loads l, taken back to the real triangle.
-    pub(super) fn traction_slope<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
+    pub(crate) fn traction_slope<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
         let loads = self.pull_back(loading);
         let mut product = [0.0; LOADS];
         for (column, load) in self.energy.iter().zip(&loads) {
@@ -119,13 +119,13 @@ impl TriangleStress {
 
     /// Mean of (11, 22, 12): a quadratic integrates to the mean of its values in the middles of the
     /// sides, and the sub-triangles are of one size.
-    pub(super) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; 3] {
+    pub(crate) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; 3] {
         let stress = self.stress(loading);
         let middles = |c: usize| (0..3).flat_map(move |sub| (3..6).map(move |node| at(sub, node, c)));
         std::array::from_fn(|c| middles(c).map(|k| stress[k]).sum::<f64>() / 9.0)
     }
 
-    pub(super) fn residuals<const D: usize, const N: usize>(
+    pub(crate) fn residuals<const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N>,
         floor: f64,

@@ -1,0 +1,7 @@
+//! Contact tractions concentrated at a node: hats on its candidate edges, narrower than the edges, and the stress that
+//! balances them in the star of the node.
+
+mod cut_star;
+mod star_stress;
+
+pub(crate) use star_stress::{HATS, StarStress};
