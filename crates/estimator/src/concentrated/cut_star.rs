@@ -13,6 +13,9 @@ pub(super) struct SubTriangle {
     pub(super) element: usize,
     /// 0 beside the far edges of the star, then the ring, the core last.
     pub(super) layer: usize,
+    /// The corner of the element that its part, one of three around the centroid, does not have: 0 the node, 1 and 2
+    /// the others, counterclockwise.
+    pub(super) opposite: usize,
 }
 
 /// One side of an edge between sub-triangles: the facet of a sub-triangle, opposite to its corner.
@@ -51,20 +54,23 @@ impl CutStar {
         let mut cut = Vec::new();
         for element in 0..fan.len() - 1 {
             let ray = 2 * element;
-            cut.push((0, element, [number(0, ray + 1), number(0, ray), number(0, ray + 2)]));
+            cut.push((0, ray, [number(0, ray + 1), number(0, ray), number(0, ray + 2)]));
         }
         for ring in 0..rings {
             for ray in 0..count - 1 {
                 let [a, b] = [number(ring, ray), number(ring, ray + 1)];
                 let [d, c] = [number(ring + 1, ray), number(ring + 1, ray + 1)];
-                cut.push((ring + 1, ray / 2, [d, a, b]));
-                cut.push((ring + 1, ray / 2, [d, b, c]));
+                cut.push((ring + 1, ray, [d, a, b]));
+                cut.push((ring + 1, ray, [d, b, c]));
             }
         }
         for ray in 0..count - 1 {
-            cut.push((rings + 1, ray / 2, [node, number(rings, ray), number(rings, ray + 1)]));
+            cut.push((rings + 1, ray, [node, number(rings, ray), number(rings, ray + 1)]));
         }
-        let triangles = cut.iter().map(|&(layer, element, at)| SubTriangle { corners: at.map(point), element, layer });
+        let triangles = cut.iter().map(|&(layer, ray, at)| {
+            let opposite = if layer == 0 { 0 } else { 2 - ray % 2 };
+            SubTriangle { corners: at.map(point), element: ray / 2, layer, opposite }
+        });
         let mut sides = HashMap::new();
         let mut inner = Vec::new();
         for (triangle, (_, _, at)) in cut.iter().enumerate() {
@@ -77,7 +83,9 @@ impl CutStar {
                 }
             }
         }
-        let spoke = |ray: usize| (0..=rings).map(move |ring| (number(ring, ray), if ring == rings { node } else { number(ring + 1, ray) }));
+        let spoke = |ray: usize| {
+            (0..=rings).map(move |ring| (number(ring, ray), if ring == rings { node } else { number(ring + 1, ray) }))
+        };
         let first = spoke(0).filter_map(|(far, near)| sides.get(&(near, far)).copied()).collect();
         let last = spoke(count - 1).filter_map(|(far, near)| sides.get(&(far, near)).copied()).collect();
         Self { triangles: triangles.collect(), inner, ends: [first, last] }

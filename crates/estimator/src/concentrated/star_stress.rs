@@ -5,8 +5,8 @@
 //! energy. Unknown are the linear tractions on the edges between sub-triangles. They minimise the complementary energy under
 //! equilibrium of each sub-triangle.
 
-use super::cut_star::{CutStar, SideOf};
-use crate::stress::{Loading, TriangleStress};
+use super::cut_star::{CutStar, SideOf, SubTriangle};
+use crate::stress::{LOADS, Loading, PiecewiseStress, TriangleStress, products};
 use nalgebra::{DMatrix, Dyn, LU};
 use percute_core::material::LinearLaw;
 
@@ -27,8 +27,22 @@ struct Slot {
 /// The energies of the stresses of unit resultants, sorted by (edge, width, component).
 #[derive(Clone, Debug)]
 pub(crate) struct StarStress {
-    /// ∫τ:K⁻¹τ over each element of the star, per unit of thickness (m²/N times 1/m).
+    /// ∫τ:K⁻¹τ over each element of the star (m/N per unit of thickness).
     pub(crate) energy: Vec<DMatrix<f64>>,
+    /// ∫σ:K⁻¹τ, one row for each load of the element, with σ the stress that balances it: tractions, then Γ_DA − f_d.
+    pub(crate) product: Vec<DMatrix<f64>>,
+    /// ∫τ (m per unit of thickness), rows 11, 22, 12.
+    pub(crate) integral: Vec<DMatrix<f64>>,
+}
+
+/// One element of a star.
+pub(crate) struct StarElement<'a, L> {
+    /// Its corners, counterclockwise.
+    pub(crate) corners: [[f64; 2]; 3],
+    /// The corner at the node of the star.
+    pub(crate) at: usize,
+    /// Its law.
+    pub(crate) law: &'a L,
 }
 
 /// The loads of each sub-triangle for each unit resultant.
@@ -41,37 +55,62 @@ pub(super) struct Solved {
 }
 
 impl StarStress {
-    /// The stresses in the star of the node `origin`, cut by `fan`, for hats on the `edges` (0 the first, 1 the last) that
-    /// are candidates.
-    pub(crate) fn new(origin: [f64; 2], fan: &[[f64; 2]], laws: &[&impl LinearLaw], edges: &[usize]) -> Self {
-        let solved = Solved::new(origin, fan, laws, edges);
+    /// The stresses in the star of a node, elements counterclockwise, for hats on the `edges` (0 the first of the star, 1 the
+    /// last) that are candidates.
+    pub(crate) fn new<L: LinearLaw>(elements: &[StarElement<'_, L>], edges: &[usize]) -> Self {
+        let solved = Solved::new(elements, edges);
         let columns = solved.loads[0].ncols();
-        let mut energy = vec![DMatrix::zeros(columns, columns); fan.len() - 1];
+        let zeros = |rows: usize| vec![DMatrix::zeros(rows, columns); elements.len()];
+        let mut made = Self { energy: zeros(columns), product: zeros(LOADS), integral: zeros(3) };
+        let units: Vec<_> = elements.iter().map(unit_stresses).collect();
         for ((triangle, map), loads) in solved.star.triangles.iter().zip(&solved.maps).zip(&solved.loads) {
-            energy[triangle.element] += loads.transpose() * form(map) * loads;
+            let element = &elements[triangle.element];
+            made.energy[triangle.element] += loads.transpose() * form(map) * loads;
+            let stresses: Vec<_> =
+                loads.column_iter().map(|column| map.piecewise(&tractions(column.as_slice()))).collect();
+            let part = (element.at + triangle.opposite) % 3;
+            for (column, stress) in stresses.iter().enumerate() {
+                let (product, integral) = products(&units[triangle.element], part, stress, element.law);
+                for (row, value) in product.into_iter().enumerate() {
+                    made.product[triangle.element][(row, column)] += value;
+                }
+                for (row, value) in integral.into_iter().enumerate() {
+                    made.integral[triangle.element][(row, column)] += value;
+                }
+            }
         }
-        Self { energy }
+        made
     }
 }
 
 impl Solved {
-    pub(super) fn new(origin: [f64; 2], fan: &[[f64; 2]], laws: &[&impl LinearLaw], edges: &[usize]) -> Self {
-        let star = CutStar::new(origin, fan, HATS);
-        let maps: Vec<TriangleStress> =
-            star.triangles.iter().map(|triangle| TriangleStress::new(&triangle.corners, laws[triangle.element])).collect();
+    pub(super) fn new<L: LinearLaw>(elements: &[StarElement<'_, L>], edges: &[usize]) -> Self {
+        let corner = |element: &StarElement<'_, L>, next: usize| element.corners[(element.at + next) % 3];
+        let origin = corner(&elements[0], 0);
+        let mut fan = vec![corner(&elements[0], 1)];
+        fan.extend(elements.iter().map(|element| corner(element, 2)));
+        let star = CutStar::new(origin, &fan, HATS);
+        let map = |triangle: &SubTriangle| TriangleStress::new(&triangle.corners, elements[triangle.element].law);
+        let maps: Vec<TriangleStress> = star.triangles.iter().map(map).collect();
         let mut loads = vec![DMatrix::zeros(TRACTIONS, 2 * HATS * edges.len()); star.triangles.len()];
         for (position, &edge) in edges.iter().enumerate() {
-            apply_hats(&star, edge, fan[if edge == 0 { 0 } else { fan.len() - 1 }], origin, position, &mut loads);
+            apply_hats(&star, edge, fan[if edge == 0 { 0 } else { elements.len() }], origin, position, &mut loads);
         }
-        let scales: Vec<f64> = laws.iter().map(|law| 1.0 / law.compliance::<2>().0).collect();
-        let system = System::new(&star, &maps, &scales, &loads);
-        system.solve(&mut loads);
+        let scales: Vec<f64> = elements.iter().map(|element| 1.0 / element.law.compliance::<2>().0).collect();
+        System::new(&star, &maps, &scales, &loads).solve(&mut loads);
         Self { star, maps, loads }
     }
 }
 
 /// Adds the tractions of the hats of one edge, less their linear equivalents, to the loads of the sub-triangles there.
-fn apply_hats(star: &CutStar, edge: usize, far: [f64; 2], origin: [f64; 2], position: usize, loads: &mut [DMatrix<f64>]) {
+fn apply_hats(
+    star: &CutStar,
+    edge: usize,
+    far: [f64; 2],
+    origin: [f64; 2],
+    position: usize,
+    loads: &mut [DMatrix<f64>],
+) {
     let length = (far[0] - origin[0]).hypot(far[1] - origin[1]);
     let pieces = &star.ends[edge];
     for (piece, side) in pieces.iter().enumerate() {
@@ -102,13 +141,30 @@ fn traction(width: usize, place: f64, length: f64) -> f64 {
     (hat - linear) / length
 }
 
+/// The stress of an element for each unit load.
+fn unit_stresses<L: LinearLaw>(element: &StarElement<'_, L>) -> Vec<PiecewiseStress> {
+    let map = TriangleStress::new(&element.corners, element.law);
+    let unit = |load: usize| {
+        let at = |k: usize| f64::from(u8::from(k == load));
+        let traction = tractions(&std::array::from_fn::<f64, TRACTIONS, _>(at)).traction;
+        let volume = std::array::from_fn(|i| std::array::from_fn(|c| at(TRACTIONS + 2 * i + c)));
+        map.piecewise(&Loading { traction, volume })
+    };
+    (0..LOADS).map(unit).collect()
+}
+
+/// A loading by these tractions alone.
+fn tractions(loads: &[f64]) -> Loading<2, 3> {
+    let traction = std::array::from_fn(|k| std::array::from_fn(|p| [loads[4 * k + 2 * p], loads[4 * k + 2 * p + 1]]));
+    Loading { traction, volume: [[0.0; 2]; 3] }
+}
+
 /// The matrix of ∫τ:K⁻¹τ in the traction loads of a sub-triangle.
 fn form(map: &TriangleStress) -> DMatrix<f64> {
     let mut form = DMatrix::zeros(TRACTIONS, TRACTIONS);
     for column in 0..TRACTIONS {
-        let mut loading = Loading::<2, 3> { traction: [[[0.0; 2]; 2]; 3], volume: [[0.0; 2]; 3] };
-        loading.traction[column / 4][column / 2 % 2][column % 2] = 1.0;
-        let slope = map.traction_slope(&loading);
+        let unit: [f64; TRACTIONS] = std::array::from_fn(|row| f64::from(u8::from(row == column)));
+        let slope = map.traction_slope(&tractions(&unit));
         for row in 0..TRACTIONS {
             form[(row, column)] = slope[row / 4][row / 2 % 2][row % 2];
         }
@@ -170,7 +226,13 @@ impl System {
         for (at, (triangle, map)) in star.triangles.iter().zip(maps).enumerate() {
             system.add_energy(at, &(form(map) * scales[triangle.element]), &loads[at]);
             if at > 0 {
-                system.add_conditions(at, triangle.layer, next[triangle.layer], &resultants(&triangle.corners), &loads[at]);
+                system.add_conditions(
+                    at,
+                    triangle.layer,
+                    next[triangle.layer],
+                    &resultants(&triangle.corners),
+                    &loads[at],
+                );
                 next[triangle.layer] += 3;
             }
         }
@@ -231,7 +293,8 @@ impl System {
         for layer in 0..layers {
             if layer > 0 {
                 let lower = &self.lower[layer];
-                let coupled: Vec<usize> = (0..lower.ncols()).filter(|&c| lower.column(c).iter().any(|x| *x != 0.0)).collect();
+                let coupled: Vec<usize> =
+                    (0..lower.ncols()).filter(|&c| lower.column(c).iter().any(|x| *x != 0.0)).collect();
                 let narrow = lower.select_columns(&coupled);
                 let mut upper = DMatrix::zeros(lower.ncols(), coupled.len());
                 coupled.iter().enumerate().for_each(|(k, &at)| upper[(at, k)] = 1.0);

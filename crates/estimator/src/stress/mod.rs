@@ -2,12 +2,15 @@
 //! and with Γ_DA − f_d, exactly, and of least complementary energy among a family.
 
 mod bar;
+mod piecewise;
 mod reference;
 mod triangle;
 
 use bar::BarStress;
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
+pub(crate) use piecewise::{PiecewiseStress, products};
+pub(crate) use reference::LOADS;
 pub(crate) use triangle::TriangleStress;
 
 /// What an element's stress must balance, per unit of section or thickness.

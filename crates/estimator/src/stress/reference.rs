@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, SVD};
 use std::sync::OnceLock;
 
 /// Values of a loading: |e|F̂ on 3 edges × 2 nodes, Γ_DA − f_d at 3 nodes, two components each.
-pub(super) const LOADS: usize = 18;
+pub(crate) const LOADS: usize = 18;
 /// Coefficients of a stress: 3 sub-triangles × 6 nodes × components (11, 22, 12).
 pub(super) const COEFFICIENTS: usize = 54;
 /// Dimension of the stresses that balance nothing.

@@ -1,5 +1,6 @@
 //! The stress of a triangle: the reference macro-element, mapped, with least complementary energy.
 
+use super::piecewise::PiecewiseStress;
 use super::reference::{
     ALL, COEFFICIENTS, FREE, LOADS, OUTER, PAIRS, Reference, at, barycentric_gradients, corners, edge_normal,
     inner_edge, load_share, quadratic_gradients,
@@ -115,6 +116,12 @@ impl TriangleStress {
             s[2] = b11 * b21 * x + b12 * b22 * y + (b11 * b22 + b12 * b21) * z;
         }
         stress
+    }
+
+    /// The stress that balances a loading, with the triangles on which it is quadratic.
+    pub(crate) fn piecewise<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> PiecewiseStress {
+        let parts = std::array::from_fn(|sub| corners(sub, &self.points, self.centroid()));
+        PiecewiseStress { parts, values: self.stress(loading) }
     }
 
     /// Mean of (11, 22, 12): a quadratic integrates to the mean of its values in the middles of the
