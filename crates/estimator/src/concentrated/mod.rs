@@ -2,6 +2,7 @@
 //! balances them in the star of the node.
 
 mod cut_star;
+mod shape;
 mod star_stress;
 
 pub(crate) use star_stress::{HATS, StarStress};
