@@ -23,6 +23,8 @@ pub(crate) struct SurfaceStep<const D: usize> {
     /// The forces of which densities are made (N).
     pub(crate) force: Vec<[f64; D]>,
     pub(crate) touching: Vec<bool>,
+    /// Gaps of the simulation (m).
+    pub(crate) gap: Vec<f64>,
 }
 
 /// The fields that do not change from state to state.

@@ -5,4 +5,5 @@ mod cut_star;
 mod shape;
 mod star_stress;
 
-pub(crate) use star_stress::{HATS, StarStress};
+pub(crate) use shape::{Hat, Pressed, resultants};
+pub(crate) use star_stress::{HATS, StarElement, StarStress};

@@ -1,5 +1,6 @@
 //! The misfit of the contact law on a facet, for densities and velocities that are linear along it.
 
+use super::NarrowHat;
 use percute_core::contact::{ContactFacet, Frame};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -29,6 +30,20 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
     let power =
         |weights: &[f64; D]| law.misfit(along(weights, &normal), along(weights, &tangential), along(weights, &sliding));
     facet.area * simplex.facet_mean(&sliding, &power)
+}
+
+/// The same of a hat (W).
+pub(crate) fn hat_misfit_power<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    hat: &NarrowHat<D>,
+    velocity: &[[f64; D]; D],
+) -> f64 {
+    let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
+    let (law, frame) = (obstacle.law(), obstacle.flat_frame());
+    let tangent = tangent(&frame);
+    let sliding = velocity.map(|v| along(&v, &tangent));
+    let normal = frame.split(&hat.resultant).0;
+    law.limit(normal) * hat.mean_absolute(&sliding) + along(&hat.resultant, &tangent) * hat.mean(&sliding)
 }
 
 /// Along a plane in 2D: its normal turned back by a quarter.

@@ -1,24 +1,33 @@
 //! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact law.
 
 mod friction_misfit;
+mod hat;
 mod normal_misfit;
 
-pub(crate) use friction_misfit::{along, misfit_power, tangent};
+pub(crate) use friction_misfit::{along, hat_misfit_power, misfit_power, tangent};
+pub(crate) use hat::NarrowHat;
 pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 use std::ops::Deref;
 
-/// Nodal values of a density on each candidate facet (Pa). Constant once a reconstruction has made them.
+/// A density on the candidate facets. Constant once a reconstruction has made it.
+///
+/// It derefs to the nodal values (Pa) on each facet of the linear density with its moments.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Densities<const D: usize>(Vec<[[f64; D]; D]>);
+pub(crate) struct Densities<const D: usize> {
+    linear: Vec<[[f64; D]; D]>,
+    /// The part that is linear on each facet, if hats come with it.
+    wide: Option<Vec<[[f64; D]; D]>>,
+    hats: Vec<NarrowHat<D>>,
+}
 
 impl<const D: usize> Deref for Densities<D> {
     type Target = [[[f64; D]; D]];
 
     #[inline]
     fn deref(&self) -> &Self::Target {
-        &self.0
+        &self.linear
     }
 }
 
@@ -28,7 +37,25 @@ impl<const D: usize> Densities<D> {
         problem: &Problem<D, N>,
         value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
     ) -> Self {
-        Self(problem.surface().facets().iter().enumerate().map(|(f, facet)| value(f, facet)).collect())
+        Self::with_hats(problem, value, Vec::new())
+    }
+
+    /// The values of the part that is linear on each facet, and hats, sorted by their nodes.
+    pub(crate) fn with_hats<const N: usize>(
+        problem: &Problem<D, N>,
+        value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
+        hats: Vec<NarrowHat<D>>,
+    ) -> Self {
+        let facets = problem.surface().facets();
+        let mut linear: Vec<_> = facets.iter().enumerate().map(|(f, facet)| value(f, facet)).collect();
+        let wide = (!hats.is_empty()).then(|| linear.clone());
+        for hat in &hats {
+            let [near, far] = hat.equivalent();
+            for (end, force) in [(hat.end, near), (1 - hat.end, far)] {
+                (0..D).for_each(|c| linear[hat.facet][end][c] += force[c] / facets[hat.facet].area);
+            }
+        }
+        Self { linear, wide, hats }
     }
 
     /// No force anywhere.
@@ -36,10 +63,27 @@ impl<const D: usize> Densities<D> {
         Self::new(problem, |_, _| [[0.0; D]; D])
     }
 
+    /// The part that is linear on each facet.
+    pub(crate) fn wide(&self) -> &[[[f64; D]; D]] {
+        self.wide.as_deref().unwrap_or(&self.linear)
+    }
+
+    /// The rest.
+    pub(crate) fn hats(&self) -> &[NarrowHat<D>] {
+        &self.hats
+    }
+
+    /// The hats of one node.
+    pub(crate) fn hats_of(&self, node: usize) -> &[NarrowHat<D>] {
+        let start = self.hats.partition_point(|hat| hat.node < node);
+        let end = self.hats.partition_point(|hat| hat.node <= node);
+        &self.hats[start..end]
+    }
+
     /// For tests that change them.
     #[cfg(test)]
     pub(crate) fn values_mut(&mut self) -> &mut [[[f64; D]; D]] {
-        &mut self.0
+        &mut self.linear
     }
 }
 

@@ -7,58 +7,84 @@
 //! the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even where F_DA
 //! distributes the impulse over a time in which the node is at rest.
 
-use super::{Densities, along};
+use super::{Densities, NarrowHat, along};
 use crate::kinematic::ContactTrack;
-use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 use percute_core::simplex::Simplex;
 use percute_core::time::TimeGrid;
 
-/// Normal pressures (Pa) at the nodes of a facet at one instant.
-#[derive(Clone, Copy, Debug)]
-struct Pressure<const D: usize> {
-    /// Of the density.
-    acting: [f64; D],
-    /// Of the density that the reactions alone give, their impulses not spread in time.
-    sudden: [f64; D],
+/// A normal force on a facet: linear along it, and hats.
+#[derive(Clone, Debug)]
+struct NormalForce<const D: usize> {
+    /// Pressure at the nodes (Pa).
+    linear: [f64; D],
+    hats: Vec<(NarrowHat<D>, f64)>,
 }
 
-impl<const D: usize> Pressure<D> {
-    /// Halfway between two: pressures are linear in time over a step.
-    fn middle(start: &Self, end: &Self) -> Self {
-        let mean = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|p| 0.5 * (a[p] + b[p]));
-        Self { acting: mean(&start.acting, &end.acting), sudden: mean(&start.sudden, &end.sudden) }
+impl<const D: usize> NormalForce<D> {
+    /// Those of a density on all facets.
+    fn all<const N: usize>(problem: &Problem<D, N>, densities: &Densities<D>) -> Vec<Self> {
+        let normal = |facet: usize, force: &[f64; D]| {
+            problem.obstacles()[problem.surface().facets()[facet].obstacle].flat_frame().split(force).0
+        };
+        let linear = densities.wide().iter().enumerate().map(|(f, values)| values.map(|force| normal(f, &force)));
+        let mut all: Vec<Self> = linear.map(|linear| Self { linear, hats: Vec::new() }).collect();
+        for hat in densities.hats() {
+            all[hat.facet].hats.push((*hat, normal(hat.facet, &hat.resultant)));
+        }
+        all
+    }
+
+    /// ∫F_n gap (J).
+    fn gap_energy(&self, area: f64, gap: &[f64; D]) -> f64 {
+        let open = gap.map(|gap| gap.max(0.0));
+        let hats: f64 = self.hats.iter().map(|(hat, force)| force * hat.mean_positive(gap)).sum();
+        gap_energy(area, &self.linear, &open) + hats
+    }
+
+    /// ∫F_n|w_n| (W).
+    fn power<const N: usize>(&self, simplex: &dyn Simplex<D, N>, area: f64, speed: &[f64; D]) -> f64 {
+        let hats: f64 = self.hats.iter().map(|(hat, force)| force * hat.mean_absolute(speed)).sum();
+        normal_power(simplex, area, &self.linear, speed) + hats
     }
 }
 
-/// Normal pressures on each candidate facet at the beginning and the end of one step.
+/// The normal forces on a facet at one instant.
 #[derive(Clone, Debug)]
-pub(crate) struct OffContact<const D: usize>(Vec<[Pressure<D>; 2]>);
+struct Normal<const D: usize> {
+    /// Of the density.
+    acting: NormalForce<D>,
+    /// Of the density that the reactions alone give, their impulses not spread in time.
+    sudden: NormalForce<D>,
+}
+
+/// Normal forces on each candidate facet at the beginning and the end of one step.
+#[derive(Clone, Debug)]
+pub(crate) struct OffContact<const D: usize>(Vec<[Normal<D>; 2]>);
 
 impl<const D: usize> OffContact<D> {
-    /// The pressures of the densities at both ends of a step, and of those that the reactions alone give.
+    /// Those of the densities at both ends of a step, and of those that the reactions alone give.
     pub(crate) fn new<const N: usize>(
         problem: &Problem<D, N>,
         acting: [&Densities<D>; 2],
         sudden: &[Densities<D>; 2],
     ) -> Self {
-        let one = |(f, facet): (usize, &ContactFacet<D>)| {
-            let frame = problem.obstacles()[facet.obstacle].flat_frame();
-            let normal = |densities: &Densities<D>| densities[f].map(|force| frame.split(&force).0);
-            [0, 1].map(|end| Pressure { acting: normal(acting[end]), sudden: normal(&sudden[end]) })
+        let end = |k: usize| {
+            let (acting, sudden) = (NormalForce::all(problem, acting[k]), NormalForce::all(problem, &sudden[k]));
+            acting.into_iter().zip(sudden).map(|(acting, sudden)| Normal { acting, sudden })
         };
-        Self(problem.surface().facets().iter().enumerate().map(one).collect())
+        Self(end(0).zip(end(1)).map(|(start, end)| [start, end]).collect())
     }
 }
 
-/// Normal pressures on one candidate facet over the steps of an interval between samples.
+/// Normal forces on one candidate facet over the steps of an interval between samples.
 #[derive(Clone, Debug)]
 pub(crate) struct FacetPressures<const D: usize> {
     /// Position among the candidate facets.
     facet: usize,
     /// First step of the interval.
     first: usize,
-    steps: Vec<[Pressure<D>; 2]>,
+    steps: Vec<[Normal<D>; 2]>,
 }
 
 /// Energies of an interval (J): at its beginning, middle and end.
@@ -83,7 +109,7 @@ impl NormalMisfit {
 impl<const D: usize> FacetPressures<D> {
     /// Those of one facet over consecutive steps.
     pub(crate) fn gather(facet: usize, first: usize, steps: &[OffContact<D>]) -> Self {
-        Self { facet, first, steps: steps.iter().map(|step| step.0[facet]).collect() }
+        Self { facet, first, steps: steps.iter().map(|step| step.0[facet].clone()).collect() }
     }
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step
@@ -99,14 +125,15 @@ impl<const D: usize> FacetPressures<D> {
         let mut misfit = NormalMisfit::default();
         for (k, [start, end]) in self.steps.iter().enumerate() {
             let instant = 2 * (self.first + k);
-            let middle = Pressure::middle(start, end);
-            let at = |half: usize, pressure: &Pressure<D>| {
+            let at = |half: usize, normal: &Normal<D>| {
                 let motion = facet.nodes.map(|at| tracks[at].at(instant + half));
-                let energy = gap_energy(facet.area, &pressure.acting, &motion.map(|(_, gap)| gap.max(0.0)));
+                let energy = normal.acting.gap_energy(facet.area, &motion.map(|(_, gap)| gap));
                 let speed = motion.map(|(speed, _)| speed);
-                (energy, normal_power(problem.mesh().simplex(), facet.area, &pressure.sudden, &speed))
+                (energy, normal.sudden.power(problem.mesh().simplex(), facet.area, &speed))
             };
-            let [(before, p0), (between, p1), (after, p2)] = [at(0, start), at(1, &middle), at(2, end)];
+            let ([(before, p0), (after, p2)], [a, b]) = ([at(0, start), at(2, end)], [at(1, start), at(1, end)]);
+            // Forces are linear in time over a step.
+            let (between, p1) = (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1));
             let half = 0.5 * times.step(self.first + k);
             if k == 0 {
                 misfit.energy[0] = before;

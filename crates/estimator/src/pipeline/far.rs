@@ -73,6 +73,7 @@ impl FarBlock {
                 mid: mid.as_ref(),
                 end: &gather(&to.forces().now),
                 contact: [0.0; 3],
+                hats: [&[]; 3],
             };
             let [start, middle, end] = sampler.sample(&interval, course, &mut self.kept);
             if begins && k == 0 {

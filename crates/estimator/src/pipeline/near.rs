@@ -6,7 +6,8 @@ use super::sampling::{Course, ElementInterval, ElementSample, ElementSampler, El
 use crate::contact_density::{FacetPressures, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
-use crate::measure::Balanced;
+use crate::concentrated::HATS;
+use crate::measure::{Balanced, ElementHats};
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
@@ -40,7 +41,12 @@ struct Waiting<const D: usize, const N: usize> {
     touching: [[bool; N]; 2],
     /// Pressures on its candidate facets, where they may act off contact.
     pressures: Vec<FacetPressures<D>>,
+    /// Narrow hats at the beginning and the end: for each node its position, and places and resultants of hats.
+    hats: [Vec<NodeHats>; 2],
 }
+
+/// The narrow hats of one node: its position in the contact surface, and their places and resultants (N).
+type NodeHats = (usize, Vec<(usize, f64)>);
 
 /// One such element.
 #[derive(Clone, Debug)]
@@ -141,7 +147,18 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
         let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact)).collect();
-        self.queue.push_back(Waiting { start, end, begins, mid, stop, touching, pressures });
+        let hats = [from, to].map(|level| self.hats(level));
+        self.queue.push_back(Waiting { start, end, begins, mid, stop, touching, pressures, hats });
+    }
+
+    /// The narrow hats of its nodes.
+    fn hats(&self, level: &Equilibrated<D>) -> Vec<NodeHats> {
+        let of_node = |&at: &usize| {
+            let hats = level.forces().density.hats_of(at).iter();
+            let places = hats.flat_map(|hat| (0..D).map(|c| (2 * (HATS * hat.edge + hat.halvings - 1) + c, hat.resultant[c])));
+            (at, places.collect::<Vec<_>>())
+        };
+        self.contact.iter().flatten().map(of_node).filter(|(_, places)| !places.is_empty()).collect()
     }
 
     fn at(
@@ -181,6 +198,9 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             }
             self.settle(context, &mut waiting.stop);
             self.check_contact(context, &waiting.stop.velocities, &waiting.touching[1]);
+            let [from, to] = &waiting.hats;
+            let both: Vec<NodeHats> = merged(from, to);
+            let hats = [from, &both, to].map(|hats| self.element_hats(context, hats));
             let interval = ElementInterval {
                 steps: [start.instant / 2, waiting.stop.instant / 2],
                 balanced: [&waiting.start, &waiting.end],
@@ -188,10 +208,27 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
                 mid: waiting.mid.as_ref().map(|mid| &mid.velocities),
                 end: &waiting.stop.velocities,
                 contact: self.contact_part(context, &waiting, start.friction),
+                hats: [&hats[0], &hats[1], &hats[2]],
             };
             self.samples.push(sampler.sample(&interval, &mut self.course, &mut self.kept));
             self.start = Some(waiting.stop);
         }
+    }
+
+    /// The stress of hats in the element.
+    fn element_hats<'c>(&self, context: &ContactSampling<'c, '_, D, N>, hats: &[NodeHats]) -> Vec<ElementHats<'c>> {
+        let Some(concentration) = context.reconstruction.concentration() else { return Vec::new() };
+        let one = |(at, places): &NodeHats| {
+            let forms = concentration.forms(context.shared.problem, *at);
+            let position = forms.elements.iter().position(|&element| element == self.element)?;
+            let extent = concentration.extent(*at);
+            Some(ElementHats {
+                energy: &forms.stress.energy[position],
+                product: &forms.stress.product[position],
+                resultants: places.iter().map(|&(place, force)| (place, force / extent)).collect(),
+            })
+        };
+        hats.iter().filter_map(one).collect()
     }
 
     /// The contact part of η at the beginning, middle and end of an interval (J).
@@ -255,6 +292,19 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
         }
     }
+}
+
+/// Half of each of the hats at both ends of a step.
+fn merged(from: &[NodeHats], to: &[NodeHats]) -> Vec<NodeHats> {
+    let mut both: Vec<NodeHats> = Vec::new();
+    for (at, places) in from.iter().chain(to) {
+        let half = places.iter().map(|&(place, force)| (place, 0.5 * force));
+        match both.iter_mut().find(|(other, _)| other == at) {
+            Some((_, all)) => all.extend(half),
+            None => both.push((*at, half.collect())),
+        }
+    }
+    both
 }
 
 #[cfg(test)]

@@ -170,7 +170,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             displacement,
             body_force: problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
-            surface: SurfaceStep { reaction: step.reaction.to_vec(), force: contact, touching: step.touching.to_vec() },
+            surface: SurfaceStep {
+                reaction: step.reaction.to_vec(),
+                force: contact,
+                touching: step.touching.to_vec(),
+                gap: problem.surface().nodes().iter().enumerate().map(|(at, node)| problem.surface().gap(at, &step.displacement[node.node.index()])).collect(),
+            },
             lumping_difference,
         };
         let motion = MotionKnown { level, now, mid, force };

@@ -3,7 +3,7 @@
 use super::maps::{Contribution, Maps};
 use crate::element::Element;
 use crate::kinematic::ElementMotion;
-use crate::measure::{Balanced, ElementError, ElementMeasure};
+use crate::measure::{Balanced, ElementError, ElementHats, ElementMeasure};
 use crate::options::Acceleration;
 use crate::residual::Residuals;
 use crate::time_level::{Side, Velocities};
@@ -64,6 +64,8 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) end: &'i ElementVelocities<D, N>,
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [f64; 3],
+    /// Hats at its beginning, middle and end.
+    pub(super) hats: [&'i [ElementHats<'i>]; 3],
 }
 
 /// The data that all elements share.
@@ -129,18 +131,18 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) -> [ElementSample; 3] {
-        let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, contact: f64| ElementSample {
-            error: self.measure.error(balanced, &at.increment, &at.motion),
-            contact,
+        let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, k: usize| ElementSample {
+            error: self.measure.error(balanced, &at.increment, &at.motion, interval.hats[k]),
+            contact: interval.contact[k],
         };
-        let ([before, after], contact) = (interval.balanced, interval.contact);
+        let [before, after] = interval.balanced;
         if let Some(start) = interval.start {
-            course.last = at(before, start, contact[0]);
+            course.last = at(before, start, 0);
             self.keep(interval.steps[0], course, kept);
         }
         let start = course.last;
-        let middle = interval.mid.map(|mid| at(&Balanced::middle(before, after), mid, contact[1]));
-        let end = at(after, interval.end, contact[2]);
+        let middle = interval.mid.map(|mid| at(&Balanced::middle(before, after), mid, 1));
+        let end = at(after, interval.end, 2);
         let [from, to] = interval.steps.map(|n| self.shared.times.instants()[n]);
         course.integral += trapezoid(to - from, start.total(), middle.map(|m| m.total()), end.total());
         course.last = end;

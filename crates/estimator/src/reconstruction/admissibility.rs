@@ -19,7 +19,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
         if largest == 0.0 {
             continue;
         }
-        for (facet, density) in problem.surface().facets().iter().zip(densities.iter()) {
+        for (facet, density) in problem.surface().facets().iter().zip(densities.wide()) {
             let obstacle = &problem.obstacles()[facet.obstacle];
             let touches = facet.nodes.iter().all(|&k| steps.now.touching[k] && steps.next.touching[k]);
             for f in density {

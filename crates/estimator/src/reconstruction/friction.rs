@@ -1,6 +1,6 @@
 //! The friction part of η of densities that are linear over a step.
 
-use crate::contact_density::{Densities, misfit_power};
+use crate::contact_density::{Densities, hat_misfit_power, misfit_power};
 use crate::kinematic::NodalMotion;
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::problem::Problem;
@@ -15,19 +15,33 @@ pub(super) fn friction<const D: usize, const N: usize>(
     density: &Densities<D>,
 ) -> Vec<[f64; 2]> {
     let mut friction = Vec::with_capacity(problem.surface().facets().len());
-    for (f, facet) in problem.surface().facets().iter().enumerate() {
-        let (start, end) = (&now.density[f], &density[f]);
-        let mut middle = *start;
-        (0..D).for_each(|p| (0..D).for_each(|c| middle[p][c] = 0.5 * (start[p][c] + end[p][c])));
-        let power = |motion: &NodalMotion<D>, density| {
-            let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
-            misfit_power(problem, facet, density, &velocity)
-        };
-        let (a, b) = (power(&now.now.motion, start), power(&next.now, end));
-        let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &middle));
+    for f in 0..problem.surface().facets().len() {
+        let power = |motion, densities: &[&Densities<D>]| misfit(problem, f, motion, densities);
+        let (a, b) = (power(&now.now.motion, &[&now.density]), power(&next.now, &[density]));
+        let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &[&now.density, density]));
         let so_far = now.friction[f][1];
         // 2∫[…], twice over half a step each.
         friction.push([so_far + 0.5 * length * (a + m), so_far + 0.5 * length * (a + 2.0 * m + b)]);
     }
     friction
+}
+
+/// The power of the mean of densities on a facet: hats keep their shapes.
+fn misfit<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    f: usize,
+    motion: &NodalMotion<D>,
+    densities: &[&Densities<D>],
+) -> f64 {
+    let (facet, share) = (&problem.surface().facets()[f], 1.0 / densities.len() as f64);
+    let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
+    let mut mean = [[0.0; D]; D];
+    let mut power = 0.0;
+    for density in densities {
+        let wide = &density.wide()[f];
+        (0..D).for_each(|p| (0..D).for_each(|c| mean[p][c] += share * wide[p][c]));
+        let hats = density.hats().iter().filter(|hat| hat.facet == f);
+        power += hats.map(|hat| share * hat_misfit_power(problem, hat, &velocity)).sum::<f64>();
+    }
+    power + misfit_power(problem, facet, &mean, &velocity)
 }

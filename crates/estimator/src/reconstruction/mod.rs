@@ -18,6 +18,7 @@ use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{Equilibrated, Equilibration};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
+pub(crate) use corrected::Concentration;
 use corrected::Corrected;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
@@ -118,6 +119,11 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         density: &Densities<D>,
     ) -> Vec<[f64; 2]> {
         friction::friction(problem, length, now, next, density)
+    }
+
+    /// The stress of narrow tractions; `None` if there are none.
+    fn concentration(&self) -> Option<&Concentration<D>> {
+        None
     }
 
     /// Improves the tractions of levels; their other fields cannot change any more.

@@ -2,6 +2,7 @@
 //! dispersion, with tractions of least energy.
 
 mod auxiliary_solution;
+mod concentration;
 mod impulse_smoothing;
 mod lumping_difference;
 mod moment_correction;
@@ -9,6 +10,7 @@ mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
+use crate::concentrated::Hat;
 use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -16,6 +18,7 @@ use crate::kinematic::ContactTrack;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
+pub(crate) use concentration::Concentration;
 use impulse_smoothing::ImpulseSmoothing;
 use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
@@ -23,6 +26,7 @@ use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::Step;
 use percute_core::problem::Problem;
+use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
 use traction_minimisation::TractionMinimisation;
 
@@ -33,6 +37,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
+    concentration: Option<Concentration<D>>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
@@ -51,6 +56,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             problem,
             times,
             tributary: problem.surface().tributary_areas(),
+            concentration: (problem.mesh().simplex().shape() == Shape::Triangle && std::env::var("NOHATS").is_err()).then(|| Concentration::new(problem)),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             auxiliary: keeps(Ablation::AuxiliarySolution)
@@ -69,18 +75,34 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// facet, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    fn at(&self, reaction: &[[f64; D]]) -> Densities<D> {
+    fn at(&self, reaction: &[[f64; D]], gap: &[f64]) -> Densities<D> {
+        let problem = self.problem;
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
-            self.problem.obstacles()[contact.obstacle].project_into_cone(force)
+            problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let nodes = self.problem.surface().nodes();
+        let nodes = problem.surface().nodes();
         let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
+        let shape = |(at, force): (usize, &[f64; D])| {
+            self.concentration.as_ref().and_then(|concentration| concentration.shape(problem, at, force, gap))
+        };
+        let shapes: Vec<Option<Vec<Hat>>> = reaction.iter().enumerate().map(shape).collect();
+        let shaped = |at: usize| self.concentration.as_ref().zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
-            correction.apply(&mut reaction);
+            let centroid = |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
+            correction.apply(&mut reaction, &centroid);
         }
-        let density = |k: usize| reaction[k].map(|r| r / self.tributary[k]);
-        Densities::new(self.problem, |_, facet| facet.nodes.map(density))
+        let density = |f: usize, k: usize| match shaped(k) {
+            Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),
+            None => reaction[k].map(|r| r / self.tributary[k]),
+        };
+        let mut hats = Vec::new();
+        for (k, force) in reaction.iter().enumerate() {
+            if let Some((concentration, shape)) = shaped(k) {
+                hats.extend(concentration.hats(k, shape, force));
+            }
+        }
+        Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats)
     }
 }
 
@@ -114,7 +136,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             Some(smoothing) => smoothing.advance(problem, self.times, step.index, step.reaction, &state.acceleration()),
             None => step.reaction.to_vec(),
         };
-        let pull = driving_forces(problem, &self.at(&contact));
+        let gap = gaps(problem, step.displacement);
+        let pull = driving_forces(problem, &self.at(&contact, &gap));
         let inverse_mass = dynamics.inverse_mass();
         let Some(auxiliary) = &mut self.auxiliary else {
             let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
@@ -134,12 +157,16 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
-        StepDensities { start: self.at(&steps.now.force), end: self.at(&steps.next.force) }
+        StepDensities { start: self.at(&steps.now.force, &steps.now.gap), end: self.at(&steps.next.force, &steps.next.gap) }
     }
 
     fn off_contact(&self, steps: &SurfaceSteps<'_, D>, densities: &StepDensities<D>) -> Option<OffContact<D>> {
-        let sudden = [steps.now, steps.next].map(|step| self.at(&step.reaction));
+        let sudden = [steps.now, steps.next].map(|step| self.at(&step.reaction, &step.gap));
         Some(OffContact::new(self.problem, [&densities.start, &densities.end], &sudden))
+    }
+
+    fn concentration(&self) -> Option<&Concentration<D>> {
+        self.concentration.as_ref()
     }
 
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
@@ -148,7 +175,13 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
 
     fn improve(&self, equilibration: &Equilibration<'_, D, N>, choice: Acceleration, levels: &mut [Equilibrated<D>]) {
         if let Some(minimisation) = &self.minimisation {
-            minimisation.improve(self.problem, equilibration, choice, levels);
+            minimisation.improve(self.problem, equilibration, choice, levels, self.concentration.as_ref());
         }
     }
+}
+
+/// Gaps of the nodes of the contact surface (m).
+fn gaps<const D: usize, const N: usize>(problem: &Problem<D, N>, displacement: &[[f64; D]]) -> Vec<f64> {
+    let surface = problem.surface();
+    surface.nodes().iter().enumerate().map(|(at, contact)| surface.gap(at, &displacement[contact.node.index()])).collect()
 }

@@ -78,21 +78,22 @@ impl<const D: usize> MomentCorrection<D> {
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have the
     /// moment of the reactions, or come as near as compressive forces can.
-    pub(super) fn apply(&self, reaction: &mut [[f64; D]]) {
-        self.groups.iter().for_each(|group| group.apply(reaction));
+    pub(super) fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
+        self.groups.iter().for_each(|group| group.apply(reaction, centroid));
     }
 }
 
 impl<const D: usize> Group<D> {
-    fn apply(&self, reaction: &mut [[f64; D]]) {
+    fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
+        let nodes: Vec<CorrectedNode> = self.nodes.iter().map(|node| self.moved(node, centroid(node.at))).collect();
         let normal: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.normal)).collect();
         if normal.iter().filter(|n| **n > 0.0).count() < 2 {
             return;
         }
         let tangential: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.tangent)).collect();
-        let forces = self.nodes.iter().zip(normal.iter().zip(&tangential));
+        let forces = nodes.iter().zip(normal.iter().zip(&tangential));
         let missing: f64 = forces.map(|(node, (n, t))| node.lever[0] * n - node.lever[1] * t).sum();
-        let factors = self.factors(&normal, missing);
+        let factors = factors(&nodes, &normal, missing);
         let normal: Vec<f64> = normal.iter().zip(&factors).map(|(n, factor)| n * factor).collect();
         let tangential = self.share_out(&normal, &tangential, &factors);
         for ((node, n), t) in self.nodes.iter().zip(normal).zip(tangential) {
@@ -100,30 +101,11 @@ impl<const D: usize> Group<D> {
         }
     }
 
-    /// α + β s, nowhere negative, with Σ factor N = ΣN and Σ factor N s = Σ N s + `missing` over those that are not 0.
-    fn factors(&self, normal: &[f64], missing: f64) -> Vec<f64> {
-        let total: f64 = normal.iter().sum();
-        let first: f64 = self.nodes.iter().zip(normal).map(|(node, n)| node.centroid * n).sum();
-        // About the middle of the force, which has to move by this way.
-        let (middle, way) = (first / total, missing / total);
-        let place = |k: usize| self.nodes[k].centroid - middle;
-        let mut pressed: Vec<usize> = (0..normal.len()).filter(|&k| normal[k] > 0.0).collect();
-        loop {
-            let sum = |power: i32| pressed.iter().map(|&k| normal[k] * place(k).powi(power)).sum::<f64>() / total;
-            let (weight, mean) = (sum(0), sum(1) / sum(0));
-            let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / total;
-            let extent = pressed.iter().map(|&k| (place(k) - mean).powi(2)).fold(0.0, f64::max);
-            // One node alone, but for rounding beside it, has no lever.
-            let slope = if pressed.len() > 1 && spread > NOTHING * extent { (way - mean) / spread } else { 0.0 };
-            let factor = |k: usize| 1.0 / weight + slope * (place(k) - mean);
-            let kept: Vec<usize> = pressed.iter().copied().filter(|&k| factor(k) > 0.0).collect();
-            if kept.len() == pressed.len() || kept.is_empty() {
-                let mut factors = vec![0.0; normal.len()];
-                pressed.iter().for_each(|&k| factors[k] = factor(k));
-                return factors;
-            }
-            pressed = kept;
-        }
+    /// A node whose traction has another centroid than its tributary density, from the node (m).
+    fn moved(&self, node: &CorrectedNode, centroid: Option<[f64; D]>) -> CorrectedNode {
+        let Some(arm) = centroid else { return *node };
+        let arm = [along(&arm, &self.tangent), along(&arm, &self.normal)];
+        CorrectedNode { centroid: node.centroid + node.lever[0] + arm[0], lever: arm.map(|x| -x), ..*node }
     }
 
     /// Friction in proportion to its normal force; the rest of its sum is put where there is room up to μN.
@@ -141,6 +123,32 @@ impl<const D: usize> Group<D> {
             shared.iter_mut().zip(&rooms).for_each(|(t, room)| *t += part * room);
         }
         shared
+    }
+}
+
+/// α + β s, nowhere negative, with Σ factor N = ΣN and Σ factor N s = Σ N s + `missing` over those that are not 0.
+fn factors(nodes: &[CorrectedNode], normal: &[f64], missing: f64) -> Vec<f64> {
+    let total: f64 = normal.iter().sum();
+    let first: f64 = nodes.iter().zip(normal).map(|(node, n)| node.centroid * n).sum();
+    // About the middle of the force, which has to move by this way.
+    let (middle, way) = (first / total, missing / total);
+    let place = |k: usize| nodes[k].centroid - middle;
+    let mut pressed: Vec<usize> = (0..normal.len()).filter(|&k| normal[k] > 0.0).collect();
+    loop {
+        let sum = |power: i32| pressed.iter().map(|&k| normal[k] * place(k).powi(power)).sum::<f64>() / total;
+        let (weight, mean) = (sum(0), sum(1) / sum(0));
+        let spread = pressed.iter().map(|&k| normal[k] * (place(k) - mean).powi(2)).sum::<f64>() / total;
+        let extent = pressed.iter().map(|&k| (place(k) - mean).powi(2)).fold(0.0, f64::max);
+        // One node alone, but for rounding beside it, has no lever.
+        let slope = if pressed.len() > 1 && spread > NOTHING * extent { (way - mean) / spread } else { 0.0 };
+        let factor = |k: usize| 1.0 / weight + slope * (place(k) - mean);
+        let kept: Vec<usize> = pressed.iter().copied().filter(|&k| factor(k) > 0.0).collect();
+        if kept.len() == pressed.len() || kept.is_empty() {
+            let mut factors = vec![0.0; normal.len()];
+            pressed.iter().for_each(|&k| factors[k] = factor(k));
+            return factors;
+        }
+        pressed = kept;
     }
 }
 

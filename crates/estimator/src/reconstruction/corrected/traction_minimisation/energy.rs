@@ -39,9 +39,15 @@ fn slope_of<const D: usize, const N: usize>(
     measure: &ElementMeasure<'_, D, N>,
     loading: &Loading<D, N>,
 ) -> [f64; MOMENTS] {
+    moment_gradient(&measure.traction_slope(loading))
+}
+
+/// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions are
+/// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
+#[inline]
+pub(super) fn moment_gradient<const D: usize, const N: usize>(gradient: &[[[f64; D]; D]; N]) -> [f64; MOMENTS] {
     let mut moments = [0.0; MOMENTS];
-    // Tractions are D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
-    for (k, slope) in measure.traction_slope(loading).iter().enumerate() {
+    for (k, slope) in gradient.iter().enumerate() {
         for c in 0..D {
             let sum: f64 = slope.iter().map(|s| s[c]).sum();
             for p in 0..D {

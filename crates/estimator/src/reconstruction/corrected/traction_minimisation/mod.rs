@@ -12,12 +12,13 @@ mod basis;
 mod descent;
 mod energy;
 
+use super::concentration::Concentration;
 use crate::element::Element;
 use crate::measure::ElementMeasure;
 use crate::options::Acceleration;
 use crate::traction::{Equilibrated, Equilibration};
 use basis::Basis;
-use energy::{Form, MOMENTS, moment_form, moment_slope};
+use energy::{Form, MOMENTS, moment_form, moment_gradient, moment_slope};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -79,6 +80,7 @@ impl<const D: usize> TractionMinimisation<D> {
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
         levels: &mut [Equilibrated<D>],
+        concentration: Option<&Concentration<D>>,
     ) {
         let count = levels.len();
         let mut slopes = vec![[0.0; MOMENTS]; count * equilibration.elements.len()];
@@ -88,6 +90,14 @@ impl<const D: usize> TractionMinimisation<D> {
                 *slope = moment_slope(&measure, &level.stress()[e], equilibration, level);
             }
         });
+        if let Some(concentration) = concentration {
+            for (at, level) in levels.iter().enumerate() {
+                concentration.add_slopes::<N>(problem, &level.forces().density, |element, gradient| {
+                    let to = &mut slopes[element.index() * count + at];
+                    to.iter_mut().zip(moment_gradient(gradient)).for_each(|(to, slope)| *to += slope);
+                });
+            }
+        }
         levels.par_chunks_mut(LANES).enumerate().for_each(|(chunk, levels)| {
             let first = chunk * LANES;
             let slope = |e: usize| -> [Lanes; MOMENTS] {
