@@ -60,6 +60,11 @@ impl<const D: usize> AuxiliarySolution<D> {
         &self.displacement
     }
 
+    /// v_{n−½}.
+    pub(super) fn half_step(&self) -> &[[f64; D]] {
+        &self.half_step
+    }
+
     /// Takes in the energy of the simulation at a step.
     pub(super) fn watch(&mut self, simulated: &SimulatedStep<'_, D>, mass: &[f64]) {
         self.peak_energy = self.peak_energy.max(simulated.state.strain() + kinetic_energy(simulated.velocity, mass));

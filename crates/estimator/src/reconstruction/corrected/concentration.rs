@@ -63,22 +63,80 @@ impl<const D: usize> Concentration<D> {
         force: &[f64; D],
         gap: &[f64],
     ) -> Option<Vec<Hat>> {
-        let star = &self.nodes[at];
+        self.pressed(problem, at, force, gap).map(|(gaps, normal)| self.of(problem, at, force, normal, &gaps).shape())
+    }
+
+    /// The gaps of the edges and the normal part of a force, where an edge leaves the plane.
+    fn pressed<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        at: usize,
+        force: &[f64; D],
+        gap: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
         let open = |k: usize| gap[k].max(0.0);
-        let gaps: Vec<f64> = star.edges.iter().map(|edge| open(edge.far) - open(at)).collect();
+        let gaps: Vec<f64> = self.nodes[at].edges.iter().map(|edge| open(edge.far) - open(at)).collect();
         if force.iter().all(|f| *f == 0.0) || gaps.iter().all(|gap| *gap <= self.tolerance) {
             return None;
         }
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
-        let pressed = Pressed {
+        Some((gaps, frame.split(force).0))
+    }
+
+    fn of<'a, const N: usize>(
+        &'a self,
+        problem: &Problem<D, N>,
+        at: usize,
+        force: &[f64; D],
+        normal: f64,
+        gaps: &'a [f64],
+    ) -> Pressed<'a> {
+        let star = &self.nodes[at];
+        Pressed {
             force: [0, 1].map(|c| force[c] / star.extent),
-            normal: frame.split(force).0 / star.extent,
+            normal: normal / star.extent,
             compliance: star.compliance,
-            gaps: &gaps,
+            gaps,
             tributary: &star.tributary,
             energy: &self.forms(problem, at).energy,
+        }
+    }
+
+    /// The normal force (N), at most `most` with this direction, under which the auxiliary solution's node comes to its
+    /// plane with the local compliance of its traction. `None` where the mesh has this compliance: where a hat is as wide
+    /// as its edge. `prediction` is the gap without the force (m), `mobility` the way that a unit force gives (m/N).
+    pub(super) fn own_force<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        at: usize,
+        (most, direction): (f64, &[f64; D]),
+        (prediction, mobility): (f64, f64),
+        gap: &[f64],
+    ) -> Option<f64> {
+        let force = |normal: f64| direction.map(|d| normal * d);
+        let (gaps, _) = self.pressed(problem, at, &force(most), gap)?;
+        let shape = |normal: f64| self.of(problem, at, &force(normal), normal, &gaps);
+        if shape(most).shape().iter().any(|hat| hat.share > 1e-6 && hat.halvings == 0) {
+            return None;
+        }
+        let remaining = |normal: f64| {
+            let pressed = shape(normal);
+            let best = pressed.shape();
+            let open: f64 = best.iter().zip(&gaps).map(|(hat, gap)| hat.share * gap * hat.far()).sum();
+            prediction + normal * mobility + open + pressed.stress(&best) / pressed.normal
         };
-        Some(pressed.shape())
+        if prediction >= 0.0 {
+            return Some(0.0);
+        }
+        if remaining(most) <= 0.0 {
+            return Some(most);
+        }
+        let (mut low, mut high) = (0.0, most);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if remaining(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        Some(0.5 * (low + high))
     }
 
     /// The stress of unit hats, made at first use.

@@ -38,6 +38,8 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
     concentration: Option<Concentration<D>>,
+    /// Own normal force (N) of each node in the auxiliary solution, and the direction of its force over the normal part.
+    own: Vec<(f64, [f64; D])>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
@@ -56,6 +58,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             problem,
             times,
             tributary: problem.surface().tributary_areas(),
+            own: vec![(0.0, [0.0; D]); problem.surface().nodes().len()],
             concentration: (problem.mesh().simplex().shape() == Shape::Triangle && std::env::var("NOHATS").is_err()).then(|| Concentration::new(problem)),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
@@ -106,6 +109,48 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 }
 
+impl<const D: usize, const N: usize> Corrected<'_, D, N> {
+    /// The forces (N) of the auxiliary solution: those of the simulation, but where one node alone touches. There the force
+    /// of the simulation is too large, because the mesh lacks the local compliance.
+    fn own_forces(
+        &mut self,
+        dynamics: &Dynamics<'_, D, N>,
+        n: usize,
+        auxiliary: &AuxiliarySolution<D>,
+        force: &[[f64; D]],
+        mut contact: Vec<[f64; D]>,
+        gap: &[f64],
+    ) -> Vec<[f64; D]> {
+        let (problem, surface) = (self.problem, self.problem.surface());
+        let (Some(concentration), false) = (&self.concentration, std::env::var("NOOWN").is_ok()) else { return contact };
+        let [dt, h] = [self.times.step(n), self.times.velocity_step(n)];
+        for (at, node) in surface.nodes().iter().enumerate() {
+            let (i, frame) = (node.node.index(), problem.obstacles()[node.obstacle].flat_frame());
+            let (own, direction) = &mut self.own[at];
+            let normal = frame.split(&contact[at]).0;
+            if normal > 0.0 {
+                *direction = contact[at].map(|f| f / normal);
+            }
+            let most = normal.max(*own);
+            *own = normal.max(0.0);
+            if most <= 0.0 {
+                continue;
+            }
+            let mobility = dt * h * dynamics.inverse_mass()[i];
+            let velocity = auxiliary.half_step()[i];
+            let free: [f64; D] = std::array::from_fn(|c| dt * velocity[c] + mobility * force[i][c]);
+            let prediction = surface.gap(at, &auxiliary.displacement()[i]) + frame.split(&free).0;
+            if let Some(found) =
+                concentration.own_force(problem, at, (most, direction), (prediction, mobility), gap)
+            {
+                *own = found;
+                contact[at] = direction.map(|d| found * d);
+            }
+        }
+        contact
+    }
+}
+
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
         if self.minimises {
@@ -137,10 +182,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             None => step.reaction.to_vec(),
         };
         let gap = gaps(problem, step.displacement);
-        let pull = driving_forces(problem, &self.at(&contact, &gap));
         let inverse_mass = dynamics.inverse_mass();
-        let Some(auxiliary) = &mut self.auxiliary else {
+        let Some(mut auxiliary) = self.auxiliary.take() else {
             let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
+            let pull = driving_forces(problem, &self.at(&contact, &gap));
             let lumping_difference = self.mixed.then(|| {
                 lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
             });
@@ -150,9 +195,12 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let displacement = auxiliary.displacement().to_vec();
         let mut force = vec![[0.0; D]; displacement.len()];
         dynamics.forces_without_contact(step.index, &displacement, &mut force);
+        let contact = self.own_forces(dynamics, step.index, &auxiliary, &force, contact, &gap);
+        let pull = driving_forces(problem, &self.at(&contact, &gap));
         let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
         auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration, lumping_difference.as_deref());
+        self.auxiliary = Some(auxiliary);
         BalancedFields { displacement, force, contact, lumping_difference }
     }
 
