@@ -1,5 +1,6 @@
 //! η of one element (§4.2), exact in space.
 
+use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
@@ -8,7 +9,6 @@ use crate::residual::{Residuals, worse};
 use crate::stress::{Loading, StressMap, facet_node, facet_position};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{Equilibrated, Equilibration};
-use nalgebra::DMatrix;
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law};
 use percute_core::problem::Problem;
@@ -76,30 +76,16 @@ impl<const D: usize, const N: usize> Balanced<D, N> {
     }
 }
 
-/// The stress of the hats of one node in an element.
-#[derive(Clone, Debug)]
-pub(crate) struct ElementHats<'a> {
-    /// ∫τ:K⁻¹τ and ∫σ:K⁻¹τ of unit hats.
-    pub(crate) energy: &'a DMatrix<f64>,
-    pub(crate) product: &'a DMatrix<f64>,
-    /// Places of the hats in these, and their resultants over section or thickness (N/m).
-    pub(crate) resultants: Vec<(usize, f64)>,
-}
-
-/// Elastic energy (J per unit of section or thickness) beside that of the stress that balances a loading. Young's
-/// inequality bounds the products of several nodes.
-fn hat_energy<const D: usize, const N: usize>(loading: &Loading<D, N>, hats: &[ElementHats<'_>]) -> f64 {
-    let mut energy = 0.0;
-    for hat in hats {
-        for &(i, p) in &hat.resultants {
-            let tractions = loading.traction.iter().flatten().flatten();
-            let loads = tractions.chain(loading.volume.iter().flatten());
-            energy += p * hat.product.column(i).iter().zip(loads).map(|(c, d)| c * d).sum::<f64>();
-            let own: f64 = hat.resultants.iter().map(|&(j, q)| hat.energy[(i, j)] * q).sum();
-            energy += 0.5 * hats.len() as f64 * p * own;
-        }
-    }
-    energy
+/// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
+/// loading. Young's inequality bounds the products of several nodes.
+fn hat_energy<const D: usize, const N: usize>(loading: &Loading<D, N>, hats: &[HatStress<'_>]) -> f64 {
+    let tractions = || loading.traction.iter().flatten().flatten();
+    let loads = || tractions().chain(loading.volume.iter().flatten());
+    let energy = |hat: &HatStress<'_>| {
+        let product: f64 = hat.products().iter().zip(loads()).map(|(c, d)| c * d).sum();
+        product + hats.len() as f64 * hat.energy()
+    };
+    hats.iter().map(energy).sum()
 }
 
 /// The maps of one element, constant in time.
@@ -189,7 +175,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         balanced: &Balanced<D, N>,
         increment: &[[f64; D]; N],
         motion: &ElementMotion<D, N>,
-        hats: &[ElementHats<'_>],
+        hats: &[HatStress<'_>],
     ) -> ElementError {
         let mass = N as f64 * self.element.nodal_mass;
         let (mut dynamic, mut misfit) = (self.start, [[0.0; D]; N]);

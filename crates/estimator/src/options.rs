@@ -83,6 +83,8 @@ pub enum Ablation {
     AuxiliarySolution,
     /// An auxiliary solution with the dispersion of the simulation.
     Correction,
+    /// Contact tractions that are linear over whole edges, however far these leave the plane.
+    Concentration,
     /// Reactions as they are, however short the step in which they stop a node.
     ImpulseSmoothing,
     /// Densities R_k/ℓ_k as they are, whose moment is not that of the reactions.
@@ -200,6 +202,7 @@ named!(
         None = "none",
         AuxiliarySolution = "auxiliary solution",
         Correction = "correction",
+        Concentration = "concentration",
         ImpulseSmoothing = "impulse smoothing",
         Moment = "moment",
         LeastEnergy = "least energy",

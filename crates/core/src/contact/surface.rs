@@ -88,6 +88,12 @@ impl<const D: usize> ContactSurface<D> {
         self.obstacles[contact.obstacle].gap_after(contact.undeformed_gap, displacement)
     }
 
+    /// The gaps of its nodes (m), with these displacements of all nodes of the mesh.
+    #[must_use]
+    pub fn gaps(&self, displacement: &[[f64; D]]) -> Vec<f64> {
+        self.nodes.iter().enumerate().map(|(at, contact)| self.gap(at, &displacement[contact.node.index()])).collect()
+    }
+
     /// The frame at a node with this displacement.
     #[inline]
     #[must_use]

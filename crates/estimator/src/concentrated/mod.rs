@@ -2,8 +2,20 @@
 //! balances them in the star of the node.
 
 mod cut_star;
+mod hat_stress;
+mod least_energy;
 mod shape;
 mod star_stress;
 
-pub(crate) use shape::{Hat, Pressed, resultants};
-pub(crate) use star_stress::{HATS, StarElement, StarStress};
+pub(crate) use hat_stress::HatStress;
+pub(crate) use shape::{Shape, ShapeCosts};
+pub(crate) use star_stress::{StarElement, StarStress};
+
+/// Widths of narrow hats: a half of the edge, a quarter, …
+pub(crate) const HATS: usize = 10;
+
+/// The place of a component of a unit hat in the forms of a star; the width of the hat is that of the edge over two to the
+/// power of `halvings`.
+pub(crate) fn place(edge: usize, halvings: usize, component: usize) -> usize {
+    2 * (HATS * edge + halvings - 1) + component
+}

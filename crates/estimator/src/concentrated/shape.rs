@@ -1,10 +1,14 @@
 //! The shape of the traction of one node: its share and its width on each candidate edge.
 
-use super::HATS;
+use super::{HATS, place};
 use nalgebra::DMatrix;
+use std::ops::Deref;
+
+/// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
+const TRIBUTARY: f64 = 0.3;
 
 /// A hat on one edge.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hat {
     /// Its share of the resultant, between 0 and 1.
     pub(crate) share: f64,
@@ -15,81 +19,125 @@ pub(crate) struct Hat {
 impl Hat {
     /// Part of the resultant that its linear equivalent has at the far node of the edge.
     pub(crate) fn far(&self) -> f64 {
-        0.5_f64.powi(self.halvings as i32) / 3.0
+        far(self.halvings)
     }
 }
 
-/// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
-const TRIBUTARY: f64 = 0.3;
-
-/// The force of a node with its edges, per unit of thickness.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pressed<'a> {
-    /// The force (N/m), and its normal part.
-    pub(crate) force: [f64; 2],
-    pub(crate) normal: f64,
-    /// 1 over the plane modulus (1/Pa).
-    pub(crate) compliance: f64,
-    /// Gap at the far end less that at the node, each at least 0 (m), edge by edge.
-    pub(crate) gaps: &'a [f64],
-    /// Tributary shares.
-    pub(crate) tributary: &'a [f64],
-    /// ∫τ:K⁻¹τ over the star.
-    pub(crate) energy: &'a DMatrix<f64>,
+fn far(halvings: usize) -> f64 {
+    1.0 / (3 << halvings) as f64
 }
 
-impl Pressed<'_> {
-    /// The shape of least gap energy and stress energy.
-    pub(crate) fn shape(&self) -> Vec<Hat> {
-        // Wide hats have no more gap than narrow ones where no edge leaves the plane.
-        if self.gaps.iter().all(|gap| *gap <= 0.0) {
-            return self.tributary.iter().map(|&share| Hat { share, halvings: 0 }).collect();
-        }
-        match self.gaps {
-            [_] => self.best((0..=HATS).map(|k| vec![Hat { share: 1.0, halvings: k }])),
-            _ => {
-                let pairs = (0..=HATS).flat_map(|a| (0..=HATS).map(move |b| [a, b]));
-                self.best(pairs.map(|pair| self.shared(pair)))
+/// A hat on each candidate edge of a node, of which there are one or two; their shares sum to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shape {
+    hats: [Hat; 2],
+    edges: usize,
+}
+
+impl Deref for Shape {
+    type Target = [Hat];
+
+    fn deref(&self) -> &[Hat] {
+        &self.hats[..self.edges]
+    }
+}
+
+impl Shape {
+    fn of_one(halvings: usize) -> Self {
+        Self { hats: [Hat { share: 1.0, halvings }, Hat::default()], edges: 1 }
+    }
+
+    fn of_two(shares: [f64; 2], halvings: [usize; 2]) -> Self {
+        Self { hats: [0, 1].map(|e| Hat { share: shares[e], halvings: halvings[e] }), edges: 2 }
+    }
+}
+
+/// The cost of shapes for the forces of one direction on a node, per unit of thickness.
+#[derive(Clone, Debug)]
+pub(crate) struct ShapeCosts<'a> {
+    /// Gap at the far end less that at the node, each at least 0 (m), edge by edge.
+    gaps: &'a [f64],
+    /// Tributary shares.
+    tributary: &'a [f64],
+    /// ∫τ:K⁻¹τ under a unit normal force (m/N): products of the hats of both edges, by their halvings.
+    products: [[[[f64; HATS + 1]; HATS + 1]; 2]; 2],
+    /// 2 times the cost of a share that differs from the tributary one by 1, under a unit normal force.
+    penalty: f64,
+}
+
+impl<'a> ShapeCosts<'a> {
+    /// `direction` is the force over its normal part, `compliance` 1 over the plane modulus (1/Pa), `energy` the form
+    /// ∫τ:K⁻¹τ over the star.
+    pub(crate) fn new(
+        direction: [f64; 2],
+        compliance: f64,
+        gaps: &'a [f64],
+        tributary: &'a [f64],
+        energy: &DMatrix<f64>,
+    ) -> Self {
+        let mut products = [[[[0.0; HATS + 1]; HATS + 1]; 2]; 2];
+        let pairs = (0..gaps.len()).flat_map(|e| (0..gaps.len()).map(move |f| (e, f)));
+        for (e, f) in pairs {
+            for (a, row) in products[e][f].iter_mut().enumerate().skip(1) {
+                for (b, product) in row.iter_mut().enumerate().skip(1) {
+                    let of =
+                        |c: usize, d: usize| direction[c] * direction[d] * energy[(place(e, a, c), place(f, b, d))];
+                    *product = of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1);
+                }
             }
         }
+        let square: f64 = direction.iter().map(|d| d * d).sum();
+        Self { gaps, tributary, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
-    fn best(&self, shapes: impl Iterator<Item = Vec<Hat>>) -> Vec<Hat> {
-        let ranked = shapes.map(|shape| (self.cost(&shape), shape));
-        ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(Vec::new, |(_, shape)| shape)
+    /// The shape of least gap energy and stress energy under a normal force (N/m).
+    pub(crate) fn shape(&self, normal: f64) -> Shape {
+        let least = |shapes: &mut dyn Iterator<Item = Shape>| {
+            let ranked = shapes.map(|shape| (self.cost(&shape, normal), shape));
+            ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(Shape::of_one(0), |(_, shape)| shape)
+        };
+        if self.gaps.len() == 1 {
+            return least(&mut (0..=HATS).map(Shape::of_one));
+        }
+        let pairs = (0..=HATS).flat_map(|a| (0..=HATS).map(move |b| [a, b]));
+        least(&mut pairs.map(|halvings| {
+            let share = self.share(halvings, normal);
+            Shape::of_two([share, 1.0 - share], halvings)
+        }))
     }
 
-    /// The best shares of two hats: the cost is quadratic in the share of the first.
-    fn shared(&self, halvings: [usize; 2]) -> Vec<Hat> {
-        let at = |share: f64| vec![Hat { share, halvings: halvings[0] }, Hat { share: 1.0 - share, halvings: halvings[1] }];
-        let [none, half, all] = [0.0, 0.5, 1.0].map(|share| self.cost(&at(share)));
-        let curvature = 2.0 * (none - 2.0 * half + all);
-        let slope = all - none - curvature;
-        let share = if curvature > 0.0 { (-0.5 * slope / curvature).clamp(0.0, 1.0) } else { self.tributary[0] };
-        at(share)
+    /// The best share of the first of two hats: the cost is quadratic in it.
+    fn share(&self, [a, b]: [usize; 2], normal: f64) -> f64 {
+        let [own, cross, other] = [self.products[0][0][a][a], self.products[0][1][a][b], self.products[1][1][b][b]];
+        let way = self.gaps[0] * far(a) - self.gaps[1] * far(b);
+        let curvature = own - 2.0 * cross + other + 2.0 * self.penalty;
+        ((other - cross + 2.0 * self.penalty * self.tributary[0] - way / normal) / curvature).clamp(0.0, 1.0)
     }
 
-    fn cost(&self, shape: &[Hat]) -> f64 {
-        let square = self.force.iter().map(|f| f * f).sum::<f64>();
-        let gap: f64 = shape.iter().zip(self.gaps).map(|(hat, gap)| hat.share * gap * hat.far()).sum();
+    /// The cost over the normal force (m).
+    fn cost(&self, shape: &Shape, normal: f64) -> f64 {
         let aside: f64 = shape.iter().zip(self.tributary).map(|(hat, share)| (hat.share - share).powi(2)).sum();
-        self.normal * gap + 0.5 * self.stress(shape) + TRIBUTARY * square * self.compliance * aside
+        self.gap(shape) + 0.5 * normal * (self.stress(shape) + self.penalty * aside)
     }
 
-    /// pᵀAp of the resultants.
-    pub(crate) fn stress(&self, shape: &[Hat]) -> f64 {
-        let places: Vec<(usize, f64)> = resultants(shape, &self.force).collect();
-        let row = |&(i, p): &(usize, f64)| places.iter().map(|&(j, q)| p * self.energy[(i, j)] * q).sum::<f64>();
-        places.iter().map(row).sum()
+    /// Mean gap under a shape (m).
+    fn gap(&self, shape: &Shape) -> f64 {
+        shape.iter().zip(self.gaps).map(|(hat, gap)| hat.share * gap * hat.far()).sum()
     }
-}
 
-/// The resultants of the hats that are narrower than their edges, with their places in the forms of the star.
-pub(crate) fn resultants<'a>(shape: &'a [Hat], force: &'a [f64; 2]) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let narrow = shape.iter().enumerate().filter(|(_, hat)| hat.halvings > 0);
-    narrow.flat_map(move |(edge, hat)| {
-        (0..2).map(move |c| (2 * (HATS * edge + hat.halvings - 1) + c, hat.share * force[c]))
-    })
+    /// ∫τ:K⁻¹τ under a unit normal force (m/N).
+    fn stress(&self, shape: &Shape) -> f64 {
+        let product = |(e, a): (usize, &Hat)| {
+            let row = |(f, b): (usize, &Hat)| a.share * b.share * self.products[e][f][a.halvings][b.halvings];
+            shape.iter().enumerate().map(row).sum::<f64>()
+        };
+        shape.iter().enumerate().map(product).sum()
+    }
+
+    /// By how much the node is closer to its plane than the mean of its traction, with the local compliance (m).
+    pub(crate) fn approach(&self, shape: &Shape, normal: f64) -> f64 {
+        self.gap(shape) + normal * self.stress(shape)
+    }
 }
 
 #[cfg(test)]
@@ -109,11 +157,11 @@ mod tests {
         };
         let elements = [0, 1].map(|k| StarElement { corners: [[0.0; 2], at(k), at(k + 1)], at: 0, law: &law });
         let made = StarStress::new(&elements, &[0, 1]);
-        (made.energy.iter().fold(DMatrix::zeros(4 * HATS, 4 * HATS), |sum, one| sum + one), [at(0)[1], at(2)[1]])
+        (made.energy, [at(0)[1], at(2)[1]])
     }
 
-    fn pressed<'a>(force: f64, energy: &'a DMatrix<f64>, gaps: &'a [f64; 2]) -> Pressed<'a> {
-        Pressed { force: [0.0, force], normal: force, compliance: 1.0 / YOUNG, gaps, tributary: &[0.5, 0.5], energy }
+    fn costs<'a>(energy: &DMatrix<f64>, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
+        ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], energy)
     }
 
     /// A flat zone keeps the tributary shares; beside an inclined side the force moves to the flat edge.
@@ -121,8 +169,8 @@ mod tests {
     fn flat_edges_keep_their_density() {
         let (energy, _) = corner(0.0);
         let wide = Hat { share: 0.5, halvings: 0 };
-        assert_eq!(pressed(1e5, &energy, &[0.0, 0.0]).shape(), [wide, wide]);
-        let shape = pressed(1e3, &energy, &[0.0, 1e-3]).shape();
+        assert_eq!(costs(&energy, &[0.0, 0.0]).shape(1e5)[..], [wide, wide]);
+        let shape = costs(&energy, &[0.0, 1e-3]).shape(1e3);
         assert!(shape[0].share > 0.999 && shape[0].halvings == 0, "{shape:?}");
     }
 
@@ -131,13 +179,32 @@ mod tests {
     fn width_follows_the_force() {
         let (energy, gaps) = corner(10_f64.to_radians());
         let width = |force: f64| {
-            let shape = pressed(force, &energy, &gaps).shape();
-            println!("{force:e} {shape:?}");
+            let shape = costs(&energy, &gaps).shape(force);
             assert!((shape[0].share + shape[1].share - 1.0).abs() < 1e-15);
             shape[0].halvings
         };
         let widths: Vec<usize> = (0..10).map(|k| width(6.4e6 * 0.5_f64.powi(k))).collect();
-        println!("{widths:?}");
+        assert!(widths[9] > widths[0] + 6, "{widths:?}");
         assert!(widths.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] - pair[0] <= 2));
+    }
+
+    /// The closed form of the shares against a search, and the cost of the best shape against all others.
+    #[test]
+    fn the_best_shape_is_best() {
+        let (energy, gaps) = corner(0.3);
+        let costs = costs(&energy, &gaps);
+        for force in [1e2, 1e4, 1e6] {
+            let best = costs.cost(&costs.shape(force), force);
+            for a in 0..=HATS {
+                for b in 0..=HATS {
+                    let shape = |share: f64| Shape::of_two([share, 1.0 - share], [a, b]);
+                    let least = (0..=100).map(|k| costs.cost(&shape(0.01 * f64::from(k)), force));
+                    let least = least.fold(f64::INFINITY, f64::min);
+                    assert!(best <= least * (1.0 + 1e-12), "{a} {b}");
+                    let closed = costs.cost(&shape(costs.share([a, b], force)), force);
+                    assert!(closed <= least * (1.0 + 1e-12), "{a} {b} {closed} {least}");
+                }
+            }
+        }
     }
 }

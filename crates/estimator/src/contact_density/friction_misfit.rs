@@ -43,7 +43,7 @@ pub(crate) fn hat_misfit_power<const D: usize, const N: usize>(
     let tangent = tangent(&frame);
     let sliding = velocity.map(|v| along(&v, &tangent));
     let normal = frame.split(&hat.resultant).0;
-    law.limit(normal) * hat.mean_absolute(&sliding) + along(&hat.resultant, &tangent) * hat.mean(&sliding)
+    law.limit(normal) * hat.mean_absolute(&sliding) + along(&hat.resultant, &tangent) * hat.mean_of(&sliding)
 }
 
 /// Along a plane in 2D: its normal turned back by a quarter.

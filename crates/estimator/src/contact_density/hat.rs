@@ -18,6 +18,14 @@ pub(crate) struct NarrowHat<const D: usize> {
 }
 
 impl<const D: usize> NarrowHat<D> {
+    /// Half of each of two tractions: both shapes, superposed. Sorted by nodes, if they are.
+    pub(crate) fn mean(start: &[Self], end: &[Self]) -> Vec<Self> {
+        let half = |hat: &Self| Self { resultant: hat.resultant.map(|f| 0.5 * f), ..*hat };
+        let mut both: Vec<Self> = start.iter().chain(end).map(half).collect();
+        both.sort_by_key(|hat| hat.node);
+        both
+    }
+
     /// Its width over the length of the edge.
     pub(crate) fn width(&self) -> f64 {
         0.5_f64.powi(self.halvings as i32)
@@ -44,11 +52,11 @@ impl<const D: usize> NarrowHat<D> {
 
     /// Mean of the absolute value of a field, weighted by the hat.
     pub(crate) fn mean_absolute(&self, nodal: &[f64; D]) -> f64 {
-        2.0 * self.mean_positive(nodal) - self.mean(nodal)
+        2.0 * self.mean_positive(nodal) - self.mean_of(nodal)
     }
 
     /// Mean of a field, weighted by the hat.
-    pub(crate) fn mean(&self, nodal: &[f64; D]) -> f64 {
+    pub(crate) fn mean_of(&self, nodal: &[f64; D]) -> f64 {
         let [a, b] = self.ends(nodal);
         (2.0 * a + b) / 3.0
     }

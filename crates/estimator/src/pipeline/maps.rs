@@ -7,7 +7,9 @@ use crate::kinematic::{ContactTrack, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
+use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
+use crate::stress::tensor;
 use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -55,18 +57,16 @@ impl<const D: usize> Maps<D> {
     /// Begins the maps of these levels, of which the motion and the tractions are known.
     pub(crate) fn begin<const N: usize>(
         &mut self,
-        problem: &Problem<D, N>,
         instants: &[f64],
-        equilibration: &Equilibration<'_, D, N>,
-        choice: Acceleration,
+        balance: &Balance<'_, D, N>,
         levels: &[Equilibrated<D>],
     ) {
-        let zeros = vec![0.0; equilibration.elements.len()];
+        let zeros = vec![0.0; balance.equilibration.elements.len()];
         for level in levels {
             if !self.want(level.index()) {
                 continue;
             }
-            let fields = self.request.fields.then(|| fields(problem, equilibration, choice, level));
+            let fields = self.request.fields.then(|| fields(balance, level));
             self.made.push(ElementMap {
                 step: level.index(),
                 time: instants[level.index()],
@@ -114,14 +114,18 @@ impl<const D: usize> Maps<D> {
     }
 }
 
+/// The data of the fields that balance.
+pub(super) struct Balance<'a, const D: usize, const N: usize> {
+    pub(super) problem: &'a Problem<D, N>,
+    pub(super) equilibration: &'a Equilibration<'a, D, N>,
+    pub(super) choice: Acceleration,
+    pub(super) concentration: Option<&'a Concentration<D>>,
+}
+
 /// The motion of all nodes, normal components at contact still those of the simulation, and the
 /// means of σ_DA and Γ_DA/ρ.
-fn fields<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    equilibration: &Equilibration<'_, D, N>,
-    choice: Acceleration,
-    level: &Equilibrated<D>,
-) -> AdmissibleFields<D> {
+fn fields<const D: usize, const N: usize>(balance: &Balance<'_, D, N>, level: &Equilibrated<D>) -> AdmissibleFields<D> {
+    let Balance { problem, equilibration, choice, concentration } = *balance;
     let elements = &equilibration.elements;
     let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];
     means.par_chunks_mut(BLOCK).zip(elements.par_chunks(BLOCK)).enumerate().for_each(|(block, (means, elements))| {
@@ -130,7 +134,15 @@ fn fields<const D: usize, const N: usize>(
             *mean = measure.means(equilibration, level);
         }
     });
-    let (stress, acceleration) = means.into_iter().unzip();
+    let (mut stress, acceleration): (Vec<_>, _) = means.into_iter().unzip();
+    if let Some(concentration) = concentration {
+        concentration.each_element(problem, level.forces().density.hats(), |element, hats| {
+            let area = elements[element.index()].volume / problem.material(element).extent();
+            let mean = tensor::<D>(&hats.integral());
+            let to = stress[element.index()].iter_mut().flatten().zip(mean.into_iter().flatten());
+            to.for_each(|(to, integral)| *to += integral / area);
+        });
+    }
     AdmissibleFields {
         displacement: level.forces().now.motion.displacement().to_vec(),
         velocity: level.forces().now.motion.velocity().to_vec(),

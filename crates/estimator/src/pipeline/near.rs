@@ -3,11 +3,11 @@
 
 use super::maps::Contribution;
 use super::sampling::{Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling};
-use crate::contact_density::{FacetPressures, NormalMisfit};
+use crate::concentrated::HatStress;
+use crate::contact_density::{FacetPressures, NarrowHat, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
-use crate::concentrated::HATS;
-use crate::measure::{Balanced, ElementHats};
+use crate::measure::Balanced;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
@@ -41,12 +41,9 @@ struct Waiting<const D: usize, const N: usize> {
     touching: [[bool; N]; 2],
     /// Pressures on its candidate facets, where they may act off contact.
     pressures: Vec<FacetPressures<D>>,
-    /// Narrow hats at the beginning and the end: for each node its position, and places and resultants of hats.
-    hats: [Vec<NodeHats>; 2],
+    /// Narrow hats of its nodes at the beginning and the end, sorted by nodes.
+    hats: [Vec<NarrowHat<D>>; 2],
 }
-
-/// The narrow hats of one node: its position in the contact surface, and their places and resultants (N).
-type NodeHats = (usize, Vec<(usize, f64)>);
 
 /// One such element.
 #[derive(Clone, Debug)]
@@ -147,18 +144,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
         let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact)).collect();
-        let hats = [from, to].map(|level| self.hats(level));
+        let hats = [from, to].map(|level| {
+            self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
+        });
         self.queue.push_back(Waiting { start, end, begins, mid, stop, touching, pressures, hats });
-    }
-
-    /// The narrow hats of its nodes.
-    fn hats(&self, level: &Equilibrated<D>) -> Vec<NodeHats> {
-        let of_node = |&at: &usize| {
-            let hats = level.forces().density.hats_of(at).iter();
-            let places = hats.flat_map(|hat| (0..D).map(|c| (2 * (HATS * hat.edge + hat.halvings - 1) + c, hat.resultant[c])));
-            (at, places.collect::<Vec<_>>())
-        };
-        self.contact.iter().flatten().map(of_node).filter(|(_, places)| !places.is_empty()).collect()
     }
 
     fn at(
@@ -199,8 +188,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.settle(context, &mut waiting.stop);
             self.check_contact(context, &waiting.stop.velocities, &waiting.touching[1]);
             let [from, to] = &waiting.hats;
-            let both: Vec<NodeHats> = merged(from, to);
-            let hats = [from, &both, to].map(|hats| self.element_hats(context, hats));
+            let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
             let interval = ElementInterval {
                 steps: [start.instant / 2, waiting.stop.instant / 2],
                 balanced: [&waiting.start, &waiting.end],
@@ -216,19 +204,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     }
 
     /// The stress of hats in the element.
-    fn element_hats<'c>(&self, context: &ContactSampling<'c, '_, D, N>, hats: &[NodeHats]) -> Vec<ElementHats<'c>> {
+    fn hat_stress<'c>(&self, context: &ContactSampling<'c, '_, D, N>, hats: &[NarrowHat<D>]) -> Vec<HatStress<'c>> {
         let Some(concentration) = context.reconstruction.concentration() else { return Vec::new() };
-        let one = |(at, places): &NodeHats| {
-            let forms = concentration.forms(context.shared.problem, *at);
-            let position = forms.elements.iter().position(|&element| element == self.element)?;
-            let extent = concentration.extent(*at);
-            Some(ElementHats {
-                energy: &forms.stress.energy[position],
-                product: &forms.stress.product[position],
-                resultants: places.iter().map(|&(place, force)| (place, force / extent)).collect(),
-            })
-        };
-        hats.iter().filter_map(one).collect()
+        let nodes = hats.chunk_by(|a, b| a.node == b.node);
+        nodes.filter_map(|hats| concentration.in_element(context.shared.problem, hats, self.element)).collect()
     }
 
     /// The contact part of η at the beginning, middle and end of an interval (J).
@@ -292,19 +271,6 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
         }
     }
-}
-
-/// Half of each of the hats at both ends of a step.
-fn merged(from: &[NodeHats], to: &[NodeHats]) -> Vec<NodeHats> {
-    let mut both: Vec<NodeHats> = Vec::new();
-    for (at, places) in from.iter().chain(to) {
-        let half = places.iter().map(|&(place, force)| (place, 0.5 * force));
-        match both.iter_mut().find(|(other, _)| other == at) {
-            Some((_, all)) => all.extend(half),
-            None => both.push((*at, half.collect())),
-        }
-    }
-    both
 }
 
 #[cfg(test)]

@@ -174,7 +174,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 reaction: step.reaction.to_vec(),
                 force: contact,
                 touching: step.touching.to_vec(),
-                gap: problem.surface().nodes().iter().enumerate().map(|(at, node)| problem.surface().gap(at, &step.displacement[node.node.index()])).collect(),
+                gap: problem.surface().gaps(step.displacement),
             },
             lumping_difference,
         };

@@ -1,9 +1,10 @@
 //! η of one element at the samples of an interval, its integral over time, and the maps of it.
 
 use super::maps::{Contribution, Maps};
+use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::kinematic::ElementMotion;
-use crate::measure::{Balanced, ElementError, ElementHats, ElementMeasure};
+use crate::measure::{Balanced, ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::residual::Residuals;
 use crate::time_level::{Side, Velocities};
@@ -64,8 +65,8 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) end: &'i ElementVelocities<D, N>,
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [f64; 3],
-    /// Hats at its beginning, middle and end.
-    pub(super) hats: [&'i [ElementHats<'i>]; 3],
+    /// The stress of hats at its beginning, middle and end.
+    pub(super) hats: [&'i [HatStress<'i>]; 3],
 }
 
 /// The data that all elements share.

@@ -73,6 +73,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     }
     preparation.tracks().iter().for_each(|track| track.report(&mut residuals));
     residuals.merge(&preparation.residuals);
+    preparation.reconstruction().concentration().into_iter().for_each(|stars| stars.add_residuals(&mut residuals));
 
     let intervals = intervals(times, preparation.every(), last, &far, &near);
     let over_time = samples(&intervals);

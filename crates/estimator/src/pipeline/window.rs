@@ -4,7 +4,7 @@
 //! by one task from its own data, and sums are taken over fixed blocks of elements in order.
 
 use super::far;
-use super::maps::Maps;
+use super::maps::{Balance, Maps};
 use super::near::{ContactSampling, NearElement, near_elements};
 use super::prepare::Preparation;
 use super::sampling::{Course, Sampling};
@@ -147,10 +147,11 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     /// Samples all elements at the levels from `first` on.
     fn sample(&mut self, preparation: &Preparation<'p, D, N>, first: usize, levels: &[Equilibrated<D>]) {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
-        self.maps.begin(problem, times.instants(), equilibration, choice, &levels[first..]);
+        let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks());
+        let balance = Balance { problem, equilibration, choice, concentration: reconstruction.concentration() };
+        self.maps.begin(times.instants(), &balance, &levels[first..]);
         let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
         let blocks = far::sample(&shared, levels, first, &self.is_near, &mut self.courses);
-        let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks());
         let context = ContactSampling { shared: &shared, reconstruction, tracks };
         self.near.par_iter_mut().for_each(|near| near.advance(&context, levels));
         let mut sums = FarSums::new(levels.len() - first, levels.len() - 1);

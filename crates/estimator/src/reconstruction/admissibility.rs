@@ -31,5 +31,12 @@ pub(crate) fn check<const D: usize, const N: usize>(
                 residuals.force_off_contact = worse(residuals.force_off_contact, off);
             }
         }
+        // The shares of hats are between 0 and 1: each is in the cone if the force of its node is.
+        for hat in densities.hats() {
+            let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
+            let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), &hat.resultant);
+            residuals.cone =
+                worse(residuals.cone, worse(tangential, normal) / size(&hat.resultant).max(f64::MIN_POSITIVE));
+        }
     }
 }

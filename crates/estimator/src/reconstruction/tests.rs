@@ -21,7 +21,7 @@ fn problem() -> TriangleProblem {
 /// Nodes 0 to 3 of five touch, pressed and pulled along the plane up to the cone.
 fn surface() -> SurfaceStep<2> {
     let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
-    SurfaceStep { force: reaction.clone(), reaction, touching: vec![true, true, true, true, false] }
+    SurfaceStep { force: reaction.clone(), reaction, touching: vec![true, true, true, true, false], gap: vec![0.0; 5] }
 }
 
 fn residuals(densities: &StepDensities<2>) -> Residuals {
@@ -126,7 +126,12 @@ fn a_node_that_touches_alone_gets_no_force() {
 #[test]
 fn a_phase_of_one_step_gets_no_force() {
     let problem = problem();
-    let off = SurfaceStep { reaction: vec![[0.0; 2]; 5], force: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = SurfaceStep {
+        reaction: vec![[0.0; 2]; 5],
+        force: vec![[0.0; 2]; 5],
+        touching: vec![false; 5],
+        gap: vec![0.0; 5],
+    };
     let steps = [&off, &surface(), &off];
     for choice in [Consistent, Published] {
         for (before, now, next, after) in [(None, 0, 1, Some(steps[2])), (Some(steps[0]), 1, 2, None)] {
@@ -139,7 +144,12 @@ fn a_phase_of_one_step_gets_no_force() {
 
 /// All five nodes touch and are pressed.
 fn pressed() -> SurfaceStep<2> {
-    SurfaceStep { reaction: vec![[0.0, 100.0]; 5], force: vec![[0.0, 100.0]; 5], touching: vec![true; 5] }
+    SurfaceStep {
+        reaction: vec![[0.0, 100.0]; 5],
+        force: vec![[0.0, 100.0]; 5],
+        touching: vec![true; 5],
+        gap: vec![0.0; 5],
+    }
 }
 
 /// Whether there is force at any place, at the beginning and at the end of a step.
@@ -152,7 +162,12 @@ fn acts(interval: &StepDensities<2>) -> [bool; 2] {
 #[test]
 fn force_begins_and_ends_with_contact() {
     let problem = problem();
-    let off = || SurfaceStep { reaction: vec![[0.0; 2]; 5], force: vec![[0.0; 2]; 5], touching: vec![false; 5] };
+    let off = || SurfaceStep {
+        reaction: vec![[0.0; 2]; 5],
+        force: vec![[0.0; 2]; 5],
+        touching: vec![false; 5],
+        gap: vec![0.0; 5],
+    };
     let steps = [off(), pressed(), pressed(), pressed(), pressed(), off()];
     let interval = |choice, n: usize, last: usize| {
         let before = n.checked_sub(1).map(|m| &steps[m]);
@@ -223,7 +238,12 @@ fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
 /// just arrived if `arriving`. All reactions are 1 N.
 fn published_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let (problem, [left, right, middle]) = kinked(slope);
-    let now = SurfaceStep { reaction: vec![[0.0, 1.0]; 3], force: vec![[0.0, 1.0]; 3], touching: vec![true; 3] };
+    let now = SurfaceStep {
+        reaction: vec![[0.0, 1.0]; 3],
+        force: vec![[0.0, 1.0]; 3],
+        touching: vec![true; 3],
+        gap: vec![0.0; 3],
+    };
     let mut before = now.clone();
     before.touching[right] = !arriving;
     let around = SurfaceSteps { before: Some(&before), now: &now, next: &now, after: Some(&now) };

@@ -86,10 +86,7 @@ impl StressMap {
     pub(crate) fn mean<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[f64; D]; D] {
         match self {
             Self::Bar(map) => [[map.mean(loading); D]; D],
-            Self::Triangle(map) => {
-                let [xx, yy, xy] = map.mean(loading);
-                std::array::from_fn(|a| std::array::from_fn(|b| [[xx, xy], [xy, yy]][a][b]))
-            }
+            Self::Triangle(map) => tensor(&map.mean(loading)),
         }
     }
 
@@ -105,4 +102,9 @@ impl StressMap {
             Self::Triangle(map) => map.residuals(loading, floor),
         }
     }
+}
+
+/// A plane stress of which 11, 22 and 12 are given.
+pub(crate) fn tensor<const D: usize>([xx, yy, xy]: &[f64; 3]) -> [[f64; D]; D] {
+    std::array::from_fn(|a| std::array::from_fn(|b| [[*xx, *xy], [*xy, *yy]][a][b]))
 }

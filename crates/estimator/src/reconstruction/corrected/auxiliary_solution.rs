@@ -32,6 +32,15 @@ pub(super) struct AuxiliarySolution<const D: usize> {
     peak_energy: f64,
 }
 
+/// The motion of a contact node to its plane over the next step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach {
+    /// Its gap at the next instant without a contact force (m).
+    pub(super) gap: f64,
+    /// The way that a unit force gives until then (m/N).
+    pub(super) mobility: f64,
+}
+
 /// An auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error
 /// would be a thousand times the energy.
 const UNSTABLE: f64 = 1e6;
@@ -60,9 +69,22 @@ impl<const D: usize> AuxiliarySolution<D> {
         &self.displacement
     }
 
-    /// v_{n−½}.
-    pub(super) fn half_step(&self) -> &[[f64; D]] {
-        &self.half_step
+    /// The motion of a contact node until t_{n+1} under these nodal forces (N), corrections left out.
+    pub(super) fn approach<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        inverse_mass: &[f64],
+        times: &TimeGrid,
+        (n, at): (usize, usize),
+        force: &[[f64; D]],
+    ) -> Approach {
+        let contact = &problem.surface().nodes()[at];
+        let i = contact.node.index();
+        let step = times.step(n);
+        let mobility = step * times.velocity_step(n) * inverse_mass[i];
+        let way: [f64; D] = std::array::from_fn(|c| step * self.half_step[i][c] + mobility * force[i][c]);
+        let frame = problem.obstacles()[contact.obstacle].flat_frame();
+        Approach { gap: problem.surface().gap(at, &self.displacement[i]) + frame.split(&way).0, mobility }
     }
 
     /// Takes in the energy of the simulation at a step.

@@ -10,7 +10,7 @@ mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
-use crate::concentrated::Hat;
+use crate::concentrated::Shape;
 use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -19,6 +19,7 @@ use crate::options::{Ablation, Acceleration, Options};
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
 pub(crate) use concentration::Concentration;
+use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
 use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
@@ -26,7 +27,7 @@ use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::Step;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
+use percute_core::simplex;
 use percute_core::time::TimeGrid;
 use traction_minimisation::TractionMinimisation;
 
@@ -38,8 +39,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
     concentration: Option<Concentration<D>>,
-    /// Own normal force (N) of each node in the auxiliary solution, and the direction of its force over the normal part.
-    own: Vec<(f64, [f64; D])>,
+    own_forces: OwnForces<D>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
@@ -54,12 +54,16 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let keeps = |part: Ablation| options.ablation != part;
+        let concentrates = match problem.mesh().simplex().shape() {
+            simplex::Shape::Bar => false,
+            simplex::Shape::Triangle => true,
+        };
         Self {
             problem,
             times,
             tributary: problem.surface().tributary_areas(),
-            own: vec![(0.0, [0.0; D]); problem.surface().nodes().len()],
-            concentration: (problem.mesh().simplex().shape() == Shape::Triangle && std::env::var("NOHATS").is_err()).then(|| Concentration::new(problem)),
+            concentration: (concentrates && keeps(Ablation::Concentration)).then(|| Concentration::new(problem)),
+            own_forces: OwnForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             auxiliary: keeps(Ablation::AuxiliarySolution)
@@ -86,13 +90,13 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         };
         let nodes = problem.surface().nodes();
         let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
-        let shape = |(at, force): (usize, &[f64; D])| {
-            self.concentration.as_ref().and_then(|concentration| concentration.shape(problem, at, force, gap))
-        };
-        let shapes: Vec<Option<Vec<Hat>>> = reaction.iter().enumerate().map(shape).collect();
-        let shaped = |at: usize| self.concentration.as_ref().zip(shapes[at].as_ref());
+        let concentration = self.concentration.as_ref();
+        let shape = |(at, force)| concentration.and_then(|concentration| concentration.shape(problem, at, force, gap));
+        let shapes: Vec<Option<Shape>> = reaction.iter().enumerate().map(shape).collect();
+        let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
-            let centroid = |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
+            let centroid =
+                |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
             correction.apply(&mut reaction, &centroid);
         }
         let density = |f: usize, k: usize| match shaped(k) {
@@ -106,48 +110,6 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             }
         }
         Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats)
-    }
-}
-
-impl<const D: usize, const N: usize> Corrected<'_, D, N> {
-    /// The forces (N) of the auxiliary solution: those of the simulation, but where one node alone touches. There the force
-    /// of the simulation is too large, because the mesh lacks the local compliance.
-    fn own_forces(
-        &mut self,
-        dynamics: &Dynamics<'_, D, N>,
-        n: usize,
-        auxiliary: &AuxiliarySolution<D>,
-        force: &[[f64; D]],
-        mut contact: Vec<[f64; D]>,
-        gap: &[f64],
-    ) -> Vec<[f64; D]> {
-        let (problem, surface) = (self.problem, self.problem.surface());
-        let (Some(concentration), false) = (&self.concentration, std::env::var("NOOWN").is_ok()) else { return contact };
-        let [dt, h] = [self.times.step(n), self.times.velocity_step(n)];
-        for (at, node) in surface.nodes().iter().enumerate() {
-            let (i, frame) = (node.node.index(), problem.obstacles()[node.obstacle].flat_frame());
-            let (own, direction) = &mut self.own[at];
-            let normal = frame.split(&contact[at]).0;
-            if normal > 0.0 {
-                *direction = contact[at].map(|f| f / normal);
-            }
-            let most = normal.max(*own);
-            *own = normal.max(0.0);
-            if most <= 0.0 {
-                continue;
-            }
-            let mobility = dt * h * dynamics.inverse_mass()[i];
-            let velocity = auxiliary.half_step()[i];
-            let free: [f64; D] = std::array::from_fn(|c| dt * velocity[c] + mobility * force[i][c]);
-            let prediction = surface.gap(at, &auxiliary.displacement()[i]) + frame.split(&free).0;
-            if let Some(found) =
-                concentration.own_force(problem, at, (most, direction), (prediction, mobility), gap)
-            {
-                *own = found;
-                contact[at] = direction.map(|d| found * d);
-            }
-        }
-        contact
     }
 }
 
@@ -177,12 +139,11 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
     fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
-        let contact = match &mut self.impulse_smoothing {
+        let mut contact = match &mut self.impulse_smoothing {
             Some(smoothing) => smoothing.advance(problem, self.times, step.index, step.reaction, &state.acceleration()),
             None => step.reaction.to_vec(),
         };
-        let gap = gaps(problem, step.displacement);
-        let inverse_mass = dynamics.inverse_mass();
+        let (gap, inverse_mass) = (problem.surface().gaps(step.displacement), dynamics.inverse_mass());
         let Some(mut auxiliary) = self.auxiliary.take() else {
             let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
             let pull = driving_forces(problem, &self.at(&contact, &gap));
@@ -195,7 +156,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let displacement = auxiliary.displacement().to_vec();
         let mut force = vec![[0.0; D]; displacement.len()];
         dynamics.forces_without_contact(step.index, &displacement, &mut force);
-        let contact = self.own_forces(dynamics, step.index, &auxiliary, &force, contact, &gap);
+        if let Some(concentration) = &self.concentration {
+            let approach = |at: usize| auxiliary.approach(problem, inverse_mass, self.times, (step.index, at), &force);
+            self.own_forces.apply(problem, concentration, &gap, approach, &mut contact);
+        }
         let pull = driving_forces(problem, &self.at(&contact, &gap));
         let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
@@ -205,7 +169,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
-        StepDensities { start: self.at(&steps.now.force, &steps.now.gap), end: self.at(&steps.next.force, &steps.next.gap) }
+        StepDensities {
+            start: self.at(&steps.now.force, &steps.now.gap),
+            end: self.at(&steps.next.force, &steps.next.gap),
+        }
     }
 
     fn off_contact(&self, steps: &SurfaceSteps<'_, D>, densities: &StepDensities<D>) -> Option<OffContact<D>> {
@@ -226,10 +193,4 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             minimisation.improve(self.problem, equilibration, choice, levels, self.concentration.as_ref());
         }
     }
-}
-
-/// Gaps of the nodes of the contact surface (m).
-fn gaps<const D: usize, const N: usize>(problem: &Problem<D, N>, displacement: &[[f64; D]]) -> Vec<f64> {
-    let surface = problem.surface();
-    surface.nodes().iter().enumerate().map(|(at, contact)| surface.gap(at, &displacement[contact.node.index()])).collect()
 }

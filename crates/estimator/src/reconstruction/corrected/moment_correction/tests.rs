@@ -43,7 +43,10 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
 /// The nodal forces that `corrected` makes of reactions.
 fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
-    nodal_forces(problem, &Corrected::new(problem, &times, &Options::default()).at(reaction))
+    nodal_forces(
+        problem,
+        &Corrected::new(problem, &times, &Options::default()).at(reaction, &vec![0.0; reaction.len()]),
+    )
 }
 
 /// Reactions in the cone: normal parts up to `range` times each other, friction up to a part of what the cone allows.
@@ -83,7 +86,7 @@ fn resultant_and_moment_are_those_of_the_reactions() {
             (0..10).filter(|&at| !first(at)).for_each(|at| reaction[at] = [0.0; 2]);
         }
         let mut corrected = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut corrected);
+        MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
         assert!(admissible(&problem, &corrected), "{seed}: {corrected:?}");
         let (given, found) = (balance(&problem, &reaction), balance(&problem, &made(&problem, &reaction)));
         for (given, found) in given.iter().zip(&found) {
@@ -108,7 +111,7 @@ fn no_frame_is_special() {
                 in_frame(&problem, n, t)
             })
             .collect();
-        MomentCorrection::new(&problem).apply(&mut forces);
+        MomentCorrection::new(&problem).apply(&mut forces, &|_| None);
         let normal = *problem.obstacles()[0].flat_frame().normal();
         let own = |f: &[f64; 2]| [f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]];
         let mut all: Vec<(usize, [f64; 2])> =
@@ -135,7 +138,7 @@ fn what_cannot_be_had_is_had_in_part() {
     let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
     (reaction[at(0)], reaction[at(2)]) = ([0.3, 1.0], [0.0, 0.1]);
     let mut corrected = reaction.clone();
-    MomentCorrection::new(&problem).apply(&mut corrected);
+    MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
     assert!(admissible(&problem, &corrected));
     // All on the first node, friction too.
     assert!((0..2).all(|c| (corrected[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{corrected:?}");
@@ -156,7 +159,7 @@ fn a_node_alone_is_left_as_it_is() {
         let mut reaction = vec![[0.0; 2]; 10];
         reaction[k] = in_frame(&problem, 2.0, 0.3);
         let mut corrected = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut corrected);
+        MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
         assert_eq!(corrected, reaction);
     }
 }

@@ -1,7 +1,7 @@
 //! The energy of an element as a function of the moments on its edges.
 
 use crate::measure::ElementMeasure;
-use crate::stress::Loading;
+use crate::stress::{LOADS, Loading};
 use crate::time_level::Side;
 use crate::traction::{Equilibrated, Equilibration};
 
@@ -42,10 +42,17 @@ fn slope_of<const D: usize, const N: usize>(
     moment_gradient(&measure.traction_slope(loading))
 }
 
+/// The slope of a product of stresses, linear in the loads of the element, tractions first.
+pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOADS]) -> [f64; MOMENTS] {
+    let mut gradient = [[[0.0; D]; D]; N];
+    gradient.iter_mut().flatten().flatten().zip(products).for_each(|(to, product)| *to = *product);
+    moment_gradient(&gradient)
+}
+
 /// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions are
 /// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
 #[inline]
-pub(super) fn moment_gradient<const D: usize, const N: usize>(gradient: &[[[f64; D]; D]; N]) -> [f64; MOMENTS] {
+fn moment_gradient<const D: usize, const N: usize>(gradient: &[[[f64; D]; D]; N]) -> [f64; MOMENTS] {
     let mut moments = [0.0; MOMENTS];
     for (k, slope) in gradient.iter().enumerate() {
         for c in 0..D {

@@ -18,7 +18,7 @@ use crate::measure::ElementMeasure;
 use crate::options::Acceleration;
 use crate::traction::{Equilibrated, Equilibration};
 use basis::Basis;
-use energy::{Form, MOMENTS, moment_form, moment_gradient, moment_slope};
+use energy::{Form, MOMENTS, moment_form, moment_slope, product_slope};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -92,9 +92,10 @@ impl<const D: usize> TractionMinimisation<D> {
         });
         if let Some(concentration) = concentration {
             for (at, level) in levels.iter().enumerate() {
-                concentration.add_slopes::<N>(problem, &level.forces().density, |element, gradient| {
+                concentration.each_element(problem, level.forces().density.hats(), |element, stress| {
+                    let slope = product_slope::<D, N>(&stress.products());
                     let to = &mut slopes[element.index() * count + at];
-                    to.iter_mut().zip(moment_gradient(gradient)).for_each(|(to, slope)| *to += slope);
+                    to.iter_mut().zip(slope).for_each(|(to, slope)| *to += slope);
                 });
             }
         }

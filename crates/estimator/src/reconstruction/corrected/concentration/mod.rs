@@ -1,0 +1,154 @@
+//! Tractions of nodes, as wide as their gaps and the stress under them make best, and their stress.
+//!
+//! The force of a node as a density that is linear over whole edges acts where the edges leave the plane. The energy of the
+//! gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate of a
+//! corner or a curve would be many times too large.
+
+mod own_forces;
+mod star;
+
+use crate::concentrated::{HatStress, Shape, ShapeCosts, StarStress, place};
+use crate::contact_density::NarrowHat;
+use crate::residual::{Residuals, worse};
+pub(super) use own_forces::OwnForces;
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use star::NodeStar;
+use std::sync::OnceLock;
+
+/// The stars of the nodes of the contact surface, and the stress of their hats, made at first use.
+#[derive(Debug)]
+pub(crate) struct Concentration<const D: usize> {
+    nodes: Vec<NodeStar>,
+    /// That of the first node of congruent stars.
+    stresses: Vec<OnceLock<StarStress>>,
+    /// Gaps below this are none (m).
+    tolerance: f64,
+}
+
+impl<const D: usize> Concentration<D> {
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+        let nodes = NodeStar::all(problem);
+        let stresses = nodes.iter().map(|_| OnceLock::new()).collect();
+        Self { nodes, stresses, tolerance: problem.contact_tolerance() }
+    }
+
+    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane.
+    pub(super) fn shape<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        at: usize,
+        force: &[f64; D],
+        gap: &[f64],
+    ) -> Option<Shape> {
+        let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
+        let normal = frame.split(force).0;
+        let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
+        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps).shape(normal / self.nodes[at].extent))
+    }
+
+    /// Gaps at the far ends of the edges of a node less its own; none where no edge leaves the plane.
+    fn gaps(&self, at: usize, gap: &[f64]) -> Option<Vec<f64>> {
+        let open = |k: usize| gap[k].max(0.0);
+        let gaps: Vec<f64> = self.nodes[at].edges.iter().map(|edge| open(edge.far) - open(at)).collect();
+        gaps.iter().any(|gap| *gap > self.tolerance).then_some(gaps)
+    }
+
+    /// The cost of shapes under a force with this direction, its normal part 1.
+    fn costs<'a, const N: usize>(
+        &'a self,
+        problem: &Problem<D, N>,
+        at: usize,
+        direction: &[f64; D],
+        gaps: &'a [f64],
+    ) -> ShapeCosts<'a> {
+        let star = &self.nodes[at];
+        let direction = [direction[0], direction[D - 1]];
+        ShapeCosts::new(direction, star.compliance, gaps, &star.tributary, &self.stress(problem, at).energy)
+    }
+
+    fn stress<const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> &StarStress {
+        let alike = self.nodes[at].alike;
+        self.stresses[alike].get_or_init(|| self.nodes[alike].stress(problem, alike))
+    }
+
+    /// The narrow hats of a shape.
+    pub(super) fn hats<'a>(
+        &'a self,
+        at: usize,
+        shape: &'a Shape,
+        force: &'a [f64; D],
+    ) -> impl Iterator<Item = NarrowHat<D>> + 'a {
+        let edges = self.nodes[at].edges.iter().zip(shape.iter()).enumerate();
+        edges.filter(|(_, (_, hat))| hat.halvings > 0 && hat.share > 0.0).map(move |(edge, (candidate, hat))| {
+            NarrowHat {
+                node: at,
+                facet: candidate.facet,
+                end: candidate.end,
+                edge,
+                halvings: hat.halvings,
+                resultant: force.map(|f| hat.share * f),
+            }
+        })
+    }
+
+    /// The density at the node (Pa) on one of its facets, of a hat as wide as the edge.
+    pub(super) fn wide(&self, at: usize, facet: usize, shape: &Shape, force: &[f64; D]) -> [f64; D] {
+        let mut edges = self.nodes[at].edges.iter().zip(shape.iter());
+        let found = edges.find(|(edge, hat)| edge.facet == facet && hat.halvings == 0);
+        found.map_or([0.0; D], |(edge, hat)| force.map(|f| D as f64 * hat.share * f / edge.area))
+    }
+
+    /// From the node to the centroid of its traction (m).
+    pub(super) fn centroid<const N: usize>(&self, problem: &Problem<D, N>, at: usize, shape: &Shape) -> [f64; D] {
+        let surface = problem.surface();
+        let mut centroid = [0.0; D];
+        for (edge, hat) in self.nodes[at].edges.iter().zip(shape.iter()) {
+            let (near, far) = (surface.point(at), surface.point(edge.far));
+            (0..D).for_each(|c| centroid[c] += hat.share * hat.far() * (far[c] - near[c]));
+        }
+        centroid
+    }
+
+    /// Calls `with` for each element of the star of each node, with the stress of these hats, which are sorted by nodes.
+    pub(crate) fn each_element<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        hats: &[NarrowHat<D>],
+        mut with: impl FnMut(ElementId, &HatStress<'_>),
+    ) {
+        for hats in hats.chunk_by(|a, b| a.node == b.node) {
+            for &element in &self.nodes[hats[0].node].elements {
+                self.in_element(problem, hats, element).iter().for_each(|stress| with(element, stress));
+            }
+        }
+    }
+
+    /// The stress of hats of one node in an element of its star.
+    pub(crate) fn in_element<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        hats: &[NarrowHat<D>],
+        element: ElementId,
+    ) -> Option<HatStress<'_>> {
+        let at = hats.first()?.node;
+        let star = &self.nodes[at];
+        let position = star.elements.iter().position(|&other| other == element)?;
+        let one = |hat: &NarrowHat<D>| {
+            let (edge, halvings) = (hat.edge, hat.halvings);
+            hat.resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / star.extent))
+        };
+        let forms = &self.stress(problem, at).elements[position];
+        Some(HatStress { forms, resultants: hats.iter().flat_map(one).collect() })
+    }
+
+    /// Takes in the residuals of all stresses that have been made.
+    pub(crate) fn add_residuals(&self, residuals: &mut Residuals) {
+        for made in self.stresses.iter().filter_map(OnceLock::get).map(|stress| stress.residuals) {
+            residuals.element_resultants = worse(residuals.element_resultants, made.resultants);
+            residuals.divergence = worse(residuals.divergence, made.stress.divergence);
+            residuals.edge_tractions = worse(residuals.edge_tractions, made.stress.edges);
+            residuals.inner_tractions = worse(residuals.inner_tractions, made.stress.inner);
+        }
+    }
+}
