@@ -15,7 +15,7 @@ use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion};
-use percute_estimator::{Acceleration, ErrorMeasures, Estimator, Options, Reconstruction};
+use percute_estimator::{Ablation, Acceleration, ErrorMeasures, Estimator, Options, Reconstruction};
 
 /// Gap (m) and the least T (s): a run takes steps of exactly 0.9 Δt_c and ends with the first at or
 /// past it. (13 µs in equal, slightly shorter steps would give 1.74 instead of 1.80 for the first.)
@@ -137,15 +137,12 @@ impl Impact {
             .unwrap()
     }
 
-    /// e_sup/e_ref and e_mean/e_ref on a mesh, with `closest` and with the default, against that of which each cell is cut into
-    /// 16.
-    fn effectivities(&self, level: usize) -> [[f64; 2]; 2] {
+    /// e_sup/e_ref and e_mean/e_ref on a mesh, with two choices of options, against that of which each cell is cut into 16.
+    fn effectivities(&self, level: usize, options: [Options; 2]) -> [[f64; 2]; 2] {
         let (problem, fine) = (self.problem(level), self.problem(level + 2));
         let times = grid(&problem, self.end);
-        let estimator =
-            |acceleration| Estimator::new(&problem, &times, Options { acceleration, ..Options::default() }).unwrap();
-        let pair = (estimator(Some(Acceleration::Closest)), estimator(None));
-        let mut sink = (Motion::default(), pair);
+        let [first, second] = options.map(|options| Estimator::new(&problem, &times, options).unwrap());
+        let mut sink = (Motion::default(), (first, second));
         simulate(&problem, &times, &mut sink, &mut Unobserved).unwrap();
         let (motion, (closest, default)) = sink;
         let estimates = [closest, default].map(|e| e.finish().unwrap());
@@ -171,41 +168,38 @@ const FLAT: Impact = Impact {
     range: [0.9, 1.5],
 };
 
-/// The ranges that the default was built to meet: 0.9 to 1.5 on flat impacts, to 2 on tilted and curved bodies, to 3 where
-/// a corner touches first; measured are 1.0 to 1.2, 1.1 to 1.5 and 2.2 to 2.3. It must not grow with the
-/// refinement either; 2 % are left to the instants of impact, which lie elsewhere in the steps.
+/// The ranges that the default was built to meet: 0.9 to 1.5 on flat impacts, to 1.7 on tilted and curved bodies; measured
+/// are 1.0 to 1.2 and 1.1 to 1.6. It must not grow with the refinement either; 2 % are left to the instants of impact, which
+/// lie elsewhere in the steps, and 10 % where the zone of contact grows from a corner or a point.
 #[test]
 fn the_default_is_near_the_true_error() {
+    let corner = Impact {
+        name: "corner",
+        tilt: 10.0,
+        velocity: [0.0, -400.0],
+        gap: 0.12e-3,
+        end: 16e-6,
+        range: [0.9, 1.7],
+        ..FLAT
+    };
+    let disc = Impact { name: "disc", velocity: [0.0, -100.0], gap: 0.1e-3, disc: true, ..corner };
     let impacts = [
-        FLAT,
-        Impact { name: "flat, normal", velocity: [0.0, -400.0], friction: 0.0, ..FLAT },
-        Impact { name: "flat, plane strain, sticking", friction: 0.5, plane_strain: true, ..FLAT },
-        Impact { name: "tilted by 3°", tilt: 3.0, end: 16e-6, range: [0.9, 2.0], ..FLAT },
-        Impact {
-            name: "tilted by 10°",
-            tilt: 10.0,
-            velocity: [0.0, -400.0],
-            gap: 0.12e-3,
-            end: 16e-6,
-            range: [0.9, 3.0],
-            ..FLAT
-        },
-        Impact {
-            name: "disc",
-            velocity: [0.0, -100.0],
-            gap: 0.1e-3,
-            end: 16e-6,
-            disc: true,
-            range: [0.9, 2.0],
-            ..FLAT
-        },
+        (FLAT, 0.02),
+        (Impact { name: "flat, normal", velocity: [0.0, -400.0], friction: 0.0, ..FLAT }, 0.02),
+        (Impact { name: "flat, plane strain, sticking", friction: 0.5, plane_strain: true, ..FLAT }, 0.02),
+        (Impact { name: "tilted by 3°", tilt: 3.0, end: 16e-6, range: [0.9, 1.7], ..FLAT }, 0.1),
+        (Impact { tilt: 10.0, ..corner }, 0.1),
+        (Impact { name: "slow corner", velocity: [0.0, -4.0], gap: 0.12e-5, ..corner }, 0.1),
+        (Impact { tilt: 0.0, ..disc }, 0.1),
+        (Impact { name: "slow disc", tilt: 0.0, velocity: [0.0, -4.0], gap: 0.4e-5, ..disc }, 0.1),
     ];
-    for impact in impacts {
-        let [coarse, fine] = [1, 2].map(|level| impact.effectivities(level));
+    let closest = Options { acceleration: Some(Acceleration::Closest), ..Options::default() };
+    for (impact, growth) in impacts {
+        let [coarse, fine] = [1, 2].map(|level| impact.effectivities(level, [closest, Options::default()]));
         for (coarse, fine) in coarse.as_flattened().iter().zip(fine.as_flattened()) {
             let told = format!("{}: {coarse} and {fine}", impact.name);
             assert!([coarse, fine].iter().all(|x| (impact.range[0]..=impact.range[1]).contains(*x)), "{told}");
-            assert!(*fine <= 1.02 * coarse, "{told}");
+            assert!(*fine <= (1.0 + growth) * coarse, "{told}");
         }
         // Measured: −8 to +1 %; friction that holds the bottom and corners turn the elements most.
         for [closest, default] in [coarse, fine] {
@@ -214,4 +208,16 @@ fn the_default_is_near_the_true_error() {
             assert!(change.into_iter().all(|x| (-0.1..0.02).contains(&x)), "{told}");
         }
     }
+}
+
+/// Where every touching edge lies in the plane, tractions are as wide as their edges: the estimate is the same with and
+/// without narrower ones. A slow corner is where they matter.
+#[test]
+fn flat_impacts_do_not_concentrate() {
+    let options = [Ablation::None, Ablation::Concentration].map(|ablation| Options { ablation, ..Options::default() });
+    let [with, without] = FLAT.effectivities(1, options);
+    assert_eq!(with, without);
+    let corner = Impact { tilt: 10.0, velocity: [0.0, -4.0], gap: 0.12e-5, end: 16e-6, ..FLAT };
+    let [with, without] = corner.effectivities(1, options);
+    assert!(without[0] > 4.0 * with[0] && without[1] > 4.0 * with[1], "{with:?} {without:?}");
 }

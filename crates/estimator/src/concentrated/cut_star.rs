@@ -60,8 +60,9 @@ impl CutStar {
             for ray in 0..count - 1 {
                 let [a, b] = [number(ring, ray), number(ring, ray + 1)];
                 let [d, c] = [number(ring + 1, ray), number(ring + 1, ray + 1)];
-                cut.push((ring + 1, ray, [d, a, b]));
-                cut.push((ring + 1, ray, [d, b, c]));
+                // The diagonals of an element meet at its median: the cut of a mirror image is the mirror image of the cut.
+                let halves = if ray % 2 == 0 { [[d, a, b], [d, b, c]] } else { [[a, b, c], [a, c, d]] };
+                halves.into_iter().for_each(|corners| cut.push((ring + 1, ray, corners)));
             }
         }
         for ray in 0..count - 1 {

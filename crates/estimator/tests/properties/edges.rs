@@ -25,7 +25,7 @@ fn impact() -> TriangleProblem {
 }
 
 /// A block that falls on its corner: that node touches alone. `consistent` and `published` drop its force, for no edge
-/// touches; `corrected` keeps all of it and pays for the edges beside it, which are off the plane.
+/// touches; `corrected` concentrates it at the node and pays for the edges beside it, which are off the plane.
 #[test]
 fn a_node_that_touches_alone() {
     let mesh = rotated(&TriangleMesh::rectangle(0.04, 0.04, 5, 5).unwrap(), std::f64::consts::FRAC_PI_4).unwrap();
@@ -39,8 +39,9 @@ fn a_node_that_touches_alone() {
     for options in all_choices() {
         let estimate = estimate(&problem, &history, options);
         if options.reconstruction == Reconstruction::Corrected {
-            // Rounding of sums over a dozen steps.
-            assert!((estimate.kept_impulse.unwrap() - 1.0).abs() < 1e-13 && estimate.parts.contact > 0.0);
+            // The node alone has a force of its own, which falls behind that of the simulation while contact is open.
+            let kept = estimate.kept_impulse.unwrap();
+            assert!(kept > 0.5 && kept <= 1.0 + 1e-13 && estimate.parts.contact > 0.0, "{kept}");
             continue;
         }
         assert_eq!((estimate.kept_impulse, estimate.parts.contact), (Some(0.0), 0.0));

@@ -152,3 +152,6 @@ impl<const D: usize> Concentration<D> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+//! Shapes of the tractions of a block on its corner, and the own force of a node that touches alone.
+
+use super::own_forces::OwnForces;
+use super::*;
+use crate::contact_density::{Densities, nodal_forces};
+use crate::reconstruction::corrected::auxiliary_solution::Approach;
+use percute_core::contact::Obstacle;
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::problem::{Initial, TriangleProblem};
+
+const YOUNG: f64 = 70e9;
+
+/// A block of 2 × 1 m in 8×4 cells, on a plane that is turned by 10° under it.
+fn tilted() -> TriangleProblem {
+    let (sin, cos) = 10_f64.to_radians().sin_cos();
+    Problem::builder(TriangleMesh::rectangle(2.0, 1.0, 8, 4).unwrap())
+        .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
+        .initial_velocity(Initial::Uniform([0.0, -1.0]))
+        .obstacle(Obstacle::plane([0.0, -1e-3], [sin, cos], 0.2, None).unwrap())
+        .build()
+        .unwrap()
+}
+
+fn gaps(problem: &TriangleProblem) -> Vec<f64> {
+    problem.surface().gaps(&vec![[0.0; 2]; problem.mesh().node_count()])
+}
+
+/// The node nearest to the plane, and a normal force on it with some friction.
+fn corner(problem: &TriangleProblem) -> (usize, [f64; 2]) {
+    let gap = gaps(problem);
+    let at = (0..gap.len()).min_by(|&a, &b| gap[a].total_cmp(&gap[b])).unwrap();
+    let frame = problem.obstacles()[0].flat_frame();
+    let normal = *frame.normal();
+    (at, [1e6 * normal[0] + 1e5 * normal[1], 1e6 * normal[1] - 1e5 * normal[0]])
+}
+
+/// Hats and the wide part have the resultant of the force, and its moment about the node where the centroid is.
+#[test]
+fn tractions_have_the_force_and_its_centroid() {
+    let problem = tilted();
+    let concentration = Concentration::new(&problem);
+    let (at, force) = corner(&problem);
+    for scale in [1e-3, 1.0, 1e3] {
+        let force = force.map(|f| scale * f);
+        let shape = concentration.shape(&problem, at, &force, &gaps(&problem)).unwrap();
+        let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
+        let values = |f: usize, k: usize| if k == at { concentration.wide(k, f, &shape, &force) } else { [0.0; 2] };
+        let densities = Densities::with_hats(&problem, |f, facet| facet.nodes.map(|k| values(f, k)), hats);
+        let (mut sum, mut moment) = ([0.0; 2], 0.0);
+        let origin = problem.surface().point(at);
+        for (k, f) in nodal_forces(&problem, &densities).iter().enumerate() {
+            let arm: [f64; 2] = std::array::from_fn(|c| problem.surface().point(k)[c] - origin[c]);
+            (0..2).for_each(|c| sum[c] += f[c]);
+            moment += arm[0] * f[1] - arm[1] * f[0];
+        }
+        let centroid = concentration.centroid(&problem, at, &shape);
+        let expected = centroid[0] * force[1] - centroid[1] * force[0];
+        // Rounding of some ten terms of the size of the force, on edges of 0.25 m.
+        assert!((0..2).all(|c| (sum[c] - force[c]).abs() < 1e-13 * force[1]), "{sum:?}");
+        assert!((moment - expected).abs() < 1e-13 * force[1], "{moment} {expected}");
+    }
+}
+
+/// Nodes of equal stars share forms; a flat zone needs none.
+#[test]
+fn congruent_stars_share_their_stress() {
+    let problem = tilted();
+    let concentration = Concentration::new(&problem);
+    let alike: std::collections::BTreeSet<_> = concentration.nodes.iter().map(|star| star.alike).collect();
+    assert!(alike.len() <= 5 && concentration.nodes.len() == 13, "{} of {}", alike.len(), concentration.nodes.len());
+    let flat = vec![0.0; concentration.nodes.len()];
+    assert!((0..flat.len()).all(|at| concentration.shape(&problem, at, &[0.0, 1e6], &flat).is_none()));
+    assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
+}
+
+/// Under its own force a node comes to its plane, with the compliance of its traction. The force is none where it stays off
+/// the plane, and never above the largest that is allowed; it goes on after the release of the simulation, but does not grow.
+#[test]
+fn own_forces_close_the_gap() {
+    let problem = tilted();
+    let concentration = Concentration::new(&problem);
+    let (at, force) = corner(&problem);
+    let gap = gaps(&problem);
+    let frame = problem.obstacles()[0].flat_frame();
+    let most = frame.split(&force).0;
+    let apply = |own: &mut OwnForces<2>, given: [f64; 2], approach: Approach| {
+        let mut contact = vec![[0.0; 2]; gap.len()];
+        contact[at] = given;
+        own.apply(&problem, &concentration, &gap, |_| approach, &mut contact);
+        contact[at]
+    };
+    let approach = |gap: f64| Approach { gap, mobility: 1e-12 };
+    let mut own = OwnForces::new(&problem);
+    assert_eq!(apply(&mut own.clone(), force, approach(1e-9)), [0.0; 2]);
+    assert_eq!(frame.split(&apply(&mut own.clone(), force, approach(-1.0))).0, most);
+    // Deeper than the narrowest traction reaches, and less deep than the largest force.
+    let found = apply(&mut own, force, approach(-6e-5));
+    let normal = frame.split(&found).0;
+    let direction = force.map(|f| f / most);
+    let gaps = concentration.gaps(at, &gap).unwrap();
+    let costs = concentration.costs(&problem, at, &direction, &gaps);
+    let remaining = |normal: f64| -6e-5 + 1e-12 * normal + costs.approach(&costs.shape(normal / 0.5), normal / 0.5);
+    assert!(normal > 0.0 && normal < most);
+    // 40 bisections of the largest force.
+    assert!(remaining(normal - 2e-12 * most) < 0.0 && remaining(normal + 2e-12 * most) > 0.0);
+    let after = frame.split(&apply(&mut own, [0.0; 2], approach(-1.0))).0;
+    assert!((after / normal - 1.0).abs() < 1e-12, "{after} {normal}");
+}
