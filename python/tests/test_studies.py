@@ -7,6 +7,8 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import bar, block
+from percute.verification import speeds
+from percute.verification.bodies import BODIES, corners, graded
 from percute.verification.impacts import MESHES, RECONSTRUCTION_OPTIONS, Case, cases
 from percute.verification.turning import ACCELERATIONS, bodies
 
@@ -21,10 +23,39 @@ def test_bodies_have_their_areas() -> None:
     corner = 0.015**2 * (1.0 - 2.0 * math.sin(math.radians(22.5)))
     disc = 12.0 * 0.025**2 * math.sin(math.radians(15.0))
     exact = {"block": 0.002, "unstructured block": 0.002, "rounded block": 0.002 - 2.0 * corner, "disc": disc}
+    # A trapezoid: (40 mm + height over slope) times height. An arch of six chords from the block under the crown.
+    exact |= {"trapezoid 63°": (0.04 + 0.02) * 0.04, "layered block": 0.002, "L": 0.0016, "frame": 0.003 - 0.04 * 0.03}
+    exact |= dict.fromkeys(("trapezoid 45°", "trapezoid 45° with a corner of one element"), (0.04 + 0.03) * 0.03)
+    heights = np.array([0.025, 0.05 / 3, 0.025 / 3, 0.0]) ** 2
+    exact["crowned block"] = 0.002 - float(np.sum(heights[:-1] + heights[1:])) * 0.025 / 3
+    assert set(exact) == set(BODIES)
     for body, wanted in exact.items():
         for refinements in (0, 2):
             # The files hold 16 digits; rounding of a sum of a few thousand terms.
             assert area(Case(body).mesh(refinements)) == pytest.approx(wanted, rel=1e-12)
+
+
+def test_corners_of_an_outline() -> None:
+    frame = BODIES["frame"]().refined(2)
+    outer, inner = [(x, y) for x in (0.0, 0.06) for y in (0.0, 0.05)], [(x, y) for x in (0.01, 0.05) for y in (0.01, 0.04)]
+    assert sorted(map(tuple, frame.points[corners(frame)].round(12).tolist())) == sorted(outer + inner)
+
+
+def test_graded_meshes_are_fine_near_a_place_only() -> None:
+    mesh = BODIES["block"]()
+    fine = graded(mesh, np.zeros((1, 2)), 62e-6)
+    nodes = fine.points[fine.cells]
+    longest = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2).max(axis=1) / math.sqrt(2.0)
+    distance = np.linalg.norm(nodes, axis=2).min(axis=1)
+    assert np.all(longest <= 1.001 * np.maximum(62e-6, 0.25 * distance)) and longest.min() > 62e-6 / 2.01
+    assert len(fine.cells) < 2000 and area(fine) == pytest.approx(area(mesh), rel=1e-12)
+
+
+def test_cases_at_speeds_have_names_of_their_own() -> None:
+    wanted = speeds.cases()
+    assert len({case.name for case in wanted}) == len(wanted)
+    slow = wanted[0].scaled(0.01)
+    assert slow.velocity == (0.0, -4.0) and slow.gap == pytest.approx(1e-6) and slow.name == wanted[0].name
 
 
 def test_names_are_unique_and_the_small_cases_among_all() -> None:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from importlib import resources
 from typing import Any
 
 import numpy as np
 import percute as pc
+from numpy.typing import NDArray
 from percute.verification import figures
 from percute.verification.block import ALUMINIUM
+from percute.verification.bodies import BODIES, corners, elastic, graded
 from percute.verification.choices import RECONSTRUCTIONS
 from percute.verification.parallel import Stop
 
@@ -25,6 +26,8 @@ FEW = 2
 """Meshes of a small study, and of studies of other things than the mesh, which show the last of them."""
 GOOD = (0.9, 1.5)
 """The range of a good estimate."""
+CONTACT_SIZES = ((40.0, 62e-6), (10.0, 31e-6), (0.0, 16e-6))
+"""From these speeds across the plane on (m/s), the size of the elements of a reference at corners that come into contact (m)."""
 OBLIQUE, NORMAL = (400.0, -400.0), (0.0, -400.0)
 """Velocity along and across the plane (m/s)."""
 FLAT, TILTED, CURVED, CORNER = KINDS = ("flat", "tilted by 3°", "curved", "corner first")
@@ -61,11 +64,12 @@ class Found:
 
 @dataclass(frozen=True)
 class Case:
-    """One impact of an aluminium body, as in the paper's §7.2."""
+    """One impact, of aluminium as in the paper's §7.2 unless it names another material."""
 
     body: str = "block"
-    """``"block"`` of 50 × 40 mm in 5×4 cells, ``"unstructured block"``, ``"rounded block"`` with two corners of 15 mm, or
-    ``"disc"`` of 25 mm with 24 edges. Refined meshes are of the same polygon."""
+    """One of `bodies.BODIES`. Refined meshes are of the same polygon."""
+    material: str = "aluminium"
+    """One of `bodies.MATERIALS`, or `bodies.LAYERS` for a body of two layers."""
     plane: Any = "stress"
     friction: float = 0.2
     tilt: float = 0.0
@@ -79,6 +83,10 @@ class Case:
     meshes: int = MESHES
     references: tuple[int, ...] = (5, 6)
     """Refinements of the references, coarsest first; the last one counts."""
+    sizes: tuple[float, ...] = ()
+    """Size of the elements of each reference at the corners that come into contact (m); without it references are uniform."""
+    gravity: float = 0.0
+    """Acceleration towards the plane (m/s²), of bodies of aluminium only."""
 
     @property
     def kind(self) -> str:
@@ -92,8 +100,9 @@ class Case:
     def name(self) -> str:
         """Its name in tables."""
         tilt = f" tilted by {self.tilt:g}°".replace("-", "−") if self.tilt else ""
-        way = "normal" if self.velocity == NORMAL else "oblique"
-        return f"{self.body}{tilt}, plane {self.plane}, μ = {self.friction:g}, {way}"
+        way = "normal" if self.velocity[0] == 0.0 else "oblique"
+        material = "" if self.material == "aluminium" else f", {self.material}"
+        return f"{self.body}{tilt}{material}, plane {self.plane}, μ = {self.friction:g}, {way}"
 
     @property
     def cost(self) -> float:
@@ -108,25 +117,29 @@ class Case:
         """Give the case on few meshes, against the first of its references."""
         return self.at(meshes=FEW, references=self.references[:1])
 
+    def scaled(self, scale: float) -> Case:
+        """Give the case with another speed, and the gap in proportion: the body touches at the same instant."""
+        return self.at(velocity=(scale * self.velocity[0], scale * self.velocity[1]), gap=scale * self.gap)
+
     def mesh(self, refinements: int) -> pc.Mesh:
         """Give the mesh after a number of refinements."""
         if self.body == "block":
             # The same triangles as by refinement, but in rows, which is faster.
             return pc.Mesh.rectangle(0.05, 0.04, nx=5 << refinements, ny=4 << refinements)
-        if self.body == "disc":
-            return pc.Mesh.disc(0.025, rings=4).refined(refinements)
-        with resources.as_file(resources.files("percute.verification") / f"{self.body.split()[0]}.msh") as file:
-            return pc.Mesh.read(file).refined(refinements)
+        return BODIES[self.body]().refined(refinements)
 
-    def problem(self, refinements: int) -> pc.Problem:
-        """Give the problem on one of the meshes."""
+    def problem(self, refinements: int, places: NDArray[np.float64] | None = None, size: float = 0.0) -> pc.Problem:
+        """Give the problem on one of the meshes, with elements of a size at some places."""
         angle = math.radians(self.tilt)
         normal, tangent = np.array([math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), -math.sin(angle)])
         mesh = self.mesh(refinements)
+        if places is not None:
+            mesh = graded(mesh, places, size)
         lowest = float(np.min(mesh.points[:, 0] * normal[0] + mesh.points[:, 1] * normal[1])) - self.gap
         return pc.Problem(
             mesh,
-            material=pc.Elastic(**ALUMINIUM, plane=self.plane),
+            material=elastic(self.material, self.plane),
+            body_forces=[pc.BodyForce(value=-self.gravity * ALUMINIUM["density"] * normal)] if self.gravity else [],
             initial_velocity=self.velocity[0] * tangent + self.velocity[1] * normal,
             obstacles=[pc.Plane(point=normal * lowest, normal=normal, friction=self.friction)],
         )
@@ -140,7 +153,7 @@ class Case:
         histories, ends = [], []
         for refinements in range(self.meshes):
             problem = self.problem(refinements)
-            times = _steps_past(self.end, self.ratio, problem)
+            times = steps_past(self.end, self.ratio, problem)
             ends.append(times["end"])
             try:
                 history = pc.simulate(problem, **times, progress=stop)
@@ -157,9 +170,10 @@ class Case:
             found.append(Found(len(problem.mesh.cells), steps, estimates, touching, int(count.max()), int(count[-1])))
             histories.append(history)
         there = [each for each in found if each is not None]
-        for refinements in self.references:
-            fine = self.problem(refinements)
-            errors = pc.true_errors(histories, fine, **_steps_past(max(ends), STEP, fine), progress=stop)
+        places = np.unique(np.concatenate([_touched(history) for history in histories]), axis=0)
+        for k, refinements in enumerate(self.references):
+            fine = self.problem(refinements, places, self.sizes[k]) if self.sizes else self.problem(refinements)
+            errors = pc.true_errors(histories, fine, **steps_past(max(ends), STEP, fine), progress=stop)
             for each, true in zip(there, errors, strict=True):
                 each.exact.append(true)
         return found + [None] * (MESHES - self.meshes)
@@ -169,13 +183,24 @@ class Case:
         return [found for found in self.run(choices, stop) if found is not None][-1]
 
 
+def contact_size(speed: float) -> float:
+    """Give the size of the elements of a reference at corners that come into contact (m)."""
+    return next(size for least, size in CONTACT_SIZES if speed >= least)
+
+
 def curve(name: str, found: Sequence[Found | None], choice: int, measure: int, colour: int) -> figures.Curve:
     """Give the effectivity index of a choice over refinement: of the largest error (0) or of the mean (1)."""
     values = [math.nan if each is None else each.effectivity(choice)[measure] for each in found]
     return figures.Curve(name, [2.0**mesh for mesh in range(len(found))], values, figures.own(colour), marked=True)
 
 
-def _steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, Any]:
+def _touched(history: pc.History) -> NDArray[np.float64]:
+    """Give the corners that come into contact (m)."""
+    nodes = history.contact_nodes[history.touching.any(axis=0)]
+    return history.problem.mesh.points[np.intersect1d(nodes, corners(history.problem.mesh))]
+
+
+def steps_past(reach: float, ratio: float, problem: pc.Problem) -> dict[str, Any]:
     """Give steps of exactly a part of Δt_c that reach an instant."""
     step = ratio * problem.critical_time_step
     return {"end": math.ceil(reach / step) * step, "step": step}

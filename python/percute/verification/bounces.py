@@ -1,0 +1,111 @@
+"""The effectivity index over many contact phases: bodies that bounce under gravity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import percute as pc
+from numpy.typing import NDArray
+from percute.verification.impacts import Case, steps_past
+from percute.verification.page import Column, Section, Table
+from percute.verification.parallel import Resolution, Stop
+
+PHASES = 10
+GRAVITY = 2.5e4
+"""Acceleration over speed (1/s): bodies fly for twice the inverse of it, less what the impact has turned into vibration."""
+APART = 15e-6
+"""Contacts that begin so soon after one another are one phase (s)."""
+END = 1.2e-3
+"""End of a run before it is known when the last phase ends (s)."""
+MESHES = (1, 2)
+"""Refinements of the meshes that are estimated."""
+REFERENCES = (3, 4)
+"""Refinements of the references, which are uniform: the fast curves and the flat edges do not need more."""
+
+
+@dataclass(frozen=True)
+class Bounces:
+    """The indices on one mesh, up to the end of each phase."""
+
+    phases: int
+    sup: list[float]
+    mean: list[float]
+    relative: float
+    """ε_sup, eq. [22]."""
+    kinetic: float
+    """The part of inertia in the largest η."""
+    moved: float
+    """By how much the finer reference moves the largest true error, relative."""
+
+
+def cases() -> list[Case]:
+    """Give the cases."""
+    fast, slow = (0.0, -400.0), (0.0, -40.0)
+    chosen = (("block", slow, 0.03e-3), ("disc", fast, 0.3e-3), ("crowned block", fast, 0.3e-3), ("trapezoid 63°", slow, 0.03e-3))
+    return [Case(body=body, velocity=velocity, gap=gap, gravity=-GRAVITY * velocity[1]) for body, velocity, gap in chosen]
+
+
+def _starts(history: pc.History) -> NDArray[np.float64]:
+    """Give the instants at which a contact phase begins (s)."""
+    touches = history.touching.any(axis=1).astype(int)
+    begins = history.time[1:][np.diff(touches) > 0]
+    return begins[np.diff(begins, prepend=-math.inf) > APART]
+
+
+def _run(case: Case, stop: Stop) -> list[Bounces]:
+    """Run a case to the beginning of phase 11 on the first mesh."""
+    problem = case.problem(MESHES[0])
+    starts = _starts(pc.simulate(problem, **steps_past(END, case.ratio, problem), progress=stop))
+    end = float(starts[PHASES]) if len(starts) > PHASES else END
+    histories = []
+    for refinements in MESHES:
+        problem = case.problem(refinements)
+        histories.append(pc.simulate(problem, **steps_past(end, case.ratio, problem), progress=stop))
+    last = max(float(history.time[-1]) for history in histories)
+    errors = []
+    for refinements in REFERENCES:
+        fine = case.problem(refinements)
+        errors.append(pc.true_errors(histories, fine, **steps_past(last, case.ratio, fine), progress=stop))
+    return [
+        _compare(history, pc.estimate(history, threads=1, progress=stop), coarse, fine)
+        for history, coarse, fine in zip(histories, *errors, strict=True)
+    ]
+
+
+def _compare(history: pc.History, estimate: pc.Estimate, coarse: pc.TrueError, fine: pc.TrueError) -> Bounces:
+    """Compare the estimate with the true error up to the end of each phase and of the flight after it."""
+    starts, over = _starts(history), estimate.over_time
+    sup, mean = [], []
+    for until in [*starts[1:], history.time[-1]]:
+        ours, theirs = over.time <= until, fine.time <= until
+        sup.append(math.sqrt(over.total[ours].max() / fine.total[theirs].max()))
+        means = [np.trapezoid(total, time) for total, time in ((over.total[ours], over.time[ours]), (fine.total[theirs], fine.time[theirs]))]
+        mean.append(math.sqrt(means[0] / means[1]))
+    parts = estimate.parts
+    moved = abs(fine.sup / coarse.sup - 1.0)
+    return Bounces(len(starts), sup, mean, estimate.relative_sup, parts.kinetic / parts.total, moved)
+
+
+def add(section: Section, resolution: Resolution) -> None:
+    """Compute the runs and add text and table."""
+    columns = [Column("case"), Column("mesh"), Column("phases"), Column("ε sup", "%", "[22]", digits=3), Column("part of inertia", "%", digits=3)]
+    columns += [Column(f"{measure} after {k}", digits=3) for measure in ("sup", "mean") for k in (1, 3, 5, 10)]
+    columns.append(Column("references differ by", "%", digits=2))
+    caption = "Effectivity index of `corrected` after so many contact phases and the flight that follows, and at the end of the run."
+    table = Table("bounces", caption, columns)
+    wanted = cases()
+    for case, meshes in zip(wanted, resolution.map(_run, wanted), strict=True):
+        for refinements, found in zip(MESHES, meshes, strict=True):
+            at = [min(k, found.phases) - 1 for k in (1, 3, 5, PHASES)]
+            values = [values[k] for values in (found.sup, found.mean) for k in at]
+            name = f"{case.name}, {-case.velocity[1]:g} m/s"
+            table.add(name, refinements + 1, found.phases, 100.0 * found.relative, 100.0 * found.kinetic, *values, 100.0 * found.moved)
+    section.add(
+        "### Many contact phases",
+        "Bodies bounce under an acceleration that makes ten contact phases last a millisecond. Each phase adds to the error: waves have "
+        "dispersed, and the next phase begins at another instant than in the reference. The true error grows to the size of the solution "
+        "itself (ε), and the effectivity index then has no meaning beyond that.",
+        table,
+    )
