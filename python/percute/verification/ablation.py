@@ -25,6 +25,11 @@ ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
         "an auxiliary solution without its two corrections: nothing drifts, but the waves of simulation and balance are late together, and "
         "the estimate loses them on fine meshes with small steps",
     ),
+    "no concentration": (
+        {"_ablation": "concentration"},
+        "tractions over whole edges, however far these leave the plane: at a corner the index is 1.5 times larger at 400 m/s, 8 times at "
+        "4 m/s",
+    ),
     "tractions of the stars": (
         {"_ablation": "least energy"},
         "no descent to tractions of least energy: where contact begins, and around corners, the elastic part is several times too large",

@@ -101,13 +101,12 @@ def _kinds(results: Sequence[Result]) -> Table:
 
 
 def _outside(results: Sequence[Result]) -> str:
-    """Say why a corner that touches alone is overestimated, and which case grows."""
+    """Say which part contact has where a corner touches alone, and which case grows."""
     least = min(found[-1].contact(0) for case, found in results if case.kind == CORNER and found[-1] is not None)
     return (
-        "Where a corner touches alone, the estimate of `corrected` stays about twice too large. Its force is a density, linear along the "
-        f"two edges beside the corner. These edges are off the plane. On mesh 4 at least {percent(least)} of the largest η is the energy "
-        "gap·F_n of this force and the work of the arriving mass. A point force would have no gap, but no stress of finite energy "
-        "balances it. "
+        "Where a corner touches alone, `corrected` concentrates its force on a part of the edges beside the corner. These edges are off the "
+        "plane, and a point force would have no stress of finite energy. The energy gap·F_n of the force and the work of the arriving mass "
+        f"are at least {percent(least)} of the largest η on mesh 4. "
         f"With the curved bodies each edge that comes into contact is such a corner for some steps. {_growth(results)}"
     )
 
@@ -123,9 +122,8 @@ def _growth(results: Iterable[Result]) -> str:
     falls = ", ".join(short(a.exact[-1].sup / b.exact[-1].sup, 3) for a, b in zip(meshes, meshes[1:], strict=False))
     return (
         f"The largest growth from mesh 2 to mesh 4 is that of the largest error for {case.name}: by {percent(growth - 1.0)}, of which the "
-        f"error of the references may explain {percent(_moves(meshes)[-1])} (below). Its part of contact falls faster than the rest, from "
-        f"{percent(meshes[1].contact(0))} of η to {percent(meshes[3].contact(0))}. The parts of inertia and stress hold the accumulated "
-        f"dispersion and fall more slowly. The true error falls by {falls} from mesh to mesh."
+        f"error of the references may explain {percent(_moves(meshes)[-1])} (below). Its part of contact goes from "
+        f"{percent(meshes[1].contact(0))} of η to {percent(meshes[3].contact(0))}. The true error falls by {falls} from mesh to mesh."
     )
 
 
