@@ -26,7 +26,7 @@ impl HatStress<'_> {
     /// ½∫τ:K⁻¹τ (J per unit of thickness).
     pub(crate) fn energy(&self) -> f64 {
         let row = |&(i, p): &(usize, f64)| {
-            self.resultants.iter().map(|&(j, q)| p * self.forms.energy[(i, j)] * q).sum::<f64>()
+            self.resultants.iter().map(|&(j, q)| p * self.forms.energy.at(i, j) * q).sum::<f64>()
         };
         0.5 * self.resultants.iter().map(row).sum::<f64>()
     }

@@ -1,7 +1,7 @@
 //! The shape of the traction of one node: its share and its width on each candidate edge.
 
+use super::star_stress::Symmetric;
 use super::{HATS, place};
-use nalgebra::DMatrix;
 use std::ops::Deref;
 
 /// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
@@ -73,7 +73,7 @@ impl<'a> ShapeCosts<'a> {
         compliance: f64,
         gaps: &'a [f64],
         tributary: &'a [f64],
-        energy: &DMatrix<f64>,
+        energy: &Symmetric,
     ) -> Self {
         let mut products = [[[[0.0; HATS + 1]; HATS + 1]; 2]; 2];
         let pairs = (0..gaps.len()).flat_map(|e| (0..gaps.len()).map(move |f| (e, f)));
@@ -81,7 +81,7 @@ impl<'a> ShapeCosts<'a> {
             for (a, row) in products[e][f].iter_mut().enumerate().skip(1) {
                 for (b, product) in row.iter_mut().enumerate().skip(1) {
                     let of =
-                        |c: usize, d: usize| direction[c] * direction[d] * energy[(place(e, a, c), place(f, b, d))];
+                        |c: usize, d: usize| direction[c] * direction[d] * energy.at(place(e, a, c), place(f, b, d));
                     *product = of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1);
                 }
             }
@@ -149,7 +149,7 @@ mod tests {
     const YOUNG: f64 = 70e9;
 
     /// A square corner of three elements, turned so that it stands on the plane by this angle.
-    fn corner(tilt: f64) -> (DMatrix<f64>, [f64; 2]) {
+    fn corner(tilt: f64) -> (Symmetric, [f64; 2]) {
         let law = Elastic::plane_stress(YOUNG, 0.3, 2700.0, 1.0).unwrap();
         let at = |k: usize| {
             let angle = tilt + 0.25 * std::f64::consts::PI * k as f64;
@@ -160,7 +160,7 @@ mod tests {
         (made.energy, [at(0)[1], at(2)[1]])
     }
 
-    fn costs<'a>(energy: &DMatrix<f64>, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
+    fn costs<'a>(energy: &Symmetric, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
         ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], energy)
     }
 

@@ -13,11 +13,27 @@ use crate::stress::{LOADS, Loading, PiecewiseStress, StressResiduals, TriangleSt
 use nalgebra::DMatrix;
 use percute_core::material::LinearLaw;
 
+/// A symmetric matrix: its lower triangle, row by row.
+#[derive(Clone, Debug)]
+pub(crate) struct Symmetric(Vec<f64>);
+
+impl Symmetric {
+    pub(super) fn new(matrix: &DMatrix<f64>) -> Self {
+        Self((0..matrix.nrows()).flat_map(|i| (0..=i).map(move |j| matrix[(i, j)])).collect())
+    }
+
+    #[inline]
+    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
+        let (i, j) = (i.max(j), i.min(j));
+        self.0[i * (i + 1) / 2 + j]
+    }
+}
+
 /// The stresses of unit resultants in one element of a star, in the order of [`place`].
 #[derive(Clone, Debug)]
 pub(crate) struct ElementForms {
     /// ∫τ:K⁻¹τ (m/N per unit of thickness).
-    pub(crate) energy: DMatrix<f64>,
+    pub(crate) energy: Symmetric,
     /// ∫σ:K⁻¹τ, one row for each load of the element, with σ the stress that balances it: tractions, then Γ_DA − f_d.
     pub(crate) product: DMatrix<f64>,
     /// ∫τ (m per unit of thickness), rows 11, 22, 12.
@@ -30,7 +46,7 @@ pub(crate) struct StarStress {
     /// In each element.
     pub(crate) elements: Vec<ElementForms>,
     /// ∫τ:K⁻¹τ over the star.
-    pub(crate) energy: DMatrix<f64>,
+    pub(crate) energy: Symmetric,
     /// How far they are from equilibrium, relative to the largest term.
     pub(crate) residuals: StarResiduals,
 }
@@ -70,22 +86,26 @@ impl StarStress {
         let solved = Solved::new(elements, edges);
         let columns = solved.loads[0].ncols();
         let zeros = |rows: usize| DMatrix::zeros(rows, columns);
-        let none = ElementForms { energy: zeros(columns), product: zeros(LOADS), integral: zeros(3) };
-        let mut made = vec![none; elements.len()];
+        let mut made = vec![(zeros(columns), zeros(LOADS), zeros(3)); elements.len()];
         let units: Vec<_> = elements.iter().map(unit_stresses).collect();
         for ((triangle, map), loads) in solved.star.triangles.iter().zip(&solved.maps).zip(&solved.loads) {
-            let (element, forms) = (&elements[triangle.element], &mut made[triangle.element]);
-            forms.energy += loads.transpose() * form(map) * loads;
+            let (element, (energy, product, integral)) = (&elements[triangle.element], &mut made[triangle.element]);
+            *energy += loads.transpose() * form(map) * loads;
             let part = (element.at + triangle.opposite) % 3;
             for (column, load) in loads.column_iter().enumerate() {
                 let stress = map.piecewise(&tractions(load.as_slice()));
-                let (product, integral) = products(&units[triangle.element], part, &stress, element.law);
-                forms.product.column_mut(column).iter_mut().zip(product).for_each(|(sum, value)| *sum += value);
-                forms.integral.column_mut(column).iter_mut().zip(integral).for_each(|(sum, value)| *sum += value);
+                let (with_units, sum) = products(&units[triangle.element], part, &stress, element.law);
+                product.column_mut(column).iter_mut().zip(with_units).for_each(|(to, value)| *to += value);
+                integral.column_mut(column).iter_mut().zip(sum).for_each(|(to, value)| *to += value);
             }
         }
-        let energy = made.iter().fold(zeros(columns), |sum, forms| sum + &forms.energy);
-        Self { elements: made, energy, residuals: solved.residuals() }
+        let energy = made.iter().fold(zeros(columns), |sum, (energy, ..)| sum + energy);
+        let forms = |(energy, product, integral)| ElementForms { energy: Symmetric::new(&energy), product, integral };
+        Self {
+            elements: made.into_iter().map(forms).collect(),
+            energy: Symmetric::new(&energy),
+            residuals: solved.residuals(),
+        }
     }
 }
 

@@ -56,12 +56,11 @@ fn octave(angle: f64, count: usize, psi: f64) -> f64 {
     let made = StarStress::new(&elements(&fan(angle, count, 1.0), &law), &[0, 1]);
     let (sin, cos) = (0.5 * angle + psi).sin_cos();
     let energy = |halvings: usize| {
-        let mut p = nalgebra::DVector::zeros(4 * HATS);
-        for edge in 0..2 {
-            p[place(edge, halvings, 0)] = 0.5 * cos;
-            p[place(edge, halvings, 1)] = 0.5 * sin;
-        }
-        0.5 * 70e9 * (p.transpose() * &made.energy * &p)[(0, 0)]
+        let hats = [0, 1].map(|edge| [(place(edge, halvings, 0), 0.5 * cos), (place(edge, halvings, 1), 0.5 * sin)]);
+        let row = |&(i, p): &(usize, f64)| {
+            hats.as_flattened().iter().map(|&(j, q)| p * made.energy.at(i, j) * q).sum::<f64>()
+        };
+        0.5 * 70e9 * hats.as_flattened().iter().map(row).sum::<f64>()
     };
     energy(8) - energy(7)
 }
