@@ -22,6 +22,8 @@ pub(crate) struct SurfaceStep<const D: usize> {
     pub(crate) reaction: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) force: Vec<[f64; D]>,
+    /// The reactions of which the normal work is measured (N).
+    pub(crate) arresting: Vec<[f64; D]>,
     pub(crate) touching: Vec<bool>,
     /// Gaps of the simulation (m).
     pub(crate) gap: Vec<f64>,

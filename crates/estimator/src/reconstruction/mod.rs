@@ -64,6 +64,8 @@ pub(crate) struct BalancedFields<const D: usize> {
     pub(crate) force: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
+    /// The reactions of which the normal work is measured (N).
+    pub(crate) arresting: Vec<[f64; D]>,
     /// M⁻¹(M − M_c)ã (m/s²), for `mixed` alone.
     pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
 }
@@ -92,7 +94,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         let (state, step) = (simulated.state, simulated.state.step());
         let force = state.force_without_contact(dynamics.problem().surface());
         let (displacement, contact) = (step.displacement.to_vec(), step.reaction.to_vec());
-        BalancedFields { displacement, force, contact, lumping_difference: None }
+        let arresting = contact.clone();
+        BalancedFields { displacement, force, contact, arresting, lumping_difference: None }
     }
 
     /// F_DA over a step.

@@ -150,22 +150,24 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             let lumping_difference = self.mixed.then(|| {
                 lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
             });
-            return BalancedFields { displacement, force, contact, lumping_difference };
+            let arresting = step.reaction.to_vec();
+            return BalancedFields { displacement, force, contact, arresting, lumping_difference };
         };
         auxiliary.watch(simulated, problem.mass());
         let displacement = auxiliary.displacement().to_vec();
         let mut force = vec![[0.0; D]; displacement.len()];
         dynamics.forces_without_contact(step.index, &displacement, &mut force);
+        let mut arresting = step.reaction.to_vec();
         if let Some(concentration) = &self.concentration {
             let approach = |at: usize| auxiliary.approach(problem, inverse_mass, self.times, (step.index, at), &force);
-            self.own_forces.apply(problem, concentration, &gap, approach, &mut contact);
+            self.own_forces.apply(problem, concentration, &gap, approach, [&mut contact, &mut arresting]);
         }
         let pull = driving_forces(problem, &self.at(&contact, &gap));
         let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
         auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration, lumping_difference.as_deref());
         self.auxiliary = Some(auxiliary);
-        BalancedFields { displacement, force, contact, lumping_difference }
+        BalancedFields { displacement, force, contact, arresting, lumping_difference }
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
@@ -176,7 +178,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn off_contact(&self, steps: &SurfaceSteps<'_, D>, densities: &StepDensities<D>) -> Option<OffContact<D>> {
-        let sudden = [steps.now, steps.next].map(|step| self.at(&step.reaction, &step.gap));
+        let sudden = [steps.now, steps.next].map(|step| self.at(&step.arresting, &step.gap));
         Some(OffContact::new(self.problem, [&densities.start, &densities.end], &sudden))
     }
 

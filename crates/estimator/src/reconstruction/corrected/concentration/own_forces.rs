@@ -32,7 +32,9 @@ impl<const D: usize> OwnForces<D> {
         Self { nodes: vec![OwnForce { normal: 0.0, direction: [0.0; D] }; problem.surface().nodes().len()] }
     }
 
-    /// Replaces the smoothed forces of the simulation (N) at nodes that touch alone. `gap` are the gaps of the simulation (m).
+    /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone. The second
+    /// has the reactions of which the normal work is measured: none at these nodes, because the auxiliary solution does not stop
+    /// with them, and the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
     ///
     /// An own force acts on after the simulation has released the node, but it never grows without it.
     pub(in crate::reconstruction::corrected) fn apply<const N: usize>(
@@ -41,7 +43,7 @@ impl<const D: usize> OwnForces<D> {
         concentration: &Concentration<D>,
         gap: &[f64],
         approach: impl Fn(usize) -> Approach,
-        contact: &mut [[f64; D]],
+        [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         for (at, (own, force)) in self.nodes.iter_mut().zip(contact).enumerate() {
             let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
@@ -56,6 +58,7 @@ impl<const D: usize> OwnForces<D> {
             {
                 own.normal = found;
                 *force = own.direction.map(|d| found * d);
+                arresting[at] = [0.0; D];
             }
         }
     }

@@ -87,7 +87,10 @@ fn own_forces_close_the_gap() {
     let apply = |own: &mut OwnForces<2>, given: [f64; 2], approach: Approach| {
         let mut contact = vec![[0.0; 2]; gap.len()];
         contact[at] = given;
-        own.apply(&problem, &concentration, &gap, |_| approach, &mut contact);
+        let mut arresting = contact.clone();
+        own.apply(&problem, &concentration, &gap, |_| approach, [&mut contact, &mut arresting]);
+        // The work of the reaction of a node with a force of its own is not measured.
+        assert_eq!(arresting[at], [0.0; 2]);
         contact[at]
     };
     let approach = |gap: f64| Approach { gap, mobility: 1e-12 };
