@@ -18,7 +18,7 @@ GRAVITY = 2.5e4
 APART = 15e-6
 """Contacts that begin so soon after one another are one phase (s)."""
 END = 1.2e-3
-"""End of a run before it is known when the last phase ends (s)."""
+"""End of the run that shows when phases begin (s)."""
 MESHES = (1, 2)
 """Refinements of the meshes that are estimated."""
 REFERENCES = (3, 4)
@@ -55,10 +55,10 @@ def _starts(history: pc.History) -> NDArray[np.float64]:
 
 
 def _run(case: Case, stop: Stop) -> list[Bounces]:
-    """Run a case to the beginning of phase 11 on the first mesh."""
+    """Run a case to the beginning of phase 11 on the first mesh, or of the last phase before the body comes to rest."""
     problem = case.problem(MESHES[0])
     starts = _starts(pc.simulate(problem, **steps_past(END, case.ratio, problem), progress=stop))
-    end = float(starts[PHASES]) if len(starts) > PHASES else END
+    end = float(starts[min(PHASES, len(starts) - 1)])
     histories = []
     for refinements in MESHES:
         problem = case.problem(refinements)
