@@ -27,8 +27,15 @@ pub(super) struct System {
 }
 
 impl System {
-    /// The system of a star; `scales` are moduli of its elements (Pa), `loads` the given loads of each sub-triangle.
-    pub(super) fn new(star: &CutStar, maps: &[TriangleStress], scales: &[f64], loads: &[DMatrix<f64>]) -> Self {
+    /// The system of a star. The energy of each element has its weight; `supported` are the components on the first and the
+    /// last edge whose tractions are unknown, `loads` the given loads of each sub-triangle.
+    pub(super) fn new(
+        star: &CutStar,
+        maps: &[TriangleStress],
+        weights: &[f64],
+        supported: [[bool; 2]; 2],
+        loads: &[DMatrix<f64>],
+    ) -> Self {
         let layers = star.triangles.iter().map(|t| t.layer + 1).max().unwrap_or(0);
         let mut unknowns = vec![0; layers];
         let mut slots = vec![[None; TRACTIONS]; star.triangles.len()];
@@ -36,10 +43,17 @@ impl System {
             let layer = sides.iter().map(|side| star.triangles[side.triangle].layer).min().unwrap_or(0);
             number(sides, layer, &mut unknowns[layer], &mut slots);
         }
+        for (sides, supported) in star.ends.iter().zip(&supported) {
+            for side in sides {
+                let layer = star.triangles[side.triangle].layer;
+                support(side, supported, layer, &mut unknowns[layer], &mut slots[side.triangle]);
+            }
+        }
+        // The star as a whole is in equilibrium: conditions of the first sub-triangle, a large one, follow from the others.
+        let first = conditions(star, &supported);
         let mut rows = unknowns.clone();
         star.triangles.iter().for_each(|triangle| rows[triangle.layer] += 3);
-        // The star as a whole is in equilibrium: the conditions of the first sub-triangle, a large one, follow from the others.
-        rows[0] -= 3;
+        rows[0] -= 3 - first.len();
         let columns = loads[0].ncols();
         let mut system = Self {
             slots,
@@ -49,17 +63,11 @@ impl System {
         };
         let mut next = unknowns;
         for (at, (triangle, map)) in star.triangles.iter().zip(maps).enumerate() {
-            system.add_energy(at, &(form(map) * scales[triangle.element]), &loads[at]);
-            if at > 0 {
-                system.add_conditions(
-                    at,
-                    triangle.layer,
-                    next[triangle.layer],
-                    &resultants(&triangle.corners),
-                    &loads[at],
-                );
-                next[triangle.layer] += 3;
-            }
+            system.add_energy(at, &(form(map) * weights[triangle.element]), &loads[at]);
+            let kept = if at == 0 { &first[..] } else { &[0, 1, 2] };
+            let resultants = resultants(&triangle.corners).select_rows(kept);
+            system.add_conditions(at, (triangle.layer, next[triangle.layer]), &resultants, &loads[at]);
+            next[triangle.layer] += kept.len();
         }
         system
     }
@@ -86,17 +94,17 @@ impl System {
         }
     }
 
+    /// Adds the conditions of a sub-triangle as rows of a layer, from one place on.
     fn add_conditions(
         &mut self,
         triangle: usize,
-        layer: usize,
-        first: usize,
+        (layer, first): (usize, usize),
         resultants: &DMatrix<f64>,
         loads: &DMatrix<f64>,
     ) {
         let slots = self.slots[triangle];
         let given = resultants * loads;
-        for k in 0..3 {
+        for k in 0..resultants.nrows() {
             let row = (layer, first + k);
             for (p, slot) in slots.iter().enumerate() {
                 let Some(slot) = slot else { continue };
@@ -162,6 +170,39 @@ fn number(sides: &[SideOf; 2], layer: usize, next: &mut usize, slots: &mut [[Opt
             *next += 1;
         }
     }
+}
+
+/// Numbers the tractions of the supported components on a piece of an edge of the outline.
+fn support(
+    side: &SideOf,
+    supported: &[bool; 2],
+    layer: usize,
+    next: &mut usize,
+    slots: &mut [Option<Slot>; TRACTIONS],
+) {
+    for c in (0..2).filter(|&c| supported[c]) {
+        for p in 0..2 {
+            slots[4 * side.corner + 2 * p + c] = Some(Slot { layer, at: *next, sign: 1.0 });
+            *next += 1;
+        }
+    }
+}
+
+/// The conditions of one sub-triangle that do not follow from those of all others: two forces (0, 1) and the moment (2).
+/// Those that follow are the rigid motions of the star on which no support does work.
+fn conditions(star: &CutStar, supported: &[[bool; 2]; 2]) -> Vec<usize> {
+    let mut needed = [false; 3];
+    for (sides, supported) in star.ends.iter().zip(supported) {
+        let corners = &star.triangles[sides[0].triangle].corners;
+        let [a, b] = [1, 2].map(|k| corners[(sides[0].corner + k) % 3]);
+        let way = [(b[0] - a[0]).abs(), (b[1] - a[1]).abs()];
+        for c in (0..2).filter(|&c| supported[c]) {
+            needed[c] = true;
+            // A turn about the node moves an edge along x by its extent in y. Coordinates are known to rounding.
+            needed[2] |= way[1 - c] > 1e-12 * way[c];
+        }
+    }
+    (0..3).filter(|&k| needed[k]).collect()
 }
 
 /// The matrix of ∫τ:K⁻¹τ in the traction loads of a sub-triangle.

@@ -52,7 +52,7 @@ impl Shape {
     }
 }
 
-/// The cost of shapes for the forces of one direction on a node, per unit of thickness.
+/// The cost of shapes for the forces of one direction on a node.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeCosts<'a> {
     /// Gap at the far end less that at the node, each at least 0 (m), edge by edge.
@@ -66,7 +66,7 @@ pub(crate) struct ShapeCosts<'a> {
 }
 
 impl<'a> ShapeCosts<'a> {
-    /// `direction` is the force over its normal part, `compliance` 1 over the plane modulus (1/Pa), `energy` the form
+    /// `direction` is the force over its normal part, `compliance` 1 over plane modulus and thickness (m/N), `energy` the form
     /// ∫τ:K⁻¹τ over the star.
     pub(crate) fn new(
         direction: [f64; 2],
@@ -90,7 +90,7 @@ impl<'a> ShapeCosts<'a> {
         Self { gaps, tributary, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
-    /// The shape of least gap energy and stress energy under a normal force (N/m).
+    /// The shape of least gap energy and stress energy under a normal force (N).
     pub(crate) fn shape(&self, normal: f64) -> Shape {
         let least = |shapes: &mut dyn Iterator<Item = Shape>| {
             let ranked = shapes.map(|shape| (self.cost(&shape, normal), shape));
@@ -134,9 +134,11 @@ impl<'a> ShapeCosts<'a> {
         shape.iter().enumerate().map(product).sum()
     }
 
-    /// By how much the node is closer to its plane than the mean of its traction, with the local compliance (m).
+    /// By how much the node is closer to its plane than the mean of its traction, with the local compliance (m): from 0 on,
+    /// which is at the narrowest traction.
     pub(crate) fn approach(&self, shape: &Shape, normal: f64) -> f64 {
-        self.gap(shape) + normal * self.stress(shape)
+        let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
+        self.gap(shape) - least * far(HATS) + normal * self.stress(shape)
     }
 }
 
@@ -156,7 +158,7 @@ mod tests {
             [1e-3 * angle.cos(), 1e-3 * angle.sin()]
         };
         let elements = [0, 1].map(|k| StarElement { corners: [[0.0; 2], at(k), at(k + 1)], at: 0, law: &law });
-        let made = StarStress::new(&elements, &[0, 1]);
+        let made = StarStress::new(&elements, &[0, 1], [[false; 2]; 2]);
         (made.energy, [at(0)[1], at(2)[1]])
     }
 

@@ -29,7 +29,7 @@ impl Symmetric {
     }
 }
 
-/// The stresses of unit resultants in one element of a star, in the order of [`place`].
+/// The stresses of unit resultants over the thickness in one element of a star, in the order of [`place`].
 #[derive(Clone, Debug)]
 pub(crate) struct ElementForms {
     /// ∫τ:K⁻¹τ (m/N per unit of thickness).
@@ -45,7 +45,7 @@ pub(crate) struct ElementForms {
 pub(crate) struct StarStress {
     /// In each element.
     pub(crate) elements: Vec<ElementForms>,
-    /// ∫τ:K⁻¹τ over the star.
+    /// ∫τ:K⁻¹τ over the star, of unit resultants (m/N).
     pub(crate) energy: Symmetric,
     /// How far they are from equilibrium, relative to the largest term.
     pub(crate) residuals: StarResiduals,
@@ -81,9 +81,13 @@ pub(super) struct Solved {
 
 impl StarStress {
     /// The stresses in the star of a node, elements counterclockwise, for hats on the `edges` (0 the first of the star, 1 the
-    /// last) that are candidates.
-    pub(crate) fn new<L: LinearLaw>(elements: &[StarElement<'_, L>], edges: &[usize]) -> Self {
-        let solved = Solved::new(elements, edges);
+    /// last) that are candidates. The components `supported` on the first and the last edge have unknown tractions.
+    pub(crate) fn new<L: LinearLaw>(
+        elements: &[StarElement<'_, L>],
+        edges: &[usize],
+        supported: [[bool; 2]; 2],
+    ) -> Self {
+        let solved = Solved::new(elements, edges, supported);
         let columns = solved.loads[0].ncols();
         let zeros = |rows: usize| DMatrix::zeros(rows, columns);
         let mut made = vec![(zeros(columns), zeros(LOADS), zeros(3)); elements.len()];
@@ -99,7 +103,8 @@ impl StarStress {
                 integral.column_mut(column).iter_mut().zip(sum).for_each(|(to, value)| *to += value);
             }
         }
-        let energy = made.iter().fold(zeros(columns), |sum, (energy, ..)| sum + energy);
+        let energies = made.iter().zip(elements).map(|((energy, ..), element)| energy / element.law.extent());
+        let energy = energies.fold(zeros(columns), |sum, energy| sum + energy);
         let forms = |(energy, product, integral)| ElementForms { energy: Symmetric::new(&energy), product, integral };
         Self {
             elements: made.into_iter().map(forms).collect(),
@@ -110,7 +115,11 @@ impl StarStress {
 }
 
 impl Solved {
-    pub(super) fn new<L: LinearLaw>(elements: &[StarElement<'_, L>], edges: &[usize]) -> Self {
+    pub(super) fn new<L: LinearLaw>(
+        elements: &[StarElement<'_, L>],
+        edges: &[usize],
+        supported: [[bool; 2]; 2],
+    ) -> Self {
         let corner = |element: &StarElement<'_, L>, next: usize| element.corners[(element.at + next) % 3];
         let origin = corner(&elements[0], 0);
         let mut fan = vec![corner(&elements[0], 1)];
@@ -122,8 +131,10 @@ impl Solved {
         for (position, &edge) in edges.iter().enumerate() {
             apply_hats(&star, edge, fan[if edge == 0 { 0 } else { elements.len() }], origin, position, &mut loads);
         }
-        let scales: Vec<f64> = elements.iter().map(|element| 1.0 / element.law.compliance::<2>().0).collect();
-        System::new(&star, &maps, &scales, &loads).solve(&mut loads);
+        // Loads are those of stress times thickness. The modulus makes the system one of numbers near 1.
+        let scale = elements[0].law.extent() / elements[0].law.compliance::<2>().0;
+        let weights: Vec<f64> = elements.iter().map(|element| scale / element.law.extent()).collect();
+        System::new(&star, &maps, &weights, supported, &loads).solve(&mut loads);
         Self { star, maps, loads }
     }
 

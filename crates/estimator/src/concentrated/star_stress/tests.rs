@@ -3,6 +3,8 @@
 use super::*;
 use percute_core::material::Elastic;
 
+const FREE: [[bool; 2]; 2] = [[false; 2]; 2];
+
 fn law() -> Elastic {
     Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap()
 }
@@ -27,7 +29,7 @@ fn elements<'a>(fan: &[[f64; 2]], law: &'a Elastic) -> Vec<StarElement<'a, Elast
 fn every_sub_triangle_is_in_equilibrium() {
     for (angle, count) in [(1.0, 1), (1.5, 2), (std::f64::consts::PI, 3), (4.7, 5)] {
         let law = law();
-        let made = StarStress::new(&elements(&fan(angle, count, 0.7), &law), &[0, 1]);
+        let made = StarStress::new(&elements(&fan(angle, count, 0.7), &law), &[0, 1], FREE);
         let StarResiduals { resultants, stress } = made.residuals;
         let largest = [resultants, stress.divergence, stress.edges, stress.inner].into_iter().fold(0.0, f64::max);
         assert!(largest < 1e-12, "{angle}: {:?}", made.residuals);
@@ -53,7 +55,7 @@ fn octaves_cost_the_energy_of_the_radial_field() {
 /// E/P² times the energy of hats of 1/256 of both edges less that of hats of 1/128.
 fn octave(angle: f64, count: usize, psi: f64) -> f64 {
     let law = law();
-    let made = StarStress::new(&elements(&fan(angle, count, 1.0), &law), &[0, 1]);
+    let made = StarStress::new(&elements(&fan(angle, count, 1.0), &law), &[0, 1], FREE);
     let (sin, cos) = (0.5 * angle + psi).sin_cos();
     let energy = |halvings: usize| {
         let hats = [0, 1].map(|edge| [(place(edge, halvings, 0), 0.5 * cos), (place(edge, halvings, 1), 0.5 * sin)]);
@@ -65,6 +67,47 @@ fn octave(angle: f64, count: usize, psi: f64) -> f64 {
     energy(8) - energy(7)
 }
 
+/// Half of a symmetric star on its plane of symmetry has half of the energy.
+#[test]
+fn a_supported_half_is_half_of_the_whole() {
+    use std::f64::consts::PI;
+    let law = law();
+    for (start, count) in [(0.0, 2), (0.3, 1), (0.25 * PI, 3)] {
+        let at = |k: usize| {
+            let angle = start + (PI - 2.0 * start) * k as f64 / (2 * count) as f64;
+            [0.7 * angle.cos(), 0.7 * angle.sin()]
+        };
+        let mut points: Vec<_> = (0..=2 * count).map(at).collect();
+        // The plane of symmetry: x = 0, at rounding above.
+        points[count][0] = 0.0;
+        let whole = StarStress::new(&elements(&points, &law), &[0, 1], FREE);
+        let half = StarStress::new(&elements(&points[..=count], &law), &[0], [[false; 2], [true, false]]);
+        let StarResiduals { resultants, stress } = half.residuals;
+        assert!([resultants, stress.divergence, stress.edges, stress.inner].iter().all(|r| *r < 1e-12));
+        for halvings in [1, 4, 10] {
+            let energy = |hats: &[(usize, f64)], made: &StarStress| -> f64 {
+                let row = |&(i, p): &(usize, f64)| hats.iter().map(|&(j, q)| p * made.energy.at(i, j) * q).sum::<f64>();
+                hats.iter().map(row).sum()
+            };
+            let force = |edge: usize, x: f64| [(place(edge, halvings, 0), x), (place(edge, halvings, 1), 1.0)];
+            let both = [force(0, 0.2), force(1, -0.2)].concat();
+            let (half, whole) = (energy(&force(0, 0.2), &half), energy(&both, &whole));
+            assert!((2.0 * half / whole - 1.0).abs() < 1e-9, "{start} {count} {halvings}: {half} {whole}");
+        }
+    }
+}
+
+/// A part of another thickness carries its share of the force: two layers of half the thickness are one.
+#[test]
+fn energy_is_that_of_forces_over_thickness() {
+    let [thin, thick] = [0.25, 0.5].map(|t| Elastic::plane_stress(70e9, 0.3, 2700.0, t).unwrap());
+    let points = fan(2.0, 3, 0.7);
+    let [thin, thick] = [&thin, &thick].map(|law| StarStress::new(&elements(&points, law), &[0, 1], FREE).energy);
+    for (i, j) in [(0, 0), (5, 20), (39, 38)] {
+        assert!((thin.at(i, j) - 2.0 * thick.at(i, j)).abs() < 1e-9 * thin.at(0, 0).abs());
+    }
+}
+
 /// A linear displacement does no work on loads that balance and have no first moment, so ∫τ over the star is 0. On one
 /// element, ∫σ:K⁻¹τ of a constant σ is K⁻¹σ:∫τ.
 #[test]
@@ -72,7 +115,7 @@ fn integrals_are_those_of_virtual_work() {
     let law = law();
     let (alpha, beta) = law.compliance::<2>();
     let elements = elements(&fan(2.5, 3, 0.7), &law);
-    let made = StarStress::new(&elements, &[0, 1]);
+    let made = StarStress::new(&elements, &[0, 1], FREE);
     let sum = made.elements.iter().fold(DMatrix::zeros(3, 4 * HATS), |sum, forms| sum + &forms.integral);
     assert!(sum.amax() < 1e-13, "{}", sum.amax());
     let stress = [3.0, -2.0, 1.5];

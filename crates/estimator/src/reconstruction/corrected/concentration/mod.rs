@@ -12,6 +12,7 @@ use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 pub(super) use own_forces::OwnForces;
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use star::NodeStar;
 use std::sync::OnceLock;
@@ -44,7 +45,7 @@ impl<const D: usize> Concentration<D> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
         let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
-        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps).shape(normal / self.nodes[at].extent))
+        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps).shape(normal))
     }
 
     /// Gaps at the far ends of the edges of a node less its own; none where no edge leaves the plane.
@@ -132,11 +133,11 @@ impl<const D: usize> Concentration<D> {
         element: ElementId,
     ) -> Option<HatStress<'_>> {
         let at = hats.first()?.node;
-        let star = &self.nodes[at];
+        let (star, extent) = (&self.nodes[at], problem.material(element).extent());
         let position = star.elements.iter().position(|&other| other == element)?;
         let one = |hat: &NarrowHat<D>| {
             let (edge, halvings) = (hat.edge, hat.halvings);
-            hat.resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / star.extent))
+            hat.resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / extent))
         };
         let forms = &self.stress(problem, at).elements[position];
         Some(HatStress { forms, resultants: hats.iter().flat_map(one).collect() })

@@ -76,15 +76,13 @@ impl<const D: usize> Concentration<D> {
         approach: impl Fn() -> Approach,
     ) -> Option<f64> {
         let gaps = self.gaps(at, gap)?;
-        let (costs, extent) = (self.costs(problem, at, direction, &gaps), self.nodes[at].extent);
-        if costs.shape(most / extent).iter().any(|hat| hat.share > SHARE && hat.halvings == 0) {
+        let costs = self.costs(problem, at, direction, &gaps);
+        if costs.shape(most).iter().any(|hat| hat.share > SHARE && hat.halvings == 0) {
             return None;
         }
         let approach = approach();
-        let remaining = |force: f64| {
-            let normal = force / extent;
-            approach.gap + force * approach.mobility + costs.approach(&costs.shape(normal), normal)
-        };
+        let remaining =
+            |normal: f64| approach.gap + normal * approach.mobility + costs.approach(&costs.shape(normal), normal);
         if approach.gap >= 0.0 {
             return Some(0.0);
         }

@@ -16,10 +16,10 @@ pub(super) struct NodeStar {
     pub(super) edges: Vec<CandidateEdge>,
     /// Tributary shares of the edges.
     pub(super) tributary: Vec<f64>,
-    /// 1 over the plane modulus (1/Pa).
+    /// 1 over plane modulus and thickness (m/N), their mean over the elements.
     pub(super) compliance: f64,
-    /// Section or thickness (m).
-    pub(super) extent: f64,
+    /// Supported components of the first and the last edge of the star.
+    supported: [[bool; 2]; 2],
     /// The first node with a congruent star.
     pub(super) alike: usize,
 }
@@ -68,14 +68,21 @@ impl NodeStar {
         edges.sort_by_key(|edge| edge.side);
         let elements = problem.mesh().stars().star(problem.surface().nodes()[at].node).elements.to_vec();
         let total: f64 = edges.iter().map(|edge| edge.area).sum();
-        let law = problem.material(elements[0]);
-        let (alpha, beta) = law.compliance::<D>();
+        let compliance = |&id: &ElementId| {
+            let (law, (alpha, beta)) = (problem.material(id), problem.material(id).compliance::<D>());
+            (alpha - beta) / law.extent() / elements.len() as f64
+        };
+        let links = problem.mesh().stars().star(problem.surface().nodes()[at].node).links;
+        let supported = [links.first(), links.last()].map(|link| {
+            let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+            [supported[0], supported[D - 1]]
+        });
         Self {
             tributary: edges.iter().map(|edge| edge.area / total).collect(),
+            compliance: elements.iter().map(compliance).sum(),
             elements,
             edges,
-            compliance: alpha - beta,
-            extent: law.extent(),
+            supported,
             alike: at,
         }
     }
@@ -85,6 +92,7 @@ impl NodeStar {
         let (mesh, node) = (problem.mesh(), problem.surface().nodes()[at].node);
         let origin = mesh.points()[node.index()];
         let mut numbers: Vec<i64> = self.edges.iter().map(|edge| edge.side as i64).collect();
+        numbers.extend(self.supported.as_flattened().iter().map(|&supported| i64::from(supported)));
         for &id in &self.elements {
             numbers.push(mesh.local_node(id, node).unwrap_or(0) as i64);
             numbers.push(i64::from(problem.element_material()[id.index()]));
@@ -104,6 +112,6 @@ impl NodeStar {
         };
         let elements: Vec<_> = self.elements.iter().map(element).collect();
         let sides: Vec<usize> = self.edges.iter().map(|edge| edge.side).collect();
-        StarStress::new(&elements, &sides)
+        StarStress::new(&elements, &sides, self.supported)
     }
 }

@@ -97,13 +97,12 @@ fn own_forces_close_the_gap() {
     let mut own = OwnForces::new(&problem);
     assert_eq!(apply(&mut own.clone(), force, approach(1e-9)), [0.0; 2]);
     assert_eq!(frame.split(&apply(&mut own.clone(), force, approach(-1.0))).0, most);
-    // Deeper than the narrowest traction reaches, and less deep than the largest force.
     let found = apply(&mut own, force, approach(-6e-5));
     let normal = frame.split(&found).0;
     let direction = force.map(|f| f / most);
     let gaps = concentration.gaps(at, &gap).unwrap();
     let costs = concentration.costs(&problem, at, &direction, &gaps);
-    let remaining = |normal: f64| -6e-5 + 1e-12 * normal + costs.approach(&costs.shape(normal / 0.5), normal / 0.5);
+    let remaining = |normal: f64| -6e-5 + 1e-12 * normal + costs.approach(&costs.shape(normal), normal);
     assert!(normal > 0.0 && normal < most);
     // 40 bisections of the largest force.
     assert!(remaining(normal - 2e-12 * most) < 0.0 && remaining(normal + 2e-12 * most) > 0.0);
