@@ -81,7 +81,7 @@ impl<const D: usize> Concentration<D> {
         force: &'a [f64; D],
     ) -> impl Iterator<Item = NarrowHat<D>> + 'a {
         let edges = self.nodes[at].edges.iter().zip(shape.iter()).enumerate();
-        edges.filter(|(_, (_, hat))| hat.halvings > 0 && hat.share > 0.0).map(move |(edge, (candidate, hat))| {
+        edges.filter(|(_, (_, hat))| hat.halvings > 0 && hat.share != 0.0).map(move |(edge, (candidate, hat))| {
             NarrowHat {
                 node: at,
                 facet: candidate.facet,

@@ -9,6 +9,9 @@ use percute_core::problem::Problem;
 /// A hat with less than this share does not make a node wide.
 const SHARE: f64 = 1e-6;
 
+/// A force below this part of the largest one has no direction.
+const ROUNDING: f64 = 1e-12;
+
 /// Bisections of the force: to 1e-12 of the largest.
 const BISECTIONS: usize = 40;
 
@@ -16,6 +19,8 @@ const BISECTIONS: usize = 40;
 #[derive(Clone, Debug)]
 pub(in crate::reconstruction::corrected) struct OwnForces<const D: usize> {
     nodes: Vec<OwnForce<D>>,
+    /// Largest normal force of the simulation so far (N).
+    peak: f64,
 }
 
 /// That of one node at the step before.
@@ -29,7 +34,8 @@ struct OwnForce<const D: usize> {
 
 impl<const D: usize> OwnForces<D> {
     pub(in crate::reconstruction::corrected) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self { nodes: vec![OwnForce { normal: 0.0, direction: [0.0; D] }; problem.surface().nodes().len()] }
+        let nodes = vec![OwnForce { normal: 0.0, direction: [0.0; D] }; problem.surface().nodes().len()];
+        Self { nodes, peak: 0.0 }
     }
 
     /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone. The second
@@ -46,10 +52,13 @@ impl<const D: usize> OwnForces<D> {
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         for (at, (own, force)) in self.nodes.iter_mut().zip(contact).enumerate() {
-            let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
-            let normal = frame.split(force).0.max(0.0);
-            if normal > 0.0 {
-                own.direction = force.map(|f| f / normal);
+            let obstacle = &problem.obstacles()[problem.surface().nodes()[at].obstacle];
+            // Reactions of a foreign history need not be in the cone.
+            let held = obstacle.project_into_cone(force);
+            let normal = obstacle.flat_frame().split(&held).0;
+            self.peak = self.peak.max(normal);
+            if normal > ROUNDING * self.peak {
+                own.direction = held.map(|f| f / normal);
             }
             let most = normal.max(own.normal);
             own.normal = normal;
