@@ -8,7 +8,7 @@ mod shape;
 mod star_stress;
 
 pub(crate) use hat_stress::HatStress;
-pub(crate) use shape::{Shape, ShapeCosts};
+pub(crate) use shape::{ShapeCosts, TractionShape};
 pub(crate) use star_stress::{StarElement, StarStress};
 
 /// Widths of narrow hats: a half of the edge, a quarter, …

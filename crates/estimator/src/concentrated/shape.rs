@@ -29,12 +29,12 @@ fn far(halvings: usize) -> f64 {
 
 /// A hat on each candidate edge of a node, of which there are one or two; their shares sum to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Shape {
+pub(crate) struct TractionShape {
     hats: [Hat; 2],
     edges: usize,
 }
 
-impl Deref for Shape {
+impl Deref for TractionShape {
     type Target = [Hat];
 
     fn deref(&self) -> &[Hat] {
@@ -42,7 +42,7 @@ impl Deref for Shape {
     }
 }
 
-impl Shape {
+impl TractionShape {
     fn of_one(halvings: usize) -> Self {
         Self { hats: [Hat { share: 1.0, halvings }, Hat::default()], edges: 1 }
     }
@@ -91,18 +91,18 @@ impl<'a> ShapeCosts<'a> {
     }
 
     /// The shape of least gap energy and stress energy under a normal force (N).
-    pub(crate) fn shape(&self, normal: f64) -> Shape {
-        let least = |shapes: &mut dyn Iterator<Item = Shape>| {
+    pub(crate) fn shape(&self, normal: f64) -> TractionShape {
+        let least = |shapes: &mut dyn Iterator<Item = TractionShape>| {
             let ranked = shapes.map(|shape| (self.cost(&shape, normal), shape));
-            ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(Shape::of_one(0), |(_, shape)| shape)
+            ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(TractionShape::of_one(0), |(_, shape)| shape)
         };
         if self.gaps.len() == 1 {
-            return least(&mut (0..=HATS).map(Shape::of_one));
+            return least(&mut (0..=HATS).map(TractionShape::of_one));
         }
         let pairs = (0..=HATS).flat_map(|a| (0..=HATS).map(move |b| [a, b]));
         least(&mut pairs.map(|halvings| {
             let share = self.share(halvings, normal);
-            Shape::of_two([share, 1.0 - share], halvings)
+            TractionShape::of_two([share, 1.0 - share], halvings)
         }))
     }
 
@@ -115,18 +115,18 @@ impl<'a> ShapeCosts<'a> {
     }
 
     /// The cost over the normal force (m).
-    fn cost(&self, shape: &Shape, normal: f64) -> f64 {
+    fn cost(&self, shape: &TractionShape, normal: f64) -> f64 {
         let aside: f64 = shape.iter().zip(self.tributary).map(|(hat, share)| (hat.share - share).powi(2)).sum();
         self.gap(shape) + 0.5 * normal * (self.stress(shape) + self.penalty * aside)
     }
 
     /// Mean gap under a shape (m).
-    fn gap(&self, shape: &Shape) -> f64 {
+    fn gap(&self, shape: &TractionShape) -> f64 {
         shape.iter().zip(self.gaps).map(|(hat, gap)| hat.share * gap * hat.far()).sum()
     }
 
     /// ∫τ:K⁻¹τ under a unit normal force (m/N).
-    fn stress(&self, shape: &Shape) -> f64 {
+    fn stress(&self, shape: &TractionShape) -> f64 {
         let product = |(e, a): (usize, &Hat)| {
             let row = |(f, b): (usize, &Hat)| a.share * b.share * self.products[e][f][a.halvings][b.halvings];
             shape.iter().enumerate().map(row).sum::<f64>()
@@ -136,7 +136,7 @@ impl<'a> ShapeCosts<'a> {
 
     /// By how much the node is closer to its plane than the mean of its traction, with the local compliance (m): from 0 on,
     /// which is at the narrowest traction.
-    pub(crate) fn approach(&self, shape: &Shape, normal: f64) -> f64 {
+    pub(crate) fn approach(&self, shape: &TractionShape, normal: f64) -> f64 {
         let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
         self.gap(shape) - least * far(HATS) + normal * self.stress(shape)
     }
@@ -199,7 +199,7 @@ mod tests {
             let best = costs.cost(&costs.shape(force), force);
             for a in 0..=HATS {
                 for b in 0..=HATS {
-                    let shape = |share: f64| Shape::of_two([share, 1.0 - share], [a, b]);
+                    let shape = |share: f64| TractionShape::of_two([share, 1.0 - share], [a, b]);
                     let least = (0..=100).map(|k| costs.cost(&shape(0.01 * f64::from(k)), force));
                     let least = least.fold(f64::INFINITY, f64::min);
                     assert!(best <= least * (1.0 + 1e-12), "{a} {b}");

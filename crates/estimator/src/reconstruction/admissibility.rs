@@ -32,11 +32,13 @@ pub(crate) fn check<const D: usize, const N: usize>(
             }
         }
         // The shares of hats are between 0 and 1: each is in the cone if the force of its node is.
+        let largest = densities.hats().iter().map(|hat| size(&hat.resultant)).fold(0.0, worse);
         for hat in densities.hats() {
             let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
             let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), &hat.resultant);
+            let outside = worse(tangential, normal);
             residuals.cone =
-                worse(residuals.cone, worse(tangential, normal) / size(&hat.resultant).max(f64::MIN_POSITIVE));
+                worse(residuals.cone, outside / size(&hat.resultant).max(1e-12 * largest).max(f64::MIN_POSITIVE));
         }
     }
 }

@@ -40,7 +40,7 @@ fn misfit<const D: usize, const N: usize>(
     for density in densities {
         let wide = &density.wide()[f];
         (0..D).for_each(|p| (0..D).for_each(|c| mean[p][c] += share * wide[p][c]));
-        let hats = density.hats().iter().filter(|hat| hat.facet == f);
+        let hats = facet.nodes.iter().flat_map(|&k| density.hats_of(k)).filter(|hat| hat.facet == f);
         power += hats.map(|hat| share * hat_misfit_power(problem, hat, &velocity)).sum::<f64>();
     }
     power + misfit_power(problem, facet, &mean, &velocity)

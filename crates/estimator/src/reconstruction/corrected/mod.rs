@@ -10,7 +10,7 @@ mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
-use crate::concentrated::Shape;
+use crate::concentrated::TractionShape;
 use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -27,7 +27,7 @@ use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::Step;
 use percute_core::problem::Problem;
-use percute_core::simplex;
+use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
 use traction_minimisation::TractionMinimisation;
 
@@ -55,8 +55,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let keeps = |part: Ablation| options.ablation != part;
         let concentrates = match problem.mesh().simplex().shape() {
-            simplex::Shape::Bar => false,
-            simplex::Shape::Triangle => true,
+            Shape::Bar => false,
+            Shape::Triangle => true,
         };
         Self {
             problem,
@@ -92,7 +92,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
         let concentration = self.concentration.as_ref();
         let shape = |(at, force)| concentration.and_then(|concentration| concentration.shape(problem, at, force, gap));
-        let shapes: Vec<Option<Shape>> = reaction.iter().enumerate().map(shape).collect();
+        let shapes: Vec<Option<TractionShape>> = reaction.iter().enumerate().map(shape).collect();
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
             let centroid =

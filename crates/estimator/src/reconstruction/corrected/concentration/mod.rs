@@ -7,7 +7,7 @@
 mod own_forces;
 mod star;
 
-use crate::concentrated::{HatStress, Shape, ShapeCosts, StarStress, place};
+use crate::concentrated::{HatStress, ShapeCosts, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 pub(super) use own_forces::OwnForces;
@@ -41,7 +41,7 @@ impl<const D: usize> Concentration<D> {
         at: usize,
         force: &[f64; D],
         gap: &[f64],
-    ) -> Option<Shape> {
+    ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
         let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
@@ -77,7 +77,7 @@ impl<const D: usize> Concentration<D> {
     pub(super) fn hats<'a>(
         &'a self,
         at: usize,
-        shape: &'a Shape,
+        shape: &'a TractionShape,
         force: &'a [f64; D],
     ) -> impl Iterator<Item = NarrowHat<D>> + 'a {
         let edges = self.nodes[at].edges.iter().zip(shape.iter()).enumerate();
@@ -94,14 +94,19 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// The density at the node (Pa) on one of its facets, of a hat as wide as the edge.
-    pub(super) fn wide(&self, at: usize, facet: usize, shape: &Shape, force: &[f64; D]) -> [f64; D] {
+    pub(super) fn wide(&self, at: usize, facet: usize, shape: &TractionShape, force: &[f64; D]) -> [f64; D] {
         let mut edges = self.nodes[at].edges.iter().zip(shape.iter());
         let found = edges.find(|(edge, hat)| edge.facet == facet && hat.halvings == 0);
         found.map_or([0.0; D], |(edge, hat)| force.map(|f| D as f64 * hat.share * f / edge.area))
     }
 
     /// From the node to the centroid of its traction (m).
-    pub(super) fn centroid<const N: usize>(&self, problem: &Problem<D, N>, at: usize, shape: &Shape) -> [f64; D] {
+    pub(super) fn centroid<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        at: usize,
+        shape: &TractionShape,
+    ) -> [f64; D] {
         let surface = problem.surface();
         let mut centroid = [0.0; D];
         for (edge, hat) in self.nodes[at].edges.iter().zip(shape.iter()) {

@@ -105,9 +105,11 @@ impl NodeStar {
     /// The stresses of unit hats.
     pub(super) fn stress<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> StarStress {
         let (mesh, node) = (problem.mesh(), problem.surface().nodes()[at].node);
+        let origin = mesh.points()[node.index()];
         let element = |&id: &ElementId| {
             let points = mesh.cell_points(id);
-            let corners = std::array::from_fn(|i| [points[i][0], points[i][D - 1]]);
+            // From the node: rounding does not grow with the distance of the body from the origin.
+            let corners = std::array::from_fn(|i| [0, D - 1].map(|c| points[i][c] - origin[c]));
             StarElement { corners, at: mesh.local_node(id, node).unwrap_or(0), law: problem.material(id) }
         };
         let elements: Vec<_> = self.elements.iter().map(element).collect();
