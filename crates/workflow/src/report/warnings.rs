@@ -102,7 +102,8 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
     let shown = percent(kept);
     let advice = match facts.reconstruction {
         Reconstruction::Corrected => {
-            "reactions of the history are tensile or outside Coulomb's cone: is `friction` that of the simulation?"
+            "reactions of the history are tensile or outside Coulomb's cone (is `friction` that of the simulation?), or a corner \
+             stays in contact for longer than the mesh can show"
         }
         Reconstruction::Consistent | Reconstruction::Published => {
             "refine the mesh or the steps where contact begins, or take `reconstruction = \"corrected\"`"
