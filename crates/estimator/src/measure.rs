@@ -79,13 +79,13 @@ impl<const D: usize, const N: usize> Balanced<D, N> {
 /// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
 /// loading. Young's inequality bounds the products of several nodes.
 fn hat_energy<const D: usize, const N: usize>(loading: &Loading<D, N>, hats: &[HatStress<'_>]) -> f64 {
-    let tractions = || loading.traction.iter().flatten().flatten();
-    let loads = || tractions().chain(loading.volume.iter().flatten());
-    let energy = |hat: &HatStress<'_>| {
-        let product: f64 = hat.products().iter().zip(loads()).map(|(c, d)| c * d).sum();
-        product + hats.len() as f64 * hat.energy()
-    };
-    hats.iter().map(energy).sum()
+    hats.iter().map(|hat| hat_product(loading, hat) + hats.len() as f64 * hat.energy()).sum()
+}
+
+/// ∫σ:K⁻¹τ (J per unit of section or thickness) of the stress σ that balances a loading and the stress τ of hats.
+fn hat_product<const D: usize, const N: usize>(loading: &Loading<D, N>, hat: &HatStress<'_>) -> f64 {
+    let loads = loading.traction.iter().flatten().flatten().chain(loading.volume.iter().flatten());
+    hat.products().iter().zip(loads).map(|(c, d)| c * d).sum()
 }
 
 /// The maps of one element, constant in time.
@@ -195,6 +195,23 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         // |a + b|² = |a − b|² + 4 a·b.
         let products = mass_product(mass, &dynamic, motion.velocity()) + self.work(balanced, motion.displacement());
         ElementError { kinetic, elastic, reference: 2.0 * (kinetic + elastic) + 4.0 * products }
+    }
+
+    /// Mean over the element of the stress of hats (Pa).
+    pub(crate) fn mean_of_hats(&self, hats: &HatStress<'_>) -> [[f64; D]; D] {
+        // The products with constant stresses: the mean strain, because this map is symmetric.
+        let mut strain = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                let mut unit = [[0.0; D]; D];
+                unit[a][b] += 0.5;
+                unit[b][a] += 0.5;
+                let mut loading = Loading { traction: [[[0.0; D]; D]; N], volume: [[0.0; D]; N] };
+                self.subtract_tractions(&unit, &mut loading);
+                strain[a][b] = -hat_product(&loading, hats) * self.law.extent() / self.element.volume;
+            }
+        }
+        self.law.stress(&strain)
     }
 
     /// The slope of the energy of the stress in the tractions of a loading.

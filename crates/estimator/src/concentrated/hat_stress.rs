@@ -1,42 +1,67 @@
 //! The stress of the hats of one node in one element.
 
-use super::star_stress::ElementForms;
+use super::star_stress::StarStress;
 use crate::stress::LOADS;
 use std::iter::zip;
+
+/// The frame of the forms of a star: its first axis in global axes. Stars that are turned have the same forms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StarFrame(pub(crate) [f64; 2]);
+
+impl StarFrame {
+    /// The components of a vector in the frame.
+    #[inline]
+    pub(crate) fn own(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.0;
+        [cos * x + sin * y, cos * y - sin * x]
+    }
+
+    /// The global components of a vector.
+    #[inline]
+    pub(crate) fn global(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [cos, sin] = self.0;
+        [cos * x - sin * y, cos * y + sin * x]
+    }
+}
 
 /// The stress τ of hats, as a sum of those of unit hats.
 #[derive(Clone, Debug)]
 pub(crate) struct HatStress<'a> {
     /// Those of unit hats.
-    pub(crate) forms: &'a ElementForms,
-    /// Places of the hats in these forms, and their resultants over section or thickness (N/m).
+    pub(crate) star: &'a StarStress,
+    pub(crate) frame: StarFrame,
+    /// Position of the element in the star.
+    pub(crate) element: usize,
+    /// The corner of the element at the node.
+    pub(crate) at: usize,
+    /// Places of the hats in these forms, and their resultants over section or thickness (N/m), in the frame.
     pub(crate) resultants: Vec<(usize, f64)>,
 }
 
 impl HatStress<'_> {
     /// ∫σ:K⁻¹τ for the stress σ of unit loads (m²/N per unit of thickness): tractions, then Γ_DA − f_d.
     pub(crate) fn products(&self) -> [f64; LOADS] {
-        let mut products = [0.0; LOADS];
+        let mut own = [0.0; LOADS];
         for &(place, p) in &self.resultants {
-            zip(&mut products, self.forms.product.column(place).iter()).for_each(|(sum, entry)| *sum += entry * p);
+            let column = self.star.products[self.element].column(place);
+            zip(&mut own, column.iter()).for_each(|(sum, entry)| *sum += entry * p);
+        }
+        let mut products = [0.0; LOADS];
+        // Vectors at both ends of three facets, then at three nodes.
+        for (first, each) in [(0, 2), (6, 1)] {
+            for k in 0..3 * each {
+                let from = 2 * (first + k);
+                let to = 2 * (first + (k + each * self.at) % (3 * each));
+                products[to..to + 2].copy_from_slice(&self.frame.global([own[from], own[from + 1]]));
+            }
         }
         products
     }
 
     /// ½∫τ:K⁻¹τ (J per unit of thickness).
     pub(crate) fn energy(&self) -> f64 {
-        let row = |&(i, p): &(usize, f64)| {
-            self.resultants.iter().map(|&(j, q)| p * self.forms.energy.at(i, j) * q).sum::<f64>()
-        };
+        let product = |i: usize, j: usize| self.star.energy_in(self.element, i, j);
+        let row = |&(i, p): &(usize, f64)| self.resultants.iter().map(|&(j, q)| p * product(i, j) * q).sum::<f64>();
         0.5 * self.resultants.iter().map(row).sum::<f64>()
-    }
-
-    /// ∫τ (N per unit of thickness), 11, 22, 12.
-    pub(crate) fn integral(&self) -> [f64; 3] {
-        let mut integral = [0.0; 3];
-        for &(place, p) in &self.resultants {
-            zip(&mut integral, self.forms.integral.column(place).iter()).for_each(|(sum, entry)| *sum += entry * p);
-        }
-        integral
     }
 }

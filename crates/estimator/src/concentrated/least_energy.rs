@@ -1,239 +1,216 @@
 //! The tractions between sub-triangles that make the energy least.
+//!
+//! They are those of the displacements of all edges under which the tractions of both sides of each inner edge cancel. Each ring
+//! is first reduced to its arcs; then the arcs are eliminated from the node to the outline.
 
-use super::cut_star::{CutStar, SideOf};
-use super::star_stress::tractions;
-use crate::stress::TriangleStress;
-use nalgebra::{DMatrix, Dyn, LU};
+use super::cut_star::{Arc, CutStar};
+use super::layer::{Layer, LayerState, block};
+use super::panel::{LOADS, Panel};
+use crate::residual::worse;
+use nalgebra::{Cholesky, DMatrix, SMatrix};
 
-/// Traction loads of a sub-triangle: |e|F̂ at both nodes of three facets, two components each.
-pub(super) const TRACTIONS: usize = 12;
+/// Sub-triangles with smaller resultants, of loads near 1, are in equilibrium but for rounding.
+const BALANCED: f64 = 1e-13;
 
-/// A row or column of the system.
-#[derive(Clone, Copy, Debug)]
-struct Slot {
-    layer: usize,
-    at: usize,
-    sign: f64,
+/// In slender elements, stiffness and rounding are larger. One refinement leaves the square of the error.
+const REFINEMENTS: usize = 3;
+
+/// A cut star under several loads.
+#[derive(Clone, Debug)]
+pub(super) struct Solved {
+    pub(super) parts: Parts,
+    /// Those of each ring, from the outline to the node, then of the core.
+    pub(super) states: Vec<LayerState>,
 }
 
-/// The conditions of least energy: symmetric, and tridiagonal in layers.
-pub(super) struct System {
-    /// The slots of the loads of each sub-triangle; none where they are given.
-    slots: Vec<[Option<Slot>; TRACTIONS]>,
-    diagonal: Vec<DMatrix<f64>>,
-    /// Rows of a layer, columns of the layer before.
-    lower: Vec<DMatrix<f64>>,
-    right: Vec<DMatrix<f64>>,
+/// The sub-triangles of a cut star.
+#[derive(Clone, Debug)]
+pub(super) struct Parts {
+    /// The triangles at the outline.
+    pub(super) outline: Vec<Panel>,
+    /// Different rings, then the core.
+    pub(super) layers: Vec<Layer>,
+    /// Position in `layers` and outer radius of each ring, from the outline to the node, then of the core.
+    pub(super) rings: Vec<(usize, f64)>,
 }
 
-impl System {
-    /// The system of a star. The energy of each element has its weight; `supported` are the components on the first and the
-    /// last edge whose tractions are unknown, `loads` the given loads of each sub-triangle.
-    pub(super) fn new(
-        star: &CutStar,
-        maps: &[TriangleStress],
-        weights: &[f64],
-        supported: [[bool; 2]; 2],
-        loads: &[DMatrix<f64>],
-    ) -> Self {
-        let layers = star.triangles.iter().map(|t| t.layer + 1).max().unwrap_or(0);
-        let mut unknowns = vec![0; layers];
-        let mut slots = vec![[None; TRACTIONS]; star.triangles.len()];
-        for sides in &star.inner {
-            let layer = sides.iter().map(|side| star.triangles[side.triangle].layer).min().unwrap_or(0);
-            number(sides, layer, &mut unknowns[layer], &mut slots);
+impl Parts {
+    fn layer(&self, ring: usize) -> &Layer {
+        &self.layers[self.rings[ring].0]
+    }
+}
+
+/// The factors of the elimination of arcs, from the node to the outline.
+struct Elimination {
+    /// Of the inner arcs of each ring, the innermost first: the lower factor, and its solution for the outer arcs.
+    rings: Vec<[DMatrix<f64>; 2]>,
+    /// Of the outer arcs of the first ring.
+    last: DMatrix<f64>,
+}
+
+impl Elimination {
+    fn new(parts: &Parts, arcs: usize, free: &[usize]) -> Self {
+        let stiffness = |ring: usize| &parts.layer(ring).stiffness;
+        let core = parts.rings.len() - 1;
+        let mut reduced = stiffness(core).clone();
+        let mut rings = Vec::with_capacity(core);
+        for ring in (0..core).rev() {
+            let whole = stiffness(ring);
+            let lower = factor(whole.view((arcs, arcs), (arcs, arcs)) + reduced);
+            let mut upper = whole.view((arcs, 0), (arcs, arcs)).into_owned();
+            lower.solve_lower_triangular_unchecked_mut(&mut upper);
+            reduced = whole.view((0, 0), (arcs, arcs)) - upper.tr_mul(&upper);
+            rings.push([lower, upper]);
         }
-        for (sides, supported) in star.ends.iter().zip(&supported) {
-            for side in sides {
-                let layer = star.triangles[side.triangle].layer;
-                support(side, supported, layer, &mut unknowns[layer], &mut slots[side.triangle]);
-            }
+        add_outline(&mut reduced, &parts.outline, free);
+        Self { rings, last: factor(reduced) }
+    }
+
+    /// The displacements of the arcs of each ring under forces on them; outer arcs first.
+    fn solve(&self, mut forces: Vec<DMatrix<f64>>) -> Vec<DMatrix<f64>> {
+        let (arcs, core) = (self.last.nrows(), self.rings.len());
+        for (k, [lower, upper]) in self.rings.iter().enumerate() {
+            let mut inner = forces[core - 1 - k].rows(arcs, arcs) + forces[core - k].rows(0, arcs);
+            lower.solve_lower_triangular_unchecked_mut(&mut inner);
+            let mut outer = forces[core - 1 - k].rows_mut(0, arcs);
+            outer -= upper.tr_mul(&inner);
+            forces[core - 1 - k].rows_mut(arcs, arcs).copy_from(&inner);
         }
-        // The star as a whole is in equilibrium: conditions of the first sub-triangle, a large one, follow from the others.
-        let first = conditions(star, &supported);
-        let mut rows = unknowns.clone();
-        star.triangles.iter().for_each(|triangle| rows[triangle.layer] += 3);
-        rows[0] -= 3 - first.len();
-        let columns = loads[0].ncols();
-        let mut system = Self {
-            slots,
-            diagonal: rows.iter().map(|&n| DMatrix::zeros(n, n)).collect(),
-            lower: (0..layers).map(|l| DMatrix::zeros(rows[l], if l == 0 { 0 } else { rows[l - 1] })).collect(),
-            right: rows.iter().map(|&n| DMatrix::zeros(n, columns)).collect(),
+        let mut displacement = forces[0].rows(0, arcs).into_owned();
+        self.last.solve_lower_triangular_unchecked_mut(&mut displacement);
+        self.last.tr_solve_lower_triangular_unchecked_mut(&mut displacement);
+        for (both, [lower, upper]) in forces.iter_mut().zip(self.rings.iter().rev()) {
+            let mut inner = both.rows(arcs, arcs) - upper * &displacement;
+            lower.tr_solve_lower_triangular_unchecked_mut(&mut inner);
+            both.rows_mut(0, arcs).copy_from(&displacement);
+            both.rows_mut(arcs, arcs).copy_from(&inner);
+            displacement = inner;
+        }
+        forces[core] = displacement;
+        forces
+    }
+}
+
+impl Solved {
+    /// `given` are the forces of tractions on the pieces of the first and the last edge, ring by ring; `supported` the
+    /// components there whose tractions are unknown.
+    pub(super) fn new(star: &CutStar, parts: Parts, given: &[[DMatrix<f64>; 2]], supported: &[[bool; 2]; 2]) -> Self {
+        let elimination = Elimination::new(&parts, 4 * star.sectors(), &free_motions(star, supported));
+        let forces = given.iter().enumerate().map(|(ring, given)| parts.layer(ring).at_arcs(given)).collect();
+        let displacements = elimination.solve(forces);
+        let state = |(ring, (arcs, given)): (usize, (&DMatrix<f64>, &[DMatrix<f64>; 2]))| {
+            parts.layer(ring).state(arcs, given, supported)
         };
-        let mut next = unknowns;
-        for (at, (triangle, map)) in star.triangles.iter().zip(maps).enumerate() {
-            system.add_energy(at, &(form(map) * weights[triangle.element]), &loads[at]);
-            let kept = if at == 0 { &first[..] } else { &[0, 1, 2] };
-            let resultants = resultants(&triangle.corners).select_rows(kept);
-            system.add_conditions(at, (triangle.layer, next[triangle.layer]), &resultants, &loads[at]);
-            next[triangle.layer] += kept.len();
-        }
-        system
-    }
-
-    fn add(&mut self, row: (usize, usize), column: (usize, usize), value: f64) {
-        if row.0 == column.0 {
-            self.diagonal[row.0][(row.1, column.1)] += value;
-        } else if row.0 == column.0 + 1 {
-            self.lower[row.0][(row.1, column.1)] += value;
-        }
-    }
-
-    fn add_energy(&mut self, triangle: usize, form: &DMatrix<f64>, loads: &DMatrix<f64>) {
-        let slots = self.slots[triangle];
-        let given = form * loads;
-        for (p, row) in slots.iter().enumerate() {
-            let Some(row) = row else { continue };
-            for (q, column) in slots.iter().enumerate() {
-                let Some(column) = column else { continue };
-                self.add((row.layer, row.at), (column.layer, column.at), row.sign * column.sign * form[(p, q)]);
+        let states = displacements.iter().zip(given).enumerate().map(state).collect();
+        let mut solved = Self { parts, states };
+        for _ in 0..REFINEMENTS {
+            if solved.imbalance() < BALANCED {
+                break;
             }
-            let mut right = self.right[row.layer].row_mut(row.at);
-            right -= given.row(p) * row.sign;
+            solved.refine(&elimination, supported);
         }
+        solved
     }
 
-    /// Adds the conditions of a sub-triangle as rows of a layer, from one place on.
-    fn add_conditions(
-        &mut self,
-        triangle: usize,
-        (layer, first): (usize, usize),
-        resultants: &DMatrix<f64>,
-        loads: &DMatrix<f64>,
-    ) {
-        let slots = self.slots[triangle];
-        let given = resultants * loads;
-        for k in 0..resultants.nrows() {
-            let row = (layer, first + k);
-            for (p, slot) in slots.iter().enumerate() {
-                let Some(slot) = slot else { continue };
-                let column = (slot.layer, slot.at);
-                self.add(row, column, slot.sign * resultants[(k, p)]);
-                if slot.layer == layer {
-                    self.add(column, row, slot.sign * resultants[(k, p)]);
-                }
+    /// The largest resultant or moment of a sub-triangle, of loads near 1.
+    fn imbalance(&self) -> f64 {
+        let mut largest = 0.0;
+        self.each(|panel, _, loads| largest = worse(largest, (panel.resultants * loads).amax()));
+        largest
+    }
+
+    /// Takes the resultants that rounding has left in sub-triangles to their arcs, and balances them in the star.
+    fn refine(&mut self, elimination: &Elimination, supported: &[[bool; 2]; 2]) {
+        let columns = self.states[0].force.ncols();
+        let arcs = |ring: usize| self.parts.layer(ring).stiffness.nrows();
+        let mut forces: Vec<_> = (0..self.states.len()).map(|ring| DMatrix::zeros(arcs(ring), columns)).collect();
+        let mut taken: Vec<_> = self.states.iter().map(|state| DMatrix::zeros(state.outer.nrows(), columns)).collect();
+        self.each(|panel, ring, loads| {
+            let triangle = &panel.triangle;
+            let side = if triangle.arc == Arc::Outline { 0 } else { 2 };
+            let rest = panel.to_side(side) * loads;
+            let inner = if triangle.arc == Arc::Inner { 2 * self.parts.outline.len() } else { 0 };
+            let mut rows = forces[ring].rows_mut(4 * (triangle.sector + inner), 4);
+            rows += &rest;
+            if triangle.arc == Arc::Outer {
+                let mut rows = taken[ring].rows_mut(4 * triangle.sector, 4);
+                rows += &rest;
             }
-            let mut right = self.right[layer].row_mut(row.1);
-            right -= given.row(k);
+        });
+        let none = [(); 2].map(|()| DMatrix::zeros(4, columns));
+        for (ring, displacement) in elimination.solve(forces).iter().enumerate() {
+            let change = self.parts.layer(ring).state(displacement, &none, supported);
+            let state = &mut self.states[ring];
+            state.displacement += change.displacement;
+            state.force += change.force;
+            state.outer += change.outer - &taken[ring];
         }
     }
 
-    /// Block elimination from the far edges to the node, and the loads of all sub-triangles.
-    pub(super) fn solve(mut self, loads: &mut [DMatrix<f64>]) {
-        let layers = self.diagonal.len();
-        let mut factors: Vec<LU<f64, Dyn, Dyn>> = Vec::with_capacity(layers);
-        for layer in 0..layers {
-            if layer > 0 {
-                let lower = &self.lower[layer];
-                let coupled: Vec<usize> =
-                    (0..lower.ncols()).filter(|&c| lower.column(c).iter().any(|x| *x != 0.0)).collect();
-                let narrow = lower.select_columns(&coupled);
-                let mut upper = DMatrix::zeros(lower.ncols(), coupled.len());
-                coupled.iter().enumerate().for_each(|(k, &at)| upper[(at, k)] = 1.0);
-                // D⁻¹ on the coupled rows and columns alone.
-                factors[layer - 1].solve_mut(&mut upper);
-                let inverse = upper.select_rows(&coupled);
-                self.diagonal[layer] -= &narrow * inverse * narrow.transpose();
-                let mut right = self.right[layer - 1].clone();
-                factors[layer - 1].solve_mut(&mut right);
-                self.right[layer] -= lower * right;
-            }
-            factors.push(LU::new(self.diagonal[layer].clone()));
+    /// Calls `with` for each sub-triangle, the position of its ring, 0 at the outline, and its loads.
+    pub(super) fn each(&self, mut with: impl FnMut(&Panel, usize, &DMatrix<f64>)) {
+        let outer = &self.states[0].outer;
+        for panel in &self.parts.outline {
+            let mut loads = DMatrix::zeros(LOADS, outer.ncols());
+            loads.rows_mut(0, 8).copy_from(&-outer.rows(4 * panel.triangle.sector, 8));
+            with(panel, 0, &loads);
         }
-        let mut solution: Vec<DMatrix<f64>> = vec![DMatrix::zeros(0, 0); layers];
-        for layer in (0..layers).rev() {
-            let mut right = self.right[layer].clone();
-            if layer + 1 < layers {
-                right -= self.lower[layer + 1].transpose() * &solution[layer + 1];
-            }
-            factors[layer].solve_mut(&mut right);
-            solution[layer] = right;
-        }
-        for (slots, loads) in self.slots.iter().zip(loads) {
-            for (p, slot) in slots.iter().enumerate() {
-                if let Some(slot) = slot {
-                    loads.row_mut(p).copy_from(&(solution[slot.layer].row(slot.at) * slot.sign));
-                }
+        for (ring, state) in self.states.iter().enumerate() {
+            let layer = self.parts.layer(ring);
+            let inner = self.states.get(ring + 1).map(|state| &state.outer);
+            for (k, panel) in layer.panels.iter().enumerate() {
+                with(panel, ring, &layer.loads(k, state, inner));
             }
         }
+    }
+
+    /// The work of the forces on one edge of the star, with those on the element at its left (counterclockwise).
+    pub(super) fn work(&self, edge: usize) -> DMatrix<f64> {
+        let columns = self.states[0].force.ncols();
+        let [mut forces, mut displacements] = [(); 2].map(|()| DMatrix::zeros(4 * self.states.len(), columns));
+        for (ring, state) in self.states.iter().enumerate() {
+            // The core has no diagonals.
+            let at = if ring + 1 == self.states.len() { 2 * edge } else { 4 * edge };
+            forces.fixed_rows_mut::<4>(4 * ring).copy_from(&state.force.fixed_rows::<4>(4 * at));
+            displacements.fixed_rows_mut::<4>(4 * ring).copy_from(&state.displacement.fixed_rows::<4>(4 * at));
+        }
+        forces.tr_mul(&displacements)
     }
 }
 
-/// Numbers the four tractions of an edge. The second side has the other sign and the other order of its nodes.
-fn number(sides: &[SideOf; 2], layer: usize, next: &mut usize, slots: &mut [[Option<Slot>; TRACTIONS]]) {
-    for p in 0..2 {
-        for c in 0..2 {
-            for (side, node, sign) in [(&sides[0], p, 1.0), (&sides[1], 1 - p, -1.0)] {
-                slots[side.triangle][4 * side.corner + 2 * node + c] = Some(Slot { layer, at: *next, sign });
-            }
-            *next += 1;
+/// The lower factor of a definite matrix.
+fn factor(matrix: DMatrix<f64>) -> DMatrix<f64> {
+    let size = matrix.nrows();
+    // Stars that are not degenerate have definite forms; others would show in the residuals.
+    Cholesky::new(matrix).map_or_else(|| DMatrix::identity(size, size), Cholesky::unpack)
+}
+
+/// Adds the stiffness of the triangles at the outline, which is free. Springs hold the motions of the whole star in which
+/// nothing else does work; the loads balance, so that springs carry nothing.
+fn add_outline(stiffness: &mut DMatrix<f64>, outline: &[Panel], free: &[usize]) {
+    for (k, panel) in outline.iter().enumerate() {
+        let mut panel = panel.clone();
+        let springs = if k == 0 { free } else { &[] };
+        for row in springs.iter().map(|&motion| panel.resultants.row(motion).into_owned()) {
+            panel.stiffness += row.transpose() * row * (panel.stiffness.trace() / LOADS as f64);
         }
+        let inverse = block(&panel, 2, 2).try_inverse().unwrap_or_default();
+        let moved: SMatrix<f64, 4, 8> = panel.stiffness.fixed_view::<4, 8>(8, 0).into_owned();
+        let own = panel.stiffness.fixed_view::<8, 8>(0, 0) - moved.transpose() * inverse * moved;
+        let mut view = stiffness.view_mut((8 * k, 8 * k), (8, 8));
+        view += own;
     }
 }
 
-/// Numbers the tractions of the supported components on a piece of an edge of the outline.
-fn support(
-    side: &SideOf,
-    supported: &[bool; 2],
-    layer: usize,
-    next: &mut usize,
-    slots: &mut [Option<Slot>; TRACTIONS],
-) {
-    for c in (0..2).filter(|&c| supported[c]) {
-        for p in 0..2 {
-            slots[4 * side.corner + 2 * p + c] = Some(Slot { layer, at: *next, sign: 1.0 });
-            *next += 1;
-        }
-    }
-}
-
-/// The conditions of one sub-triangle that do not follow from those of all others: two forces (0, 1) and the moment (2).
-/// Those that follow are the rigid motions of the star on which no support does work.
-fn conditions(star: &CutStar, supported: &[[bool; 2]; 2]) -> Vec<usize> {
-    let mut needed = [false; 3];
-    for (sides, supported) in star.ends.iter().zip(supported) {
-        let corners = &star.triangles[sides[0].triangle].corners;
-        let [a, b] = [1, 2].map(|k| corners[(sides[0].corner + k) % 3]);
-        let way = [(b[0] - a[0]).abs(), (b[1] - a[1]).abs()];
+/// The rigid motions of the star on which no support does work: along x (0), along y (1), and a turn (2).
+fn free_motions(star: &CutStar, supported: &[[bool; 2]; 2]) -> Vec<usize> {
+    let mut held = [false; 3];
+    for (way, supported) in [star.rays[0], star.rays[star.sectors()]].iter().zip(supported) {
         for c in (0..2).filter(|&c| supported[c]) {
-            needed[c] = true;
+            held[c] = true;
             // A turn about the node moves an edge along x by its extent in y. Coordinates are known to rounding.
-            needed[2] |= way[1 - c] > 1e-12 * way[c];
+            held[2] |= way[1 - c].abs() > 1e-12 * way[c].abs();
         }
     }
-    (0..3).filter(|&k| needed[k]).collect()
-}
-
-/// The matrix of ∫τ:K⁻¹τ in the traction loads of a sub-triangle.
-pub(super) fn form(map: &TriangleStress) -> DMatrix<f64> {
-    let mut form = DMatrix::zeros(TRACTIONS, TRACTIONS);
-    for column in 0..TRACTIONS {
-        let unit: [f64; TRACTIONS] = std::array::from_fn(|row| f64::from(u8::from(row == column)));
-        let slope = map.traction_slope(&tractions(&unit));
-        for row in 0..TRACTIONS {
-            form[(row, column)] = slope[row / 4][row / 2 % 2][row % 2];
-        }
-    }
-    form
-}
-
-/// The resultants of the loads of a sub-triangle: two forces, and the moment about its first corner over its size.
-pub(super) fn resultants(corners: &[[f64; 2]; 3]) -> DMatrix<f64> {
-    let size = (0..3).map(|k| (corners[k][0] - corners[(k + 1) % 3][0]).hypot(corners[k][1] - corners[(k + 1) % 3][1]));
-    let size = size.fold(0.0, f64::max);
-    let mut rows = DMatrix::zeros(3, TRACTIONS);
-    for k in 0..3 {
-        let node = |p: usize| corners[(k + 1 + p) % 3];
-        for p in 0..2 {
-            let arm: [f64; 2] =
-                std::array::from_fn(|c| (node(p)[c] / 3.0 + node(1 - p)[c] / 6.0 - 0.5 * corners[0][c]) / size);
-            let column = 4 * k + 2 * p;
-            rows[(0, column)] = 0.5;
-            rows[(1, column + 1)] = 0.5;
-            rows[(2, column)] = -arm[1];
-            rows[(2, column + 1)] = arm[0];
-        }
-    }
-    rows
+    (0..3).filter(|&k| !held[k]).collect()
 }

@@ -2,12 +2,16 @@
 //! balances them in the star of the node.
 
 mod cut_star;
+mod edge_traction;
 mod hat_stress;
+mod layer;
 mod least_energy;
+mod panel;
 mod shape;
 mod star_stress;
 
-pub(crate) use hat_stress::HatStress;
+pub(crate) use edge_traction::EdgeTraction;
+pub(crate) use hat_stress::{HatStress, StarFrame};
 pub(crate) use shape::{ShapeCosts, TractionShape};
 pub(crate) use star_stress::{StarElement, StarStress};
 

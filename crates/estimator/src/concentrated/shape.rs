@@ -1,7 +1,7 @@
 //! The shape of the traction of one node: its share and its width on each candidate edge.
 
 use super::star_stress::Symmetric;
-use super::{HATS, place};
+use super::{EdgeTraction, HATS, place};
 use std::ops::Deref;
 
 /// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
@@ -24,7 +24,7 @@ impl Hat {
 }
 
 fn far(halvings: usize) -> f64 {
-    1.0 / (3 << halvings) as f64
+    EdgeTraction::hat(halvings).moments()[1]
 }
 
 /// A hat on each candidate edge of a node, of which there are one or two; their shares sum to 1.
@@ -157,7 +157,7 @@ mod tests {
             let angle = tilt + 0.25 * std::f64::consts::PI * k as f64;
             [1e-3 * angle.cos(), 1e-3 * angle.sin()]
         };
-        let elements = [0, 1].map(|k| StarElement { corners: [[0.0; 2], at(k), at(k + 1)], at: 0, law: &law });
+        let elements = [0, 1].map(|k| StarElement { ends: [at(k), at(k + 1)], law: &law });
         let made = StarStress::new(&elements, &[0, 1], [[false; 2]; 2]);
         (made.energy, [at(0)[1], at(2)[1]])
     }

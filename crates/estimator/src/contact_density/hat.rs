@@ -1,5 +1,7 @@
 //! Hats: tractions of a node on one of its edges that fall to zero within a part of the edge.
 
+use crate::concentrated::EdgeTraction;
+
 /// A hat that is narrower than its edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NarrowHat<const D: usize> {
@@ -33,9 +35,8 @@ impl<const D: usize> NarrowHat<D> {
 
     /// Nodal values (N) of the linear traction with the same resultant and moment, at its node and at the other.
     pub(crate) fn equivalent(&self) -> [[f64; D]; 2] {
-        let far = self.width() / 3.0;
-        let near = 1.0 - far;
-        [4.0 * near - 2.0 * far, 4.0 * far - 2.0 * near].map(|factor| self.resultant.map(|r| factor * r))
+        let linear = EdgeTraction::hat(self.halvings).equivalent();
+        linear.0.map(|[_, value]| self.resultant.map(|r| value * r))
     }
 
     /// Values of a field that is linear along the edge where the hat has its node and where it ends.

@@ -9,7 +9,6 @@ use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
-use crate::stress::tensor;
 use crate::traction::{Equilibrated, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -137,10 +136,10 @@ fn fields<const D: usize, const N: usize>(balance: &Balance<'_, D, N>, level: &E
     let (mut stress, acceleration): (Vec<_>, _) = means.into_iter().unzip();
     if let Some(concentration) = concentration {
         concentration.each_element(problem, level.forces().density.hats(), |element, hats| {
-            let area = elements[element.index()].volume / problem.material(element).extent();
-            let mean = tensor::<D>(&hats.integral());
+            let measure = ElementMeasure::new(problem, &elements[element.index()], element, choice);
+            let mean = measure.mean_of_hats(hats);
             let to = stress[element.index()].iter_mut().flatten().zip(mean.into_iter().flatten());
-            to.for_each(|(to, integral)| *to += integral / area);
+            to.for_each(|(to, mean)| *to += mean);
         });
     }
     AdmissibleFields {

@@ -9,7 +9,7 @@ mod triangle;
 use bar::BarStress;
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
-pub(crate) use piecewise::{PiecewiseStress, products};
+pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
 pub(crate) use triangle::TriangleStress;
 

@@ -122,7 +122,9 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
 
     fn memory(&self, levels: usize, threads: usize) -> usize {
         let mesh = self.problem.mesh();
+        let concentration = self.concentration.as_ref().map_or(0, |concentration| concentration.memory(self.problem));
         TractionMinimisation::<D>::memory(mesh.simplex().shape(), mesh.element_count(), levels, threads)
+            .saturating_add(concentration)
     }
 
     fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {

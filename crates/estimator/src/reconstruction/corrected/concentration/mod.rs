@@ -15,6 +15,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use star::NodeStar;
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 /// The stars of the nodes of the contact surface, and the stress of their hats, made at first use.
@@ -32,6 +33,15 @@ impl<const D: usize> Concentration<D> {
         let nodes = NodeStar::all(problem);
         let stresses = nodes.iter().map(|_| OnceLock::new()).collect();
         Self { nodes, stresses, tolerance: problem.contact_tolerance() }
+    }
+
+    /// About how much memory the stresses take (bytes) of the stars of which an edge leaves the plane at the beginning.
+    pub(super) fn memory<const N: usize>(&self, problem: &Problem<D, N>) -> usize {
+        let gap = problem.surface().gaps(problem.initial_displacement());
+        let needed = (0..self.nodes.len()).filter(|&at| self.gaps(at, &gap).is_some());
+        let stars: BTreeSet<usize> = needed.map(|at| self.nodes[at].alike).collect();
+        let memory = |star: &NodeStar| StarStress::memory(star.elements.len(), star.edges.len());
+        stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
     /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane.
@@ -64,13 +74,13 @@ impl<const D: usize> Concentration<D> {
         gaps: &'a [f64],
     ) -> ShapeCosts<'a> {
         let star = &self.nodes[at];
-        let direction = [direction[0], direction[D - 1]];
+        let direction = star.frame.own([direction[0], direction[D - 1]]);
         ShapeCosts::new(direction, star.compliance, gaps, &star.tributary, &self.stress(problem, at).energy)
     }
 
     fn stress<const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> &StarStress {
         let alike = self.nodes[at].alike;
-        self.stresses[alike].get_or_init(|| self.nodes[alike].stress(problem, alike))
+        self.stresses[alike].get_or_init(|| self.nodes[alike].stress(problem))
     }
 
     /// The narrow hats of a shape.
@@ -142,10 +152,16 @@ impl<const D: usize> Concentration<D> {
         let position = star.elements.iter().position(|&other| other == element)?;
         let one = |hat: &NarrowHat<D>| {
             let (edge, halvings) = (hat.edge, hat.halvings);
-            hat.resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / extent))
+            let resultant = star.frame.own([hat.resultant[0], hat.resultant[D - 1]]);
+            resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / extent))
         };
-        let forms = &self.stress(problem, at).elements[position];
-        Some(HatStress { forms, resultants: hats.iter().flat_map(one).collect() })
+        Some(HatStress {
+            star: self.stress(problem, at),
+            frame: star.frame,
+            element: position,
+            at: star.corners[position],
+            resultants: hats.iter().flat_map(one).collect(),
+        })
     }
 
     /// Takes in the residuals of all stresses that have been made.

@@ -1,6 +1,6 @@
 //! The stars of the nodes of the contact surface, and their stresses, which congruent stars share.
 
-use crate::concentrated::{StarElement, StarStress};
+use crate::concentrated::{StarElement, StarFrame, StarStress};
 use percute_core::ids::ElementId;
 use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
@@ -13,6 +13,10 @@ const CONGRUENT: f64 = 1e-13;
 #[derive(Debug)]
 pub(super) struct NodeStar {
     pub(super) elements: Vec<ElementId>,
+    /// The corner of each element at the node.
+    pub(super) corners: Vec<usize>,
+    /// The first edge of the star, but global axes where there are supports, which are in these.
+    pub(super) frame: StarFrame,
     pub(super) edges: Vec<CandidateEdge>,
     /// Tributary shares of the edges.
     pub(super) tributary: Vec<f64>,
@@ -58,7 +62,7 @@ impl NodeStar {
         let mut first = HashMap::new();
         let star = |(at, edges): (usize, Vec<CandidateEdge>)| {
             let mut star = Self::new(problem, at, edges);
-            star.alike = *first.entry(star.congruence(problem, at)).or_insert(at);
+            star.alike = *first.entry(star.congruence(problem)).or_insert(at);
             star
         };
         edges.into_iter().enumerate().map(star).collect()
@@ -66,53 +70,67 @@ impl NodeStar {
 
     fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, mut edges: Vec<CandidateEdge>) -> Self {
         edges.sort_by_key(|edge| edge.side);
-        let elements = problem.mesh().stars().star(problem.surface().nodes()[at].node).elements.to_vec();
+        let node = problem.surface().nodes()[at].node;
+        let star = problem.mesh().stars().star(node);
+        let elements = star.elements.to_vec();
         let total: f64 = edges.iter().map(|edge| edge.area).sum();
         let compliance = |&id: &ElementId| {
             let (law, (alpha, beta)) = (problem.material(id), problem.material(id).compliance::<D>());
             (alpha - beta) / law.extent() / elements.len() as f64
         };
-        let links = problem.mesh().stars().star(problem.surface().nodes()[at].node).links;
-        let supported = [links.first(), links.last()].map(|link| {
+        let supported = [star.links.first(), star.links.last()].map(|link| {
             let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
             [supported[0], supported[D - 1]]
         });
-        Self {
+        let corner = |&id: &ElementId| problem.mesh().local_node(id, node).unwrap_or(0);
+        let mut made = Self {
             tributary: edges.iter().map(|edge| edge.area / total).collect(),
             compliance: elements.iter().map(compliance).sum(),
+            corners: elements.iter().map(corner).collect(),
+            frame: StarFrame([1.0, 0.0]),
             elements,
             edges,
             supported,
             alike: at,
+        };
+        if !supported.as_flattened().contains(&true) {
+            let [x, y] = made.ends(problem, 0)[0];
+            made.frame = StarFrame([x / x.hypot(y), y / x.hypot(y)]);
         }
+        made
+    }
+
+    /// The other corners of an element, from the node (m), in the frame. Rounding does not grow with the distance of the body
+    /// from the origin.
+    fn ends<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, position: usize) -> [[f64; 2]; 2] {
+        let points = problem.mesh().cell_points(self.elements[position]);
+        let origin = points[self.corners[position]];
+        [1, N - 1].map(|next| {
+            let point = points[(self.corners[position] + next) % N];
+            self.frame.own([0, D - 1].map(|c| point[c] - origin[c]))
+        })
     }
 
     /// The same numbers for stars whose unit hats have the same stresses.
-    fn congruence<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> Vec<i64> {
-        let (mesh, node) = (problem.mesh(), problem.surface().nodes()[at].node);
-        let origin = mesh.points()[node.index()];
+    fn congruence<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<i64> {
         let mut numbers: Vec<i64> = self.edges.iter().map(|edge| edge.side as i64).collect();
         numbers.extend(self.supported.as_flattened().iter().map(|&supported| i64::from(supported)));
-        for &id in &self.elements {
-            numbers.push(mesh.local_node(id, node).unwrap_or(0) as i64);
+        for (position, id) in self.elements.iter().enumerate() {
             numbers.push(i64::from(problem.element_material()[id.index()]));
-            let offsets = mesh.cell_points(id).into_iter().flat_map(|p| (0..D).map(move |c| p[c] - origin[c]));
-            numbers.extend(offsets.map(|x| (x / (CONGRUENT * mesh.size())).round() as i64));
+            let ends = self.ends(problem, position);
+            numbers
+                .extend(ends.as_flattened().iter().map(|x| (x / (CONGRUENT * problem.mesh().size())).round() as i64));
         }
         numbers
     }
 
     /// The stresses of unit hats.
-    pub(super) fn stress<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> StarStress {
-        let (mesh, node) = (problem.mesh(), problem.surface().nodes()[at].node);
-        let origin = mesh.points()[node.index()];
-        let element = |&id: &ElementId| {
-            let points = mesh.cell_points(id);
-            // From the node: rounding does not grow with the distance of the body from the origin.
-            let corners = std::array::from_fn(|i| [0, D - 1].map(|c| points[i][c] - origin[c]));
-            StarElement { corners, at: mesh.local_node(id, node).unwrap_or(0), law: problem.material(id) }
+    pub(super) fn stress<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> StarStress {
+        let element = |(position, &id): (usize, &ElementId)| StarElement {
+            ends: self.ends(problem, position),
+            law: problem.material(id),
         };
-        let elements: Vec<_> = self.elements.iter().map(element).collect();
+        let elements: Vec<_> = self.elements.iter().enumerate().map(element).collect();
         let sides: Vec<usize> = self.edges.iter().map(|edge| edge.side).collect();
         StarStress::new(&elements, &sides, self.supported)
     }

@@ -1,6 +1,7 @@
 //! Shapes of the tractions of a block on its corner, and the own force of a node that touches alone.
 
 use super::own_forces::OwnForces;
+use super::star::CandidateEdge;
 use super::*;
 use crate::contact_density::{Densities, nodal_forces};
 use crate::reconstruction::corrected::auxiliary_solution::Approach;
@@ -10,6 +11,7 @@ use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, TriangleProblem};
+use std::collections::BTreeMap;
 
 const YOUNG: f64 = 70e9;
 
@@ -69,11 +71,56 @@ fn tractions_have_the_force_and_its_centroid() {
 fn congruent_stars_share_their_stress() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
-    let alike: std::collections::BTreeSet<_> = concentration.nodes.iter().map(|star| star.alike).collect();
+    let alike: BTreeSet<_> = concentration.nodes.iter().map(|star| star.alike).collect();
     assert!(alike.len() <= 5 && concentration.nodes.len() == 13, "{} of {}", alike.len(), concentration.nodes.len());
     let flat = vec![0.0; concentration.nodes.len()];
     assert!((0..flat.len()).all(|at| concentration.shape(&problem, at, &[0.0, 1e6], &flat).is_none()));
     assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
+}
+
+/// A polygon of equal triangles around its centre: the stars of all its corners are copies of one, turned. Rounding of the
+/// corners may put some on the other side of a bound of congruence.
+#[test]
+fn turned_stars_share_their_stress() {
+    let corner = |k: usize| {
+        let (sin, cos) = (0.3 + 2.0 * std::f64::consts::PI * k as f64 / 24.0).sin_cos();
+        [3.0 + cos, 2.0 + sin]
+    };
+    let points: Vec<_> = std::iter::once([3.0, 2.0]).chain((0..24).map(corner)).collect();
+    let cells: Vec<[usize; 3]> =
+        (0..24).map(|k| [[k + 1, (k + 1) % 24 + 1, 0], [0, k + 1, (k + 1) % 24 + 1]][k % 2]).collect();
+    let problem = Problem::builder(TriangleMesh::new(points, &cells, &BTreeMap::new(), &BTreeMap::new()).unwrap())
+        .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
+        .initial_velocity(Initial::Uniform([0.0, -1.0]))
+        .obstacle(Obstacle::plane([0.0, 0.9], [0.0, 1.0], 0.2, None).unwrap())
+        .build()
+        .unwrap();
+    let concentration = Concentration::new(&problem);
+    let inner = concentration.nodes.iter().filter(|star| star.edges.len() == 2);
+    let alike: BTreeSet<_> = inner.clone().map(|star| star.alike).collect();
+    assert!(alike.len() <= 4 && inner.count() == 11, "{}", alike.len());
+    // Two elements, two edges: 12 kB for each element.
+    let memory = concentration.memory(&problem);
+    assert!(memory > 24_000 * alike.len() && memory < 25_000 * (alike.len() + 2), "{memory}");
+    // Hats in the frame of a star have the same stress in each of them.
+    let stress = |at: usize| {
+        let NodeStar { edges, elements, corners, frame, .. } = &concentration.nodes[at];
+        let hats = [0, 1].map(|edge| {
+            let CandidateEdge { facet, end, .. } = edges[edge];
+            NarrowHat { node: at, facet, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
+        });
+        let stress = concentration.in_element(&problem, &hats, elements[0]).unwrap();
+        let products = stress.products();
+        // At both ends of the facet opposite to the node of the star.
+        let vector = |p: usize| frame.own([0, 1].map(|c| products[4 * corners[0] + 2 * p + c]));
+        [[stress.energy(), 0.0], vector(0), vector(1)].concat()
+    };
+    let inner: Vec<_> = (0..concentration.nodes.len()).filter(|&at| concentration.nodes[at].edges.len() == 2).collect();
+    let first = stress(inner[0]);
+    for at in inner {
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * b.abs();
+        assert!(stress(at).iter().zip(&first).all(close), "{:?} {first:?}", stress(at));
+    }
 }
 
 /// Under its own force a node comes to its plane, with the compliance of its traction. The force is none where it stays off
