@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 /// 1e-12 of that term's largest value in the mesh at that instant. Terms count before they cancel: f_d
 /// and the nodes' inertia apart, the tractions of each edge apart, displacement gradients that turn a
 /// body rather than strain it. Rounding leaves some 1e-13; anything above 1e-10 means that a field is
-/// not admissible. All are taken at every sampled instant, but for the last three: of stresses that are
-/// a constant linear map of tractions and Γ_DA, each element is checked in its turn, at one instant of 4
-/// at contact and of 64 elsewhere.
+/// not admissible. All are taken at every sampled instant, but for those of stresses that are
+/// a constant linear map of tractions and Γ_DA (`divergence`, `edge_tractions`, `inner_tractions`): each
+/// element is checked in its turn, at one instant of 4 at contact and of 64 elsewhere. `hat_resultants`
+/// and `hat_stress` are those of unit hats, taken once for each star.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].
@@ -39,12 +40,20 @@ pub struct Residuals {
     pub edge_tractions: f64,
     /// Continuity of σ_DA n inside the macro-elements.
     pub inner_tractions: f64,
+    /// Shares of hats in the force of their node: each at least 0, their sum 1.
+    pub hat_shares: f64,
+    /// Each hat in Coulomb's cone.
+    pub hat_cone: f64,
+    /// Resultant and moment of the tractions on every sub-triangle of a cut star.
+    pub hat_resultants: f64,
+    /// Divergence of the stress of hats, its tractions on the sides of sub-triangles, and their continuity inside.
+    pub hat_stress: f64,
 }
 
 impl Residuals {
     /// Name and value of every residual, in the order of the method.
     #[must_use]
-    pub fn entries(&self) -> [(&'static str, f64); 13] {
+    pub fn entries(&self) -> [(&'static str, f64); 17] {
         [
             ("initial_conditions", self.initial_conditions),
             ("supports", self.supports),
@@ -59,6 +68,10 @@ impl Residuals {
             ("divergence", self.divergence),
             ("edge_tractions", self.edge_tractions),
             ("inner_tractions", self.inner_tractions),
+            ("hat_shares", self.hat_shares),
+            ("hat_cone", self.hat_cone),
+            ("hat_resultants", self.hat_resultants),
+            ("hat_stress", self.hat_stress),
         ]
     }
 
@@ -78,6 +91,10 @@ impl Residuals {
             (&mut self.divergence, other.divergence),
             (&mut self.edge_tractions, other.edge_tractions),
             (&mut self.inner_tractions, other.inner_tractions),
+            (&mut self.hat_shares, other.hat_shares),
+            (&mut self.hat_cone, other.hat_cone),
+            (&mut self.hat_resultants, other.hat_resultants),
+            (&mut self.hat_stress, other.hat_stress),
         ];
         for (mine, theirs) in fields {
             *mine = worse(*mine, theirs);

@@ -20,6 +20,7 @@ pub(crate) struct Densities<const D: usize> {
     /// The part that is linear on each facet, if hats come with it.
     wide: Option<Vec<[[f64; D]; D]>>,
     hats: Vec<NarrowHat<D>>,
+    shares: f64,
 }
 
 impl<const D: usize> Deref for Densities<D> {
@@ -55,7 +56,17 @@ impl<const D: usize> Densities<D> {
                 (0..D).for_each(|c| linear[hat.facet][end][c] += force[c] / facets[hat.facet].area);
             }
         }
-        Self { linear, wide, hats }
+        Self { linear, wide, hats, shares: 0.0 }
+    }
+
+    /// The density with the residual of the shares of its hats: at least 0, their sum 1.
+    pub(crate) fn with_shares(self, shares: f64) -> Self {
+        Self { shares, ..self }
+    }
+
+    /// The residual of the shares of its hats.
+    pub(crate) fn shares(&self) -> f64 {
+        self.shares
     }
 
     /// No force anywhere.

@@ -14,6 +14,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     residuals: &mut Residuals,
 ) {
     for densities in [&densities.start, &densities.end] {
+        residuals.hat_shares = worse(residuals.hat_shares, densities.shares());
         let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
         let largest = densities.iter().flatten().map(size).fold(0.0, worse);
         if largest == 0.0 {
@@ -37,8 +38,8 @@ pub(crate) fn check<const D: usize, const N: usize>(
             let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
             let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), &hat.resultant);
             let outside = worse(tangential, normal);
-            residuals.cone =
-                worse(residuals.cone, outside / size(&hat.resultant).max(1e-12 * largest).max(f64::MIN_POSITIVE));
+            let scale = size(&hat.resultant).max(1e-12 * largest).max(f64::MIN_POSITIVE);
+            residuals.hat_cone = worse(residuals.hat_cone, outside / scale);
         }
     }
 }

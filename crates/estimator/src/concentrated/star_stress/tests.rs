@@ -32,6 +32,30 @@ fn every_sub_triangle_is_in_equilibrium() {
     }
 }
 
+/// Each residual of a star shows a force that is wrong on one side of one sub-triangle: it is in no equilibrium, and no
+/// stress balances it.
+#[test]
+fn a_wrong_force_shows() {
+    let law = law();
+    let elements = elements(&fan(2.0, 3, 0.7), &law);
+    let tractions: Vec<_> = EdgeTraction::narrow_hats().map(|hat| (0, hat)).collect();
+    let scale = 1.0 / law.compliance::<2>().0;
+    let solved = solve(&elements, scale, &tractions, FREE);
+    for (ring, edge) in [(0, 3), (4, 8), (10, 2)] {
+        let mut broken = solved.clone();
+        broken.states[ring].force.row_mut(4 * edge).add_scalar_mut(1e-6);
+        let StarResiduals { resultants, stress } = gather(&broken, elements.len()).1;
+        let all = [resultants, stress.divergence, stress.edges, stress.inner];
+        assert!(all.iter().all(|r| *r > 1e-9), "{ring} {edge}: {all:?}");
+    }
+    // A wrong traction on an arc, and on the arc of the outline.
+    for ring in [0, 7] {
+        let mut broken = solved.clone();
+        broken.states[ring].outer.row_mut(5).add_scalar_mut(1e-6);
+        assert!(gather(&broken, elements.len()).1.resultants > 1e-8);
+    }
+}
+
 /// Far from the ends of a hat, the stress of a force at the tip of a wedge is radial. With ψ from the bisector to the force
 /// and α the angle of the wedge, a hat of half the width costs more energy by P²/E ln 2 [cos²ψ/(α + sin α) + sin²ψ/(α − sin α)].
 /// Quadratic stresses on few triangles are off by some percent, the less the more triangles there are.

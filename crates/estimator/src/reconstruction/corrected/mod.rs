@@ -16,6 +16,7 @@ use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::options::{Ablation, Acceleration, Options};
+use crate::residual::worse;
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
 pub(crate) use concentration::Concentration;
@@ -103,13 +104,15 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),
             None => reaction[k].map(|r| r / self.tributary[k]),
         };
-        let mut hats = Vec::new();
+        let (mut hats, mut shares) = (Vec::new(), 0.0);
         for (k, force) in reaction.iter().enumerate() {
             if let Some((concentration, shape)) = shaped(k) {
-                hats.extend(concentration.hats(k, shape, force));
+                let own: Vec<_> = concentration.hats(k, shape, force).collect();
+                shares = worse(shares, concentration.share_residual(k, shape, force, &own));
+                hats.extend(own);
             }
         }
-        Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats)
+        Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats).with_shares(shares)
     }
 }
 

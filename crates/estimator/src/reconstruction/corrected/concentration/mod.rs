@@ -10,6 +10,7 @@ mod star;
 use crate::concentrated::{HatStress, ShapeCosts, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
+use crate::stress::StressResiduals;
 pub(super) use own_forces::OwnForces;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -110,6 +111,29 @@ impl<const D: usize> Concentration<D> {
         found.map_or([0.0; D], |(edge, hat)| force.map(|f| D as f64 * hat.share * f / edge.area))
     }
 
+    /// By how far the tractions on the edges of a node, narrow hats and densities as wide as edges, are from shares of its
+    /// force: each at least 0, their sum 1.
+    pub(super) fn share_residual(
+        &self,
+        at: usize,
+        shape: &TractionShape,
+        force: &[f64; D],
+        narrow: &[NarrowHat<D>],
+    ) -> f64 {
+        let square: f64 = force.iter().map(|f| f * f).sum::<f64>().max(f64::MIN_POSITIVE);
+        let wide = self.nodes[at].edges.iter().map(|edge| {
+            let density = self.wide(at, edge.facet, shape, force);
+            density.map(|f| f * edge.area / D as f64)
+        });
+        let (mut rest, mut residual) = (*force, 0.0);
+        for resultant in narrow.iter().map(|hat| hat.resultant).chain(wide) {
+            let share: f64 = resultant.iter().zip(force).map(|(r, f)| r * f / square).sum();
+            residual = worse(residual, -share);
+            (0..D).for_each(|c| rest[c] -= resultant[c]);
+        }
+        worse(residual, (rest.iter().map(|f| f * f).sum::<f64>() / square).sqrt())
+    }
+
     /// From the node to the centroid of its traction (m).
     pub(super) fn centroid<const N: usize>(
         &self,
@@ -167,10 +191,9 @@ impl<const D: usize> Concentration<D> {
     /// Takes in the residuals of all stresses that have been made.
     pub(crate) fn add_residuals(&self, residuals: &mut Residuals) {
         for made in self.stresses.iter().filter_map(OnceLock::get).map(|stress| stress.residuals) {
-            residuals.element_resultants = worse(residuals.element_resultants, made.resultants);
-            residuals.divergence = worse(residuals.divergence, made.stress.divergence);
-            residuals.edge_tractions = worse(residuals.edge_tractions, made.stress.edges);
-            residuals.inner_tractions = worse(residuals.inner_tractions, made.stress.inner);
+            residuals.hat_resultants = worse(residuals.hat_resultants, made.resultants);
+            let StressResiduals { divergence, edges, inner } = made.stress;
+            residuals.hat_stress = [divergence, edges, inner].into_iter().fold(residuals.hat_stress, worse);
         }
     }
 }

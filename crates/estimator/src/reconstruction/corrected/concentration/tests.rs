@@ -30,6 +30,18 @@ fn gaps(problem: &TriangleProblem) -> Vec<f64> {
     problem.surface().gaps(&vec![[0.0; 2]; problem.mesh().node_count()])
 }
 
+/// The surface at an instant without any force of the simulation.
+fn free_step(problem: &TriangleProblem) -> SurfaceStep<2> {
+    let count = problem.surface().nodes().len();
+    SurfaceStep {
+        reaction: vec![[0.0; 2]; count],
+        force: vec![[0.0; 2]; count],
+        arresting: vec![[0.0; 2]; count],
+        touching: vec![false; count],
+        gap: gaps(problem),
+    }
+}
+
 /// The node nearest to the plane, and a normal force on it with some friction.
 fn corner(problem: &TriangleProblem) -> (usize, [f64; 2]) {
     let gap = gaps(problem);
@@ -166,14 +178,7 @@ fn a_hat_outside_the_cone_shows() {
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
     let shape = concentration.shape(&problem, at, &force, &gaps(&problem)).unwrap();
-    let count = problem.surface().nodes().len();
-    let step = SurfaceStep {
-        reaction: vec![[0.0; 2]; count],
-        force: vec![[0.0; 2]; count],
-        arresting: vec![[0.0; 2]; count],
-        touching: vec![false; count],
-        gap: gaps(&problem),
-    };
+    let step = free_step(&problem);
     let cone = |force: [f64; 2]| {
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
         assert!(!hats.is_empty());
@@ -181,7 +186,7 @@ fn a_hat_outside_the_cone_shows() {
         let mut residuals = Residuals::default();
         let steps = SurfaceSteps { before: None, now: &step, next: &step, after: None };
         check(&problem, &steps, &StepDensities { start: densities.clone(), end: densities }, true, &mut residuals);
-        residuals.cone
+        residuals.hat_cone
     };
     assert!(cone(force) < 1e-14);
     // Pulling, and with more friction than the cone allows.
@@ -197,7 +202,36 @@ fn the_residuals_of_stars_are_reported() {
     concentration.shape(&problem, at, &force, &gaps(&problem)).unwrap();
     let mut residuals = Residuals::default();
     concentration.add_residuals(&mut residuals);
-    let made =
-        [residuals.element_resultants, residuals.divergence, residuals.edge_tractions, residuals.inner_tractions];
+    let made = [residuals.hat_resultants, residuals.hat_stress];
     assert!(made.iter().all(|r| *r > 0.0 && *r < 1e-12), "{made:?}");
+}
+
+/// Shares that are negative, lost or counted twice show.
+#[test]
+fn shares_that_are_none_show() {
+    let problem = tilted();
+    let concentration = Concentration::new(&problem);
+    let (at, force) = corner(&problem);
+    let gap = gaps(&problem);
+    let shape = concentration.shape(&problem, at, &force, &gap).unwrap();
+    let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
+    let residual = |hats: &[NarrowHat<2>]| concentration.share_residual(at, &shape, &force, hats);
+    assert!(hats.len() == 2 && residual(&hats) < 1e-15, "{hats:?}");
+    let lost = hats[1..].to_vec();
+    let twice = [hats.clone(), hats[..1].to_vec()].concat();
+    // The sum is right, but one share is above 1 and the other below 0.
+    let mut negative = hats.clone();
+    (0..2).for_each(|c| negative[0].resultant[c] += 1.5 * force[c]);
+    (0..2).for_each(|c| negative[1].resultant[c] -= 1.5 * force[c]);
+    let turned = vec![NarrowHat { resultant: [force[1], force[0]], ..hats[0] }, hats[1]];
+    for broken in [lost, twice, negative, turned] {
+        assert!(residual(&broken) > 0.05, "{} {broken:?}", residual(&broken));
+    }
+    // The residual of the densities is that of the report.
+    let step = free_step(&problem);
+    let densities = Densities::with_hats(&problem, |_, _| [[0.0; 2]; 2], hats).with_shares(0.3);
+    let mut residuals = Residuals::default();
+    let steps = SurfaceSteps { before: None, now: &step, next: &step, after: None };
+    check(&problem, &steps, &StepDensities { start: densities.clone(), end: densities }, true, &mut residuals);
+    assert_eq!(residuals.hat_shares, 0.3);
 }
