@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-import percute as pc
-from percute.verification import figures, slow, steps, turning
+from percute.verification import figures, steps, turning
 from percute.verification.choices import RECONSTRUCTIONS as NAMES
 from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, percent, short
@@ -48,7 +47,6 @@ def compute(section: Section, resolution: Resolution) -> None:
     if not resolution.small:
         section.add(_kinds(results), _outside(results), table)
     steps.add(section, resolution)
-    slow.add(section, resolution)
     turning.add(section, resolution)
     section.add("### The cases and their references", _cases(results))
     if not resolution.small:
@@ -80,23 +78,25 @@ def _effectivities(results: Iterable[Result]) -> Table:
 
 def _kinds(results: Sequence[Result]) -> Table:
     """Give the range of each kind with each reconstruction, and how it moves under refinement."""
-    names = ("lowest", "highest", "lowest, meshes 3 and 4", "highest, meshes 3 and 4")
-    columns = [Column(name) for name in ("kind", "reconstruction", "measure")] + [Column(name, digits=3) for name in names]
-    table = Table(
-        "effectivity-kinds",
+    columns = [Column("kind"), Column("reconstruction")]
+    for measure in MEASURES:
+        names = ("lowest", "highest", "lowest, meshes 3 and 4", "highest, meshes 3 and 4", "largest growth, mesh 2 to 4")
+        columns += [Column(f"{measure}: {name}", digits=3) for name in names]
+    caption = (
         "The effectivity indices of all cases of a kind: their range on all meshes and on the two finer ones, and the largest ratio of the "
-        "value on mesh 4 to that on mesh 2 (below 1: it falls in all cases).",
-        [*columns, Column("largest growth, mesh 2 to 4", "ratio", digits=3)],
+        "value on mesh 4 to that on mesh 2 (below 1: it falls in all cases)."
     )
+    table = Table("effectivity-kinds", caption, columns)
     for kind in KINDS:
         for r, name in enumerate(NAMES):
-            for m, measure in enumerate(MEASURES):
+            cells: list[float] = []
+            for m in range(2):
                 values = [[math.nan if f is None else f.effectivity(r)[m] for f in found] for case, found in results if case.kind == kind]
-                ranges = []
                 for start in (0, 2):
                     known = [value for each in values for value in each[start:] if math.isfinite(value)]
-                    ranges += [min(known), max(known)]
-                table.add(kind, name, measure, *ranges, max(each[3] / each[1] for each in values))
+                    cells += [min(known), max(known)]
+                cells.append(max(each[3] / each[1] for each in values))
+            table.add(kind, name, *cells)
     return table
 
 

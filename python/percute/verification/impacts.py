@@ -170,7 +170,7 @@ class Case:
             found.append(Found(len(problem.mesh.cells), steps, estimates, touching, int(count.max()), int(count[-1])))
             histories.append(history)
         there = [each for each in found if each is not None]
-        places = np.unique(np.concatenate([_touched(history) for history in histories]), axis=0)
+        places = np.unique(np.concatenate([np.empty((0, 2)), *map(_touched, histories)]), axis=0)
         for k, refinements in enumerate(self.references):
             fine = self.problem(refinements, places, self.sizes[k]) if self.sizes else self.problem(refinements)
             errors = pc.true_errors(histories, fine, **steps_past(max(ends), STEP, fine), progress=stop)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import percute as pc
@@ -16,7 +16,7 @@ from percute.verification.page import Column, Section, Table
 from percute.verification.parallel import Resolution, Stop
 
 Floats = NDArray[np.float64]
-ACCELERATIONS = ("mixed", "closest")
+ACCELERATIONS: tuple[Literal["mixed", "closest"], ...] = ("mixed", "closest")
 """Γ_DA of the estimates, all with `corrected`."""
 MESHES, FEW, REFERENCE = 4, 2, 3
 """Meshes, those of a small study, and refinements from a mesh to its reference."""
