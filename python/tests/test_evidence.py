@@ -233,7 +233,7 @@ def test_every_estimate_states_the_ranges_of_the_page(block_history: pc.History)
     low, high = math.floor(20 * min(inside)) / 20, math.ceil(10 * max(inside)) / 10
     lower, higher = math.floor(10 * min(otherwise)) / 10, math.ceil(10 * max(otherwise)) / 10
     meaning = pc.estimate(block_history).meaning
-    assert f"Δt_c: {low:g} to {high:g} times the true error; {lower:g} to {higher:g} times in thin parts" in meaning
+    assert f"Δt_c: {low:g} to {high:g} times the true error; {lower:g} to {higher:g} in thin bent parts" in meaning
     for name in ("consistent", "published"):
         meaning = pc.estimate(block_history, reconstruction=name).meaning  # type: ignore[arg-type]
         assert f"in tests {min(least):.2f} to over 3 times the true error" in meaning and max(others) > 3.0

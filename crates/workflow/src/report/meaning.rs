@@ -27,7 +27,7 @@ pub fn meaning(reconstruction: Option<Reconstruction>) -> String {
             let ([least, most], [low, high]) = (CORRECTED, CORRECTED_OTHERWISE);
             format!(
                 "In tests at 0.4 to 400 m/s with steps of 0.02 to 0.9 Δt_c: {least} to {most} times the true error; {low} to \
-                 {high} times in thin parts that bend, at corners of one element and after several contacts"
+                 {high} in thin bent parts, corners of one element and after several contacts"
             )
         }
         Some(reconstruction @ (Reconstruction::Consistent | Reconstruction::Published)) => {
