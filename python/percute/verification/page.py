@@ -45,6 +45,11 @@ def short(value: float, digits: int) -> str:
     return f"{mantissa}e{power}"
 
 
+def interval(low: float, high: float) -> str:
+    """Give a range of numbers with three significant digits."""
+    return "–".join(dict.fromkeys(short(end, 3) for end in (low, high)))
+
+
 def percent(fraction: float) -> str:
     """Give a fraction in per cent."""
     return f"{short(100.0 * fraction, 3)} %"

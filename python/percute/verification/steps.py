@@ -9,7 +9,7 @@ import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Setting
 from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, RECONSTRUCTION_OPTIONS, Case, cases
-from percute.verification.page import Column, Figure, Section, Table
+from percute.verification.page import Column, Figure, Section, Table, interval
 from percute.verification.parallel import Resolution, Stop
 
 RATIOS = (0.9, 0.5, 0.2, 0.1, 0.05, 0.02)
@@ -19,7 +19,8 @@ ELEMENTS, FRACTIONS = 40, (0.1, 0.3, 0.5, 0.7, 0.9)
 ATTEMPTS: dict[str, dict[str, Any]] = {options["reconstruction"]: options for options in RECONSTRUCTION_OPTIONS}
 ATTEMPTS["corrected, not spread"] = {"_ablation": "impulse smoothing"}
 """The reconstructions, and the default with reactions that are not spread in time."""
-ENDS = ("lowest, sup", "highest, sup", "lowest, mean", "highest, mean")
+MEASURES = ("sup", "mean")
+ENDS = tuple(f"{end}, {measure}" for measure in MEASURES for end in ("lowest", "highest"))
 
 Subject = Case | None
 """A plane body, or the bar."""
@@ -72,12 +73,15 @@ def add(section: Section, resolution: Resolution) -> None:
 
 
 def _summary(table: Table, subjects: Sequence[Subject]) -> Table:
-    columns = [Column("body"), Column("reconstruction"), *(Column(end, digits=3) for end in ENDS)]
+    """Give one row for each body: the ranges of both measures with each attempt."""
+    columns = [Column("body"), *(Column(f"{attempt}: {measure}") for attempt in ATTEMPTS for measure in MEASURES)]
     summary = Table("effectivity-steps-range", f"The range of the effectivity index over Δt/Δt_c from {RATIOS[-1]} to {RATIOS[0]}.", columns)
     for subject in subjects:
-        for attempt in ATTEMPTS:
-            of = {"body": _name(subject), "reconstruction": attempt}
-            summary.add(*of.values(), *((min if end.startswith("lowest") else max)(table.where(end, of)) for end in ENDS))
+        of = [{"body": _name(subject), "reconstruction": attempt} for attempt in ATTEMPTS]
+        summary.add(
+            _name(subject),
+            *(interval(min(table.where(f"lowest, {m}", each)), max(table.where(f"highest, {m}", each))) for each in of for m in MEASURES),
+        )
     return summary
 
 
@@ -88,6 +92,6 @@ def _draw(table: Table, subjects: Sequence[Subject]) -> figures.Drawing:
         return figures.Curve(f"{attempt}, {measure}", RATIOS, values, figures.own(k), dashed=dashed, marked=True)
 
     order = list(enumerate(ATTEMPTS))
-    panels = [(_name(subject).split(",")[0], [curve(subject, k, a, m) for k, a in order for m in ("sup", "mean")]) for subject in subjects]
+    panels = [(_name(subject).split(",")[0], [curve(subject, k, a, m) for k, a in order for m in MEASURES]) for subject in subjects]
     ticks = (0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0)
     return figures.lines(panels, "Δt/Δt_c", "e/e_ref", log="xy", columns=3, band=GOOD, xticks=(0.02, 0.05, 0.1, 0.2, 0.5), yticks=ticks)
