@@ -170,7 +170,7 @@ class Case:
             found.append(Found(len(problem.mesh.cells), steps, estimates, touching, int(count.max()), int(count[-1])))
             histories.append(history)
         there = [each for each in found if each is not None]
-        places = np.unique(np.concatenate([np.empty((0, 2)), *map(_touched, histories)]), axis=0)
+        places = np.unique(np.concatenate([np.empty((0, 2)), *map(touched, histories)]), axis=0)
         for k, refinements in enumerate(self.references):
             fine = self.problem(refinements, places, self.sizes[k]) if self.sizes else self.problem(refinements)
             errors = pc.true_errors(histories, fine, **steps_past(max(ends), STEP, fine), progress=stop)
@@ -194,7 +194,7 @@ def curve(name: str, found: Sequence[Found | None], choice: int, measure: int, c
     return figures.Curve(name, [2.0**mesh for mesh in range(len(found))], values, figures.own(colour), marked=True)
 
 
-def _touched(history: pc.History) -> NDArray[np.float64]:
+def touched(history: pc.History) -> NDArray[np.float64]:
     """Give the corners that come into contact (m)."""
     nodes = history.contact_nodes[history.touching.any(axis=0)]
     return history.problem.mesh.points[np.intersect1d(nodes, corners(history.problem.mesh))]

@@ -59,6 +59,10 @@ pub(crate) struct ShapeCosts<'a> {
     gaps: &'a [f64],
     /// Tributary shares.
     tributary: &'a [f64],
+    /// The force over its normal part.
+    direction: [f64; 2],
+    /// The form ∫τ:K⁻¹τ over the star.
+    energy: &'a Symmetric,
     /// ∫τ:K⁻¹τ under a unit normal force (m/N): products of the hats of both edges, by their halvings.
     products: [[[[f64; HATS + 1]; HATS + 1]; 2]; 2],
     /// 2 times the cost of a share that differs from the tributary one by 1, under a unit normal force.
@@ -73,7 +77,7 @@ impl<'a> ShapeCosts<'a> {
         compliance: f64,
         gaps: &'a [f64],
         tributary: &'a [f64],
-        energy: &Symmetric,
+        energy: &'a Symmetric,
     ) -> Self {
         let mut products = [[[[0.0; HATS + 1]; HATS + 1]; 2]; 2];
         let pairs = (0..gaps.len()).flat_map(|e| (0..gaps.len()).map(move |f| (e, f)));
@@ -87,7 +91,7 @@ impl<'a> ShapeCosts<'a> {
             }
         }
         let square: f64 = direction.iter().map(|d| d * d).sum();
-        Self { gaps, tributary, products, penalty: 2.0 * TRIBUTARY * square * compliance }
+        Self { gaps, tributary, direction, energy, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
     /// The shape of least gap energy and stress energy under a normal force (N).
@@ -134,11 +138,24 @@ impl<'a> ShapeCosts<'a> {
         shape.iter().enumerate().map(product).sum()
     }
 
-    /// By how much the node is closer to its plane than the mean of its traction, with the local compliance (m): from 0 on,
-    /// which is at the narrowest traction.
-    pub(crate) fn approach(&self, shape: &TractionShape, normal: f64) -> f64 {
+    /// By how much the node is closer to its plane, of this normal, than the mean of its traction, with the local compliance
+    /// (m): from 0 on, which is at the narrowest traction.
+    pub(crate) fn approach(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
         let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
-        self.gap(shape) - least * far(HATS) + normal * self.stress(shape)
+        self.gap(shape) - least * far(HATS) + normal * self.local(shape, plane, self.direction)
+    }
+
+    /// Local compliance (m/N): displacement of a traction along a direction under a unit force along another one, beyond that of
+    /// its linear equivalent.
+    pub(crate) fn local(&self, shape: &TractionShape, along: [f64; 2], force: [f64; 2]) -> f64 {
+        let narrow = || shape.iter().enumerate().filter(|(_, hat)| hat.halvings > 0);
+        let pair = |(e, a): (usize, &Hat), (f, b): (usize, &Hat)| {
+            let of = |c: usize, d: usize| {
+                along[c] * force[d] * self.energy.at(place(e, a.halvings, c), place(f, b.halvings, d))
+            };
+            a.share * b.share * (of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1))
+        };
+        narrow().map(|a| narrow().map(|b| pair(a, b)).sum::<f64>()).sum()
     }
 }
 
@@ -162,7 +179,7 @@ mod tests {
         (made.energy, [at(0)[1], at(2)[1]])
     }
 
-    fn costs<'a>(energy: &Symmetric, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
+    fn costs<'a>(energy: &'a Symmetric, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
         ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], energy)
     }
 

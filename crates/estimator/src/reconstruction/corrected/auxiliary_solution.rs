@@ -32,12 +32,14 @@ pub(super) struct AuxiliarySolution<const D: usize> {
     peak_energy: f64,
 }
 
-/// The motion of a contact node to its plane over the next step.
+/// The motion of a contact node over the next step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Approach {
-    /// Its gap at the next instant without a contact force (m).
+pub(super) struct Approach<const D: usize> {
+    /// Gap at the next instant without a contact force (m).
     pub(super) gap: f64,
-    /// The way that a unit force gives until then (m/N).
+    /// Displacement along the plane now, and at the next instant without a contact force (m).
+    pub(super) along: [[f64; D]; 2],
+    /// Displacement that a unit force adds until then (m/N).
     pub(super) mobility: f64,
 }
 
@@ -77,14 +79,19 @@ impl<const D: usize> AuxiliarySolution<D> {
         times: &TimeGrid,
         (n, at): (usize, usize),
         force: &[[f64; D]],
-    ) -> Approach {
+    ) -> Approach<D> {
         let contact = &problem.surface().nodes()[at];
         let i = contact.node.index();
         let step = times.step(n);
         let mobility = step * times.velocity_step(n) * inverse_mass[i];
-        let way: [f64; D] = std::array::from_fn(|c| step * self.half_step[i][c] + mobility * force[i][c]);
+        let now = self.displacement[i];
+        let next = std::array::from_fn(|c| now[c] + step * self.half_step[i][c] + mobility * force[i][c]);
         let frame = problem.obstacles()[contact.obstacle].flat_frame();
-        Approach { gap: problem.surface().gap(at, &self.displacement[i]) + frame.split(&way).0, mobility }
+        Approach {
+            gap: problem.surface().gap(at, &next),
+            along: [now, next].map(|displacement| frame.split(&displacement).1),
+            mobility,
+        }
     }
 
     /// Takes in the energy of the simulation at a step.

@@ -1,16 +1,17 @@
-//! The contact forces of the auxiliary solution where a node alone touches.
+//! The contact forces of the auxiliary solution where a node touches alone.
 //!
-//! The force of the simulation is too large there, because the mesh lacks the compliance of the body close to the node.
+//! The force of the simulation is too large there, because the mesh lacks the compliance of the body close to the node. A force
+//! that is smaller for longer has another impulse after each contact phase. Such a node of the auxiliary solution therefore
+//! has a contact of its own, with Coulomb friction: it touches and is released by its own gap.
 
 use super::Concentration;
+use crate::concentrated::{ShapeCosts, StarFrame, TractionShape};
 use crate::reconstruction::corrected::auxiliary_solution::Approach;
+use percute_core::contact::{Coulomb, Frame};
 use percute_core::problem::Problem;
 
 /// A hat with less than this share does not make a node wide.
 const SHARE: f64 = 1e-6;
-
-/// A force below this part of the largest one has no direction.
-const ROUNDING: f64 = 1e-12;
 
 /// Bisections of the force: to 1e-12 of the largest.
 const BISECTIONS: usize = 40;
@@ -18,91 +19,120 @@ const BISECTIONS: usize = 40;
 /// The own forces of the nodes of the contact surface.
 #[derive(Clone, Debug)]
 pub(in crate::reconstruction::corrected) struct OwnForces<const D: usize> {
-    nodes: Vec<OwnForce<D>>,
-    /// Largest normal force of the simulation so far (N).
-    peak: f64,
+    /// The contacts with a force at the step before.
+    contacts: Vec<Option<OwnContact<D>>>,
 }
 
-/// That of one node at the step before.
+/// The contact of one node.
 #[derive(Clone, Copy, Debug)]
-struct OwnForce<const D: usize> {
-    /// Its normal part (N).
-    normal: f64,
-    /// The last force of the simulation over its normal part.
+struct OwnContact<const D: usize> {
+    /// The force (N).
+    force: [f64; D],
+    /// The force over its normal part.
     direction: [f64; D],
+    /// Displacement along the plane at which the traction sticks (m).
+    anchor: [f64; D],
 }
 
 impl<const D: usize> OwnForces<D> {
     pub(in crate::reconstruction::corrected) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        let nodes = vec![OwnForce { normal: 0.0, direction: [0.0; D] }; problem.surface().nodes().len()];
-        Self { nodes, peak: 0.0 }
+        Self { contacts: vec![None; problem.surface().nodes().len()] }
     }
 
-    /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone. The second
-    /// has the reactions of which the normal work is measured: none at these nodes, because the auxiliary solution does not stop
-    /// with them, and the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
-    ///
-    /// An own force acts on after the simulation has released the node, but it never grows without it.
+    /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone, from then
+    /// on until the own force is 0. The second field has the reactions of which the normal work is measured: none at these
+    /// nodes, where the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
     pub(in crate::reconstruction::corrected) fn apply<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         concentration: &Concentration<D>,
         gap: &[f64],
-        approach: impl Fn(usize) -> Approach,
+        approach: impl Fn(usize) -> Approach<D>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
-        for (at, (own, force)) in self.nodes.iter_mut().zip(contact).enumerate() {
-            let obstacle = &problem.obstacles()[problem.surface().nodes()[at].obstacle];
+        for (at, node) in problem.surface().nodes().iter().enumerate().filter(|(_, node)| node.free) {
+            let obstacle = &problem.obstacles()[node.obstacle];
+            let (last, approach) = (self.contacts[at].take(), approach(at));
             // Reactions of a foreign history need not be in the cone.
-            let held = obstacle.project_into_cone(force);
-            let normal = obstacle.flat_frame().split(&held).0;
-            self.peak = self.peak.max(normal);
-            if normal > ROUNDING * self.peak {
-                own.direction = held.map(|f| f / normal);
+            let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(&contact[at])).0;
+            let stopping = (-approach.gap / approach.mobility).max(0.0);
+            if last.is_none() && simulated == 0.0 && stopping == 0.0 {
+                continue;
             }
-            let most = normal.max(own.normal);
-            own.normal = normal;
-            if most > 0.0
-                && let Some(found) = concentration.own_force(problem, at, (most, &own.direction), gap, || approach(at))
-            {
-                own.normal = found;
-                *force = own.direction.map(|d| found * d);
-                arresting[at] = [0.0; D];
+            let Some(gaps) = concentration.gaps(at, gap) else { continue };
+            let own = Own {
+                frame: obstacle.flat_frame(),
+                star: concentration.nodes[at].frame,
+                // Along a support the reaction is the support's.
+                law: (!node.guided).then(|| obstacle.law()),
+                approach,
+            };
+            let direction = last.map_or(*own.frame.normal(), |last| last.direction);
+            let costs = concentration.costs(problem, at, &direction, &gaps);
+            if last.is_none() && !alone(&costs.shape(if simulated > 0.0 { simulated } else { stopping })) {
+                continue;
             }
+            self.contacts[at] = own.contact(&costs, own.normal(&costs, stopping), last);
+            contact[at] = self.contacts[at].map_or([0.0; D], |own| own.force);
+            arresting[at] = [0.0; D];
         }
     }
 }
 
-impl<const D: usize> Concentration<D> {
-    /// The normal force (N), at most `most` in this direction, under which a node comes to its plane with the local
-    /// compliance of its traction. `None` where the mesh has this compliance: where a hat is as wide as its edge.
-    fn own_force<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        at: usize,
-        (most, direction): (f64, &[f64; D]),
-        gap: &[f64],
-        approach: impl Fn() -> Approach,
-    ) -> Option<f64> {
-        let gaps = self.gaps(at, gap)?;
-        let costs = self.costs(problem, at, direction, &gaps);
-        if costs.shape(most).iter().any(|hat| hat.share > SHARE && hat.halvings == 0) {
-            return None;
-        }
-        let approach = approach();
-        let remaining =
-            |normal: f64| approach.gap + normal * approach.mobility + costs.approach(&costs.shape(normal), normal);
-        if approach.gap >= 0.0 {
-            return Some(0.0);
-        }
-        if remaining(most) <= 0.0 {
-            return Some(most);
-        }
-        let (mut low, mut high) = (0.0, most);
+/// Whether the mesh lacks the local compliance: no hat is as wide as its edge.
+fn alone(shape: &TractionShape) -> bool {
+    shape.iter().all(|hat| hat.share <= SHARE || hat.halvings > 0)
+}
+
+/// A node that has a force of its own.
+struct Own<const D: usize> {
+    frame: Frame<D>,
+    star: StarFrame,
+    law: Option<Coulomb>,
+    approach: Approach<D>,
+}
+
+impl<const D: usize> Own<D> {
+    /// The normal of the plane in the frame of the star.
+    fn across(&self) -> [f64; 2] {
+        let normal = self.frame.normal();
+        self.star.own([normal[0], normal[D - 1]])
+    }
+
+    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction; `stopping`
+    /// brings it there without.
+    fn normal(&self, costs: &ShapeCosts<'_>, stopping: f64) -> f64 {
+        let across = self.across();
+        let (mut low, mut high) = (0.0, stopping);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
-            if remaining(middle) < 0.0 { low = middle } else { high = middle }
+            let local = costs.approach(&costs.shape(middle), across, middle);
+            let remaining = self.approach.gap + middle * self.approach.mobility + local;
+            if remaining < 0.0 { low = middle } else { high = middle }
         }
-        Some(0.5 * (low + high))
+        0.5 * (low + high)
+    }
+
+    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit; `None`
+    /// without a force.
+    fn contact(&self, costs: &ShapeCosts<'_>, force: f64, last: Option<OwnContact<D>>) -> Option<OwnContact<D>> {
+        if force == 0.0 {
+            return None;
+        }
+        let (shape, normal, [now, next]) = (costs.shape(force), self.frame.normal(), self.approach.along);
+        let (across, along) = (self.across(), [-self.across()[1], self.across()[0]]);
+        let anchor = last.map_or(now, |last| last.anchor);
+        let tangent = [-normal[D - 1], normal[0]];
+        let mobility = self.approach.mobility + costs.local(&shape, along, along);
+        let away = (0..D).map(|c| (next[c] - anchor[c]) * tangent[c]).sum::<f64>()
+            + force * costs.local(&shape, along, across);
+        let (stick, limit) = (-away / mobility, self.law.map_or(0.0, |law| law.limit(force)));
+        let friction = stick.clamp(-limit, limit);
+        let slip = (friction - stick) * mobility;
+        Some(OwnContact {
+            force: std::array::from_fn(|c| force * normal[c] + friction * tangent[c]),
+            direction: std::array::from_fn(|c| normal[c] + friction / force * tangent[c]),
+            anchor: std::array::from_fn(|c| anchor[c] + slip * tangent[c]),
+        })
     }
 }

@@ -17,11 +17,16 @@ const YOUNG: f64 = 70e9;
 
 /// A block of 2 × 1 m in 8×4 cells, on a plane that is turned by 10° under it.
 fn tilted() -> TriangleProblem {
+    rough(0.2)
+}
+
+/// The same with another coefficient of friction.
+fn rough(friction: f64) -> TriangleProblem {
     let (sin, cos) = 10_f64.to_radians().sin_cos();
     Problem::builder(TriangleMesh::rectangle(2.0, 1.0, 8, 4).unwrap())
         .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -1.0]))
-        .obstacle(Obstacle::plane([0.0, -1e-3], [sin, cos], 0.2, None).unwrap())
+        .obstacle(Obstacle::plane([0.0, -1e-3], [sin, cos], friction, None).unwrap())
         .build()
         .unwrap()
 }
@@ -135,40 +140,94 @@ fn turned_stars_share_their_stress() {
     }
 }
 
-/// Under its own force a node comes to its plane, with the compliance of its traction. The force is none where it stays off
-/// the plane, and never above the largest that is allowed; it goes on after the release of the simulation, but does not grow.
+/// The force of a node after a step of `OwnForces`, from the reaction of the simulation and the motion of the node.
+fn own_force(
+    problem: &TriangleProblem,
+    concentration: &Concentration<2>,
+    own: &mut OwnForces<2>,
+    (reaction, approach): ([f64; 2], Approach<2>),
+) -> [f64; 2] {
+    let (gap, (at, _)) = (gaps(problem), corner(problem));
+    let mut contact = vec![[0.0; 2]; gap.len()];
+    contact[at] = reaction;
+    let mut arresting = contact.clone();
+    let away = Approach { gap: 1.0, ..approach };
+    let of = |k: usize| if k == at { approach } else { away };
+    own.apply(problem, concentration, &gap, of, [&mut contact, &mut arresting]);
+    // The work of the reaction of a node with a force of its own is not measured.
+    assert_eq!(arresting[at], [0.0; 2]);
+    assert!((0..gap.len()).all(|k| k == at || contact[k] == [0.0; 2]));
+    contact[at]
+}
+
+/// Under its own force a node comes to its plane, with the compliance of its traction, however large the reaction of the
+/// simulation is, and also where there is none. Off the plane it has no force.
 #[test]
 fn own_forces_close_the_gap() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
-    let (at, force) = corner(&problem);
-    let gap = gaps(&problem);
-    let frame = problem.obstacles()[0].flat_frame();
-    let most = frame.split(&force).0;
-    let apply = |own: &mut OwnForces<2>, given: [f64; 2], approach: Approach| {
-        let mut contact = vec![[0.0; 2]; gap.len()];
-        contact[at] = given;
-        let mut arresting = contact.clone();
-        own.apply(&problem, &concentration, &gap, |_| approach, [&mut contact, &mut arresting]);
-        // The work of the reaction of a node with a force of its own is not measured.
-        assert_eq!(arresting[at], [0.0; 2]);
-        contact[at]
+    let ((at, force), gap) = (corner(&problem), gaps(&problem));
+    let normal = *problem.obstacles()[0].flat_frame().normal();
+    let approach = |gap: f64| Approach { gap, along: [[0.0; 2]; 2], mobility: 1e-12 };
+    let apply = |own: &mut OwnForces<2>, reaction: [f64; 2], gap: f64| {
+        own_force(&problem, &concentration, own, (reaction, approach(gap)))
     };
-    let approach = |gap: f64| Approach { gap, mobility: 1e-12 };
     let mut own = OwnForces::new(&problem);
-    assert_eq!(apply(&mut own.clone(), force, approach(1e-9)), [0.0; 2]);
-    assert!((frame.split(&apply(&mut own.clone(), force, approach(-1.0))).0 / most - 1.0).abs() < 1e-15);
-    let found = apply(&mut own, force, approach(-6e-5));
-    let normal = frame.split(&found).0;
-    let direction = force.map(|f| f / most);
-    let gaps = concentration.gaps(at, &gap).unwrap();
-    let costs = concentration.costs(&problem, at, &direction, &gaps);
-    let remaining = |normal: f64| -6e-5 + 1e-12 * normal + costs.approach(&costs.shape(normal), normal);
-    assert!(normal > 0.0 && normal < most);
-    // 40 bisections of the largest force.
-    assert!(remaining(normal - 2e-12 * most) < 0.0 && remaining(normal + 2e-12 * most) > 0.0);
-    let after = frame.split(&apply(&mut own, [0.0; 2], approach(-1.0))).0;
-    assert!((after / normal - 1.0).abs() < 1e-12, "{after} {normal}");
+    let found = apply(&mut own, force, -6e-5);
+    let size = found[0] * normal[0] + found[1] * normal[1];
+    let (gaps, stopping) = (concentration.gaps(at, &gap).unwrap(), 6e7);
+    let costs = concentration.costs(&problem, at, &normal, &gaps);
+    let across = concentration.nodes[at].frame.own(normal);
+    let remaining = |size: f64| -6e-5 + 1e-12 * size + costs.approach(&costs.shape(size), across, size);
+    assert!(size > 0.0 && size < 0.1 * stopping, "{size}");
+    // 40 bisections of the force that stops the node.
+    assert!(remaining(size - 2e-12 * stopping) < 0.0 && remaining(size + 2e-12 * stopping) > 0.0);
+    assert_eq!(apply(&mut own.clone(), force, 1e-9), [0.0; 2]);
+    for reaction in [[0.0; 2], force.map(|f| 1e-3 * f), force.map(|f| 3.0 * f)] {
+        assert_eq!(apply(&mut OwnForces::new(&problem), reaction, -6e-5), found);
+    }
+}
+
+/// The traction sticks until Coulomb's limit, from where it first touched, and slides beyond.
+#[test]
+fn own_forces_stick_and_slide() {
+    let problem = rough(1.0);
+    let concentration = Concentration::new(&problem);
+    let (_, force) = corner(&problem);
+    let frame = problem.obstacles()[0].flat_frame();
+    let tangent = [-frame.normal()[1], frame.normal()[0]];
+    let mut own = OwnForces::new(&problem);
+    let mut apply = |slides: f64| {
+        let along = [[0.0; 2], tangent.map(|t| slides * t)];
+        let found =
+            own_force(&problem, &concentration, &mut own, (force, Approach { gap: -6e-5, along, mobility: 1e-12 }));
+        (found[0] * tangent[0] + found[1] * tangent[1]) / frame.split(&found).0
+    };
+    let held = apply(0.0);
+    assert!(held.abs() < 0.99, "{held}");
+    assert!(apply(1e-6) < held);
+    assert!((apply(1e-3) + 1.0).abs() < 1e-12);
+    // It has slid: on the way back it is pulled from the other side before it is where it was.
+    assert!((apply(0.0) - 1.0).abs() < 1e-12);
+}
+
+/// Where an edge lies on the plane, the force of the simulation remains.
+#[test]
+fn a_flat_zone_has_no_own_force() {
+    let problem = tilted();
+    let concentration = Concentration::new(&problem);
+    let (at, force) = corner(&problem);
+    let mut gap = gaps(&problem);
+    gap[concentration.nodes[at].edges[0].far] = gap[at];
+    let mut contact = vec![[0.0; 2]; gap.len()];
+    contact[at] = force;
+    let mut arresting = contact.clone();
+    let approach = Approach { gap: -6e-5, along: [[0.0; 2]; 2], mobility: 1e-12 };
+    let away = Approach { gap: 1.0, ..approach };
+    let of = |k: usize| if k == at { approach } else { away };
+    let mut own = OwnForces::new(&problem);
+    own.apply(&problem, &concentration, &gap, of, [&mut contact, &mut arresting]);
+    assert_eq!([contact[at], arresting[at]], [force; 2]);
 }
 
 /// A hat outside the cone shows, whatever its width.
