@@ -88,6 +88,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
         maps,
         residuals,
         kept_impulse: (!problem.obstacles().is_empty() && simulated > 0.0).then(|| kept / simulated),
+        own_contacts: preparation.reconstruction().own_contacts(),
         given: preparation.given(),
         steps: last,
         end,

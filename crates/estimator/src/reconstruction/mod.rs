@@ -106,6 +106,11 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         None
     }
 
+    /// Nodes at which the balanced fields have had a contact of their own.
+    fn own_contacts(&self) -> usize {
+        0
+    }
+
     /// The part of the contact law that such densities miss, for the motion in the tracks.
     fn normal_misfit(&self, _pressures: &FacetPressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
         NormalMisfit::default()

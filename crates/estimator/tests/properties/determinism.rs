@@ -15,8 +15,20 @@ use percute_testkit::{disc, random_rectangle};
 
 /// Every number of an estimate; those of its maps come last.
 fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
-    let Estimate { error, time_of_sup, parts, over_time, by_element, maps, residuals, kept_impulse, given, steps, end } =
-        estimate;
+    let Estimate {
+        error,
+        time_of_sup,
+        parts,
+        over_time,
+        by_element,
+        maps,
+        residuals,
+        kept_impulse,
+        own_contacts,
+        given,
+        steps,
+        end,
+    } = estimate;
     assert_eq!(*given, Given::default());
     let mut numbers = vec![
         error.sup,
@@ -30,6 +42,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         parts.elastic,
         parts.contact,
         kept_impulse.unwrap_or(-1.0),
+        *own_contacts as f64,
         *steps as f64,
         *end,
     ];

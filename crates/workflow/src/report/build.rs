@@ -50,6 +50,7 @@ impl Report {
             interrupted: estimate.steps < times.step_count(),
             reconstruction: options.reconstruction,
             kept_impulse: estimate.kept_impulse,
+            own_contacts: estimate.own_contacts,
             residual: &largest_residual,
         };
         let (interrupted, warnings) = (facts.interrupted, all_warnings(&facts, subject, options));

@@ -191,6 +191,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.concentration.as_ref()
     }
 
+    fn own_contacts(&self) -> usize {
+        self.own_forces.count()
+    }
+
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
     }

@@ -21,6 +21,8 @@ const BISECTIONS: usize = 40;
 pub(in crate::reconstruction::corrected) struct OwnForces<const D: usize> {
     /// The contacts with a force at the step before.
     contacts: Vec<Option<OwnContact<D>>>,
+    /// Nodes whose force has been replaced at any step.
+    replaced: Vec<bool>,
 }
 
 /// The contact of one node.
@@ -36,7 +38,13 @@ struct OwnContact<const D: usize> {
 
 impl<const D: usize> OwnForces<D> {
     pub(in crate::reconstruction::corrected) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self { contacts: vec![None; problem.surface().nodes().len()] }
+        let count = problem.surface().nodes().len();
+        Self { contacts: vec![None; count], replaced: vec![false; count] }
+    }
+
+    /// Number of nodes whose force has been replaced at any step.
+    pub(in crate::reconstruction::corrected) fn count(&self) -> usize {
+        self.replaced.iter().filter(|&&replaced| replaced).count()
     }
 
     /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone, from then
@@ -75,6 +83,7 @@ impl<const D: usize> OwnForces<D> {
             self.contacts[at] = own.contact(&costs, own.normal(&costs, stopping), last);
             contact[at] = self.contacts[at].map_or([0.0; D], |own| own.force);
             arresting[at] = [0.0; D];
+            self.replaced[at] = true;
         }
     }
 }
