@@ -4,7 +4,7 @@
 //! that over the step that begins there ([`ForcesKnown`]). Stress and tractions make it an
 //! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying them.
 
-use crate::contact_density::{Densities, OffContact};
+use crate::contact_density::{Densities, LevelDensities, OffContact};
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
 
@@ -22,8 +22,8 @@ pub(crate) struct SurfaceStep<const D: usize> {
     pub(crate) reaction: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) force: Vec<[f64; D]>,
-    /// The reactions of which the normal work is measured (N).
-    pub(crate) arresting: Vec<[f64; D]>,
+    /// The densities of this instant, until the step that begins here has them; `None` where they depend on other instants.
+    pub(crate) densities: Option<LevelDensities<D>>,
     pub(crate) touching: Vec<bool>,
     /// Gaps of the simulation (m).
     pub(crate) gap: Vec<f64>,

@@ -23,6 +23,15 @@ pub(crate) struct Densities<const D: usize> {
     shares: f64,
 }
 
+/// The densities of one instant that depend on no other.
+#[derive(Clone, Debug)]
+pub(crate) struct LevelDensities<const D: usize> {
+    /// F_DA.
+    pub(crate) acting: Densities<D>,
+    /// Those of which the normal work is measured.
+    pub(crate) sudden: Densities<D>,
+}
+
 impl<const D: usize> Deref for Densities<D> {
     type Target = [[[f64; D]; D]];
 

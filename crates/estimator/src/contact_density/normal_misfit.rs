@@ -67,10 +67,10 @@ impl<const D: usize> OffContact<D> {
     pub(crate) fn new<const N: usize>(
         problem: &Problem<D, N>,
         acting: [&Densities<D>; 2],
-        sudden: &[Densities<D>; 2],
+        sudden: [&Densities<D>; 2],
     ) -> Self {
         let end = |k: usize| {
-            let (acting, sudden) = (NormalForce::all(problem, acting[k]), NormalForce::all(problem, &sudden[k]));
+            let (acting, sudden) = (NormalForce::all(problem, acting[k]), NormalForce::all(problem, sudden[k]));
             acting.into_iter().zip(sudden).map(|(acting, sudden)| Normal { acting, sudden })
         };
         Self(end(0).zip(end(1)).map(|(start, end)| [start, end]).collect())

@@ -164,7 +164,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated);
-        let BalancedFields { displacement, force, contact, arresting, lumping_difference } = balanced;
+        let BalancedFields { displacement, force, contact, densities, lumping_difference } = balanced;
         let level = TimeLevel {
             index: n,
             displacement,
@@ -173,7 +173,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             surface: SurfaceStep {
                 reaction: step.reaction.to_vec(),
                 force: contact,
-                arresting,
+                densities,
                 touching: step.touching.to_vec(),
                 gap: problem.surface().gaps(step.displacement),
             },

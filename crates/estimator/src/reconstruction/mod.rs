@@ -9,7 +9,7 @@ mod corrected;
 mod friction;
 mod published;
 
-use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact};
+use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
@@ -64,8 +64,8 @@ pub(crate) struct BalancedFields<const D: usize> {
     pub(crate) force: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
-    /// The reactions of which the normal work is measured (N).
-    pub(crate) arresting: Vec<[f64; D]>,
+    /// Their densities, where they depend on no other instant.
+    pub(crate) densities: Option<LevelDensities<D>>,
     /// M⁻¹(M − M_c)ã (m/s²), for `mixed` alone.
     pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
 }
@@ -94,8 +94,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         let (state, step) = (simulated.state, simulated.state.step());
         let force = state.force_without_contact(dynamics.problem().surface());
         let (displacement, contact) = (step.displacement.to_vec(), step.reaction.to_vec());
-        let arresting = contact.clone();
-        BalancedFields { displacement, force, contact, arresting, lumping_difference: None }
+        BalancedFields { displacement, force, contact, densities: None, lumping_difference: None }
     }
 
     /// F_DA over a step.

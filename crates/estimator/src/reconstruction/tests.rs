@@ -23,7 +23,7 @@ fn surface() -> SurfaceStep<2> {
     let reaction = vec![[20.0, 100.0], [-40.0, 200.0], [30.0, 150.0], [0.0, 120.0], [0.0, 0.0]];
     SurfaceStep {
         force: reaction.clone(),
-        arresting: reaction.clone(),
+        densities: None,
         reaction,
         touching: vec![true, true, true, true, false],
         gap: vec![0.0; 5],
@@ -135,7 +135,7 @@ fn a_phase_of_one_step_gets_no_force() {
     let off = SurfaceStep {
         reaction: vec![[0.0; 2]; 5],
         force: vec![[0.0; 2]; 5],
-        arresting: vec![[0.0; 2]; 5],
+        densities: None,
         touching: vec![false; 5],
         gap: vec![0.0; 5],
     };
@@ -154,7 +154,7 @@ fn pressed() -> SurfaceStep<2> {
     SurfaceStep {
         reaction: vec![[0.0, 100.0]; 5],
         force: vec![[0.0, 100.0]; 5],
-        arresting: vec![[0.0, 100.0]; 5],
+        densities: None,
         touching: vec![true; 5],
         gap: vec![0.0; 5],
     }
@@ -173,7 +173,7 @@ fn force_begins_and_ends_with_contact() {
     let off = || SurfaceStep {
         reaction: vec![[0.0; 2]; 5],
         force: vec![[0.0; 2]; 5],
-        arresting: vec![[0.0; 2]; 5],
+        densities: None,
         touching: vec![false; 5],
         gap: vec![0.0; 5],
     };
@@ -250,7 +250,7 @@ fn published_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let now = SurfaceStep {
         reaction: vec![[0.0, 1.0]; 3],
         force: vec![[0.0, 1.0]; 3],
-        arresting: vec![[0.0, 1.0]; 3],
+        densities: None,
         touching: vec![true; 3],
         gap: vec![0.0; 3],
     };

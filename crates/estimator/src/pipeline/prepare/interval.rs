@@ -11,7 +11,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     /// Finds F_DA over the earliest step that lacks it; then ã and ∫ã are known up to its end.
     pub(super) fn complete_interval(&mut self) {
         let Some(next) = self.motions.pop_front() else { return };
-        let Some(now) = self.current.take() else { return };
+        let Some(mut now) = self.current.take() else { return };
         let after = self.motions.front().map(|motion| &motion.level.surface);
         let (surface, before) = (&now.forces.level.surface, self.before.as_ref());
         let steps = SurfaceSteps { before, now: surface, next: &next.level.surface, after };
@@ -19,7 +19,9 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let off_contact = self.reconstruction.off_contact(&steps, &densities);
         reconstruction::check(self.problem, &steps, &densities, off_contact.is_some(), &mut self.residuals);
         self.impulse.add(self.problem, self.times, now.forces.level.index, &densities, &surface.reaction);
-        self.before = Some(surface.clone());
+        // The densities of the level are in those of the step.
+        now.forces.level.surface.densities = None;
+        self.before = Some(now.forces.level.surface.clone());
         let now = self.after(now, densities.start);
         self.current = Some(self.reach(&now, next, densities.end, off_contact));
         self.ready.push_back(now);

@@ -11,12 +11,13 @@ mod traction_minimisation;
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
 use crate::acceleration::accelerate;
 use crate::concentrated::TractionShape;
-use crate::contact_density::{Densities, FacetPressures, NormalMisfit, OffContact, driving_forces};
+use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact, driving_forces};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
+use crate::time_level::SurfaceStep;
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::AuxiliarySolution;
 pub(crate) use concentration::Concentration;
@@ -30,6 +31,7 @@ use percute_core::history::Step;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
+use std::borrow::Cow;
 use traction_minimisation::TractionMinimisation;
 
 /// The reconstruction that drops no reaction.
@@ -78,6 +80,17 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 _ => 1.0,
             },
         }
+    }
+
+    /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
+    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], gap: &[f64]) -> LevelDensities<D> {
+        LevelDensities { acting: self.at(acting, gap), sudden: self.at(sudden, gap) }
+    }
+
+    /// The densities of a level: those that were kept, or those of its forces and reactions.
+    fn kept<'a>(&self, step: &'a SurfaceStep<D>) -> Cow<'a, LevelDensities<D>> {
+        let made = || Cow::Owned(self.level([&step.force, &step.reaction], &step.gap));
+        step.densities.as_ref().map_or_else(made, Cow::Borrowed)
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
@@ -151,12 +164,12 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let (gap, inverse_mass) = (problem.surface().gaps(step.displacement), dynamics.inverse_mass());
         let Some(mut auxiliary) = self.auxiliary.take() else {
             let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
-            let pull = driving_forces(problem, &self.at(&contact, &gap));
+            let densities = self.level([&contact, step.reaction], &gap);
+            let pull = driving_forces(problem, &densities.acting);
             let lumping_difference = self.mixed.then(|| {
                 lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
             });
-            let arresting = step.reaction.to_vec();
-            return BalancedFields { displacement, force, contact, arresting, lumping_difference };
+            return BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference };
         };
         auxiliary.watch(simulated, problem.mass());
         let displacement = auxiliary.displacement().to_vec();
@@ -167,24 +180,24 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             let approach = |at: usize| auxiliary.approach(problem, inverse_mass, self.times, (step.index, at), &force);
             self.own_forces.apply(problem, concentration, &gap, approach, [&mut contact, &mut arresting]);
         }
-        let pull = driving_forces(problem, &self.at(&contact, &gap));
+        let densities = self.level([&contact, &arresting], &gap);
+        let pull = driving_forces(problem, &densities.acting);
         let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
         auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration, lumping_difference.as_deref());
         self.auxiliary = Some(auxiliary);
-        BalancedFields { displacement, force, contact, arresting, lumping_difference }
+        BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
-        StepDensities {
-            start: self.at(&steps.now.force, &steps.now.gap),
-            end: self.at(&steps.next.force, &steps.next.gap),
-        }
+        let [start, end] = [steps.now, steps.next].map(|step| self.kept(step).acting.clone());
+        StepDensities { start, end }
     }
 
     fn off_contact(&self, steps: &SurfaceSteps<'_, D>, densities: &StepDensities<D>) -> Option<OffContact<D>> {
-        let sudden = [steps.now, steps.next].map(|step| self.at(&step.arresting, &step.gap));
-        Some(OffContact::new(self.problem, [&densities.start, &densities.end], &sudden))
+        let kept = [steps.now, steps.next].map(|step| self.kept(step));
+        let sudden = kept.each_ref().map(|level| &level.sudden);
+        Some(OffContact::new(self.problem, [&densities.start, &densities.end], sudden))
     }
 
     fn concentration(&self) -> Option<&Concentration<D>> {

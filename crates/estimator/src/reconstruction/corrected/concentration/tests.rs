@@ -41,7 +41,7 @@ fn free_step(problem: &TriangleProblem) -> SurfaceStep<2> {
     SurfaceStep {
         reaction: vec![[0.0; 2]; count],
         force: vec![[0.0; 2]; count],
-        arresting: vec![[0.0; 2]; count],
+        densities: None,
         touching: vec![false; count],
         gap: gaps(problem),
     }
