@@ -186,6 +186,10 @@ fn own_forces_close_the_gap() {
     for reaction in [[0.0; 2], force.map(|f| 1e-3 * f), force.map(|f| 3.0 * f)] {
         assert_eq!(apply(&mut OwnForces::new(&problem), reaction, -6e-5), found);
     }
+    // Under this reaction the node would not be alone; it keeps its own force.
+    let large = force.map(|f| 1e5 * f);
+    assert!(concentration.shape(&problem, at, &large, &gap).unwrap().iter().any(|hat| hat.halvings == 0));
+    assert_eq!(apply(&mut own.clone(), large, -6e-5), apply(&mut own.clone(), [0.0; 2], -6e-5));
 }
 
 /// The traction sticks until Coulomb's limit, from where it first touched, and slides beyond.
