@@ -38,7 +38,7 @@ from percute.files import open, run
 from percute.history import History, simulate, true_errors
 from percute.mesh import Mesh
 from percute.problem import Problem
-from percute.records import ElementMap, OverTime, Parts, WorstElement
+from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
 __all__ = [
@@ -66,7 +66,10 @@ __all__ = [
     "Problem",
     "Progress",
     "Resultants",
+    "Separation",
     "SimulationError",
+    "Sources",
+    "SourcesOverTime",
     "StorageError",
     "Support",
     "Traction",

@@ -21,7 +21,7 @@ from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
-from percute.records import ElementMap, OverTime, Parts, WorstElement
+from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
 
 if TYPE_CHECKING:
@@ -119,6 +119,20 @@ class Estimate(Immutable):
     def over_time(self) -> OverTime:
         """η, its parts and d over time (J)."""
         return OverTime(**self._data.over_time())
+
+    @cached_property
+    def sources(self) -> Separation | None:
+        """The sources of the error; None without an auxiliary solution, as with "consistent" and "published"."""
+        found = self._data.sources()
+        if found is None:
+            return None
+        return Separation(
+            at_sup=Sources(*found["at_sup"]),
+            mean=Sources(*found["mean"]),
+            half_size=Sources(*found["half_size"]),
+            half_step=found["half_step"],
+            over_time=SourcesOverTime(**found["over_time"]),
+        )
 
     @cached_property
     def by_element(self) -> NDArray[np.float64]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ElementMap", "OverTime", "Parts", "WorstElement"]
+__all__ = ["ElementMap", "OverTime", "Parts", "Separation", "Sources", "SourcesOverTime", "WorstElement"]
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,69 @@ class Parts:
     def total(self) -> float:
         """η (J)."""
         return self.kinetic + self.elastic + self.contact
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The sources of η (J). One may be slightly negative; their sum is η."""
+
+    surface: float
+    """At the contact surface: friction, gaps under pressure, the contact part of the difference to the auxiliary solution, and the
+    misfit of the elements with a node that may touch beyond this difference."""
+    front: float
+    """∫∫R_n|w_n| dt: the energy that reactions take from arriving nodes."""
+    dispersion: float
+    """The rest of the difference to the auxiliary solution: dispersion that has accumulated."""
+    mesh: float
+    """The misfit of the other elements beyond this difference."""
+
+    @property
+    def total(self) -> float:
+        """Their sum (J)."""
+        return self.surface + self.front + self.dispersion + self.mesh
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class SourcesOverTime:
+    """The sources of η at the samples of `OverTime` (J), each of shape (samples,)."""
+
+    surface: NDArray[np.float64]
+    """At the contact surface."""
+    front: NDArray[np.float64]
+    """Of the front."""
+    dispersion: NDArray[np.float64]
+    """Of dispersion."""
+    mesh: NDArray[np.float64]
+    """Of the mesh in the rest of the body."""
+
+    def __repr__(self) -> str:
+        return f"<percute.SourcesOverTime: {len(self.surface)} samples>"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Separation:
+    """The sources of the error, and what a finer mesh or a shorter step would change; defined in ``docs/estimate.md``."""
+
+    at_sup: Sources
+    """At the time of the largest η (J)."""
+    mean: Sources
+    """Their means over time (J); the sum is ``mean`` of the estimate, squared."""
+    half_size: Sources
+    """The means expected with elements and steps half as long (J)."""
+    half_step: float
+    """The expected change of the sum of the means with steps half as long (J)."""
+    over_time: SourcesOverTime = field(repr=False)
+    """At all samples (J)."""
+
+    @property
+    def mean_with_half_size(self) -> float:
+        """The mean error expected with elements and steps half as long (J^½)."""
+        return math.sqrt(max(self.half_size.total, 0.0))
+
+    @property
+    def mean_with_half_step(self) -> float:
+        """The mean error expected with steps half as long (J^½)."""
+        return math.sqrt(max(self.mean.total + self.half_step, 0.0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)

@@ -15,6 +15,7 @@ from percute.errors import FileFormatError
 from percute.mesh import Mesh
 
 MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean")
+SOURCES = ("surface", "front", "dispersion", "mesh")
 FIELDS = {
     "accumulated": "error",
     "admissible_displacement": "displacement",
@@ -75,10 +76,23 @@ class StoredEstimate:
         none = report.part("kept_impulse") is None
         self._measures["kept_impulse"] = None if none else report.number("kept_impulse")
         self._parts = report.number("parts", "kinetic"), report.number("parts", "elastic"), report.number("parts", "contact")
+        self._sources = self._read_sources(report)
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
         self._given: tuple[bool, bool] = report.of(bool, "given", "velocity"), report.of(bool, "given", "acceleration")
         kinds = ("reconstruction", str), ("acceleration", str), ("every", int)
         self._options = tuple(report.of(kind, "options", name) for name, kind in kinds)
+
+    @staticmethod
+    def _read_sources(report: _Report) -> dict[str, Any] | None:
+        """Read them; files of earlier versions have none."""
+        if report.document.get("sources") is None:
+            return None
+        sources: dict[str, Any] = {key: [report.number("sources", key, name) for name in SOURCES] for key in ("at_sup", "mean", "half_size")}
+        sources["half_step"] = report.number("sources", "half_step")
+        columns = {name: report.of(list, "sources", "over_time", name) for name in SOURCES}
+        # JSON has neither infinity nor NaN.
+        sources["over_time"] = {name: np.array([math.nan if x is None else x for x in column], np.float64) for name, column in columns.items()}
+        return sources
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -96,6 +110,10 @@ class StoredEstimate:
     def over_time(self) -> dict[str, NDArray[np.float64]]:
         """η, its parts and d at all samples."""
         return self._data.over_time()
+
+    def sources(self) -> dict[str, Any] | None:
+        """The sources of η; None if the file has none."""
+        return self._sources
 
     def by_element(self) -> NDArray[np.float64]:
         """e_E (J^½)."""

@@ -2,6 +2,7 @@
 
 use crate::map::ElementMap;
 use crate::residual::Residuals;
+use crate::sources::Separation;
 use percute_core::ids::ElementId;
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +74,8 @@ pub struct Estimate<const D: usize> {
     pub parts: Parts,
     /// η and d at all samples, in order of time.
     pub over_time: Vec<Sample>,
+    /// The sources of η; `None` without an auxiliary solution, as with `consistent` and `published`.
+    pub sources: Option<Separation>,
     /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. \[20\].
     pub by_element: Vec<f64>,
     /// The maps requested at steps that the run reached, in their order.

@@ -17,7 +17,7 @@ use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
-use percute_workflow::report::{PARTS, Report, Subject};
+use percute_workflow::report::{PARTS, Report, SOURCES, Subject};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -247,6 +247,19 @@ impl EstimateData {
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         view::columns(py, each_dimension!(&self.made, m => &m.estimate.over_time), &PARTS)
+    }
+
+    /// The sources of η, each as its four numbers, but over time an array for each; `None` without an auxiliary solution.
+    fn sources<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(separation) = each_dimension!(&self.made, m => m.estimate.sources.as_ref()) else { return Ok(None) };
+        let numbers = PyDict::new(py);
+        let sources = [("at_sup", separation.at_sup), ("mean", separation.mean), ("half_size", separation.half_size)];
+        for (name, source) in sources {
+            numbers.set_item(name, SOURCES.map(|(_, number)| number(&source)).to_vec())?;
+        }
+        numbers.set_item("half_step", separation.half_step)?;
+        numbers.set_item("over_time", view::columns(py, &separation.over_time, &SOURCES)?)?;
+        Ok(Some(numbers))
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {

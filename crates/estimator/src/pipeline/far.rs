@@ -1,9 +1,9 @@
 //! Elements without a candidate node of contact, sampled as soon as a level is equilibrated.
 
 use super::maps::Contribution;
-use super::sampling::{Course, ElementInterval, ElementSampler, Sampling};
-use super::totals::FarSums;
+use super::sampling::{ContactPart, Course, ElementInterval, ElementSampler, Sampling};
 use crate::element::BLOCK;
+use crate::measure::ElementError;
 use crate::residual::Residuals;
 use crate::time_level::{Side, Velocities};
 use crate::traction::Equilibrated;
@@ -13,6 +13,31 @@ use rayon::prelude::*;
 /// Away from contact the pointwise equilibrium of σ_DA is checked at every level of so many: a check costs more than the
 /// measure itself.
 const CHECK: usize = 64;
+
+/// Sums over far elements at the levels and in the middles between them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FarSums {
+    pub(crate) levels: Vec<ElementError>,
+    pub(crate) mids: Vec<ElementError>,
+}
+
+impl FarSums {
+    pub(crate) fn new(levels: usize, mids: usize) -> Self {
+        Self { levels: vec![ElementError::default(); levels], mids: vec![ElementError::default(); mids] }
+    }
+
+    /// Adds another block of elements.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.levels.iter_mut().zip(&other.levels).for_each(|(a, b)| a.add(b));
+        self.mids.iter_mut().zip(&other.mids).for_each(|(a, b)| a.add(b));
+    }
+
+    /// Appends a later window.
+    pub(crate) fn extend(&mut self, later: Self) {
+        self.levels.extend(later.levels);
+        self.mids.extend(later.mids);
+    }
+}
 
 /// The results of the far elements in one window.
 pub(super) struct FarBlock {
@@ -72,7 +97,7 @@ impl FarBlock {
                 start: start.as_ref(),
                 mid: mid.as_ref(),
                 end: &gather(&to.forces().now),
-                contact: [0.0; 3],
+                contact: [ContactPart::default(); 3],
                 hats: [&[]; 3],
             };
             let [start, middle, end] = sampler.sample(&interval, course, &mut self.kept);

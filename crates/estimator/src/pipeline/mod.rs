@@ -7,7 +7,9 @@ mod fixture;
 mod maps;
 mod near;
 mod prepare;
+mod sampled_interval;
 mod sampling;
+mod separation;
 mod totals;
 mod window;
 

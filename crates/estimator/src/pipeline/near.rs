@@ -2,7 +2,9 @@
 //! and their motion is known only when the next contact of their nodes is.
 
 use super::maps::Contribution;
-use super::sampling::{Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling};
+use super::sampling::{
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling,
+};
 use crate::concentrated::HatStress;
 use crate::contact_density::{FacetPressures, NarrowHat, NormalMisfit};
 use crate::element::Element;
@@ -216,7 +218,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         context: &ContactSampling<'_, '_, D, N>,
         waiting: &Waiting<D, N>,
         friction: f64,
-    ) -> [f64; 3] {
+    ) -> [ContactPart; 3] {
         let mut normal = NormalMisfit::default();
         for pressures in &waiting.pressures {
             normal.add(&context.reconstruction.normal_misfit(pressures, context.tracks));
@@ -224,7 +226,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let frictions = [friction, waiting.mid.as_ref().map_or(0.0, |mid| mid.friction), waiting.stop.friction];
         let so_far = self.normal_work;
         self.normal_work += normal.work[2];
-        std::array::from_fn(|k| frictions[k] + (so_far + normal.work[k]) + normal.energy[k])
+        std::array::from_fn(|k| {
+            let normal_work = so_far + normal.work[k];
+            ContactPart { total: frictions[k] + normal_work + normal.energy[k], normal_work }
+        })
     }
 
     /// u_CA and u̇_CA against the initial conditions.

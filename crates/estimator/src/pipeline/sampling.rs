@@ -27,12 +27,20 @@ pub(super) fn trapezoid(length: f64, start: f64, middle: Option<f64>, end: f64) 
 pub(super) struct ElementSample {
     pub(super) error: ElementError,
     /// The contact part.
-    pub(super) contact: f64,
+    pub(super) contact: ContactPart,
+}
+
+/// The contact part of η (J).
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactPart {
+    pub(super) total: f64,
+    /// ∫∫F_n|w_n| dt in it.
+    pub(super) normal_work: f64,
 }
 
 impl ElementSample {
     fn total(&self) -> f64 {
-        self.error.total() + self.contact
+        self.error.total() + self.contact.total
     }
 }
 
@@ -64,7 +72,7 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) mid: Option<&'i ElementVelocities<D, N>>,
     pub(super) end: &'i ElementVelocities<D, N>,
     /// The contact part of η at its beginning, middle and end (J).
-    pub(super) contact: [f64; 3],
+    pub(super) contact: [ContactPart; 3],
     /// The stress of hats at its beginning, middle and end.
     pub(super) hats: [&'i [HatStress<'i>]; 3],
 }
@@ -157,7 +165,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         if self.shared.maps.want(step) {
             kept.pop_if(|last| last.element == self.id && last.step == step);
             let ElementSample { error, contact } = course.last;
-            kept.push(Contribution { element: self.id, step, error, contact, accumulated: course.integral });
+            let (contact, accumulated) = (contact.total, course.integral);
+            kept.push(Contribution { element: self.id, step, error, contact, accumulated });
         }
     }
 }

@@ -1,50 +1,17 @@
 //! Sums over elements and time, in a fixed order.
 
+use super::far::FarSums;
 use super::near::NearElement;
 use super::prepare::{Impulse, Preparation};
-use super::sampling::{Course, trapezoid};
+use super::sampled_interval::{SampledInterval, intervals, samples};
+use super::sampling::Course;
+use super::separation::separation;
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
 use crate::map::ElementMap;
-use crate::measure::ElementError;
 use crate::residual::Residuals;
 use percute_core::problem::Problem;
 use percute_core::ratio;
 use percute_core::time::TimeGrid;
-
-/// Sums over far elements at the levels and in the middles between them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FarSums {
-    pub(crate) levels: Vec<ElementError>,
-    pub(crate) mids: Vec<ElementError>,
-}
-
-impl FarSums {
-    pub(crate) fn new(levels: usize, mids: usize) -> Self {
-        Self { levels: vec![ElementError::default(); levels], mids: vec![ElementError::default(); mids] }
-    }
-
-    /// Adds another block of elements.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.levels.iter_mut().zip(&other.levels).for_each(|(a, b)| a.add(b));
-        self.mids.iter_mut().zip(&other.mids).for_each(|(a, b)| a.add(b));
-    }
-
-    /// Appends a later window.
-    pub(crate) fn extend(&mut self, later: Self) {
-        self.levels.extend(later.levels);
-        self.mids.extend(later.mids);
-    }
-}
-
-/// One interval between sampled levels.
-struct SampledInterval {
-    /// Times of its beginning and end (s).
-    times: [f64; 2],
-    /// Whether its middle is sampled.
-    single: bool,
-    /// Parts and d at beginning, middle, end.
-    samples: [(Parts, f64); 3],
-}
 
 /// The results of all windows.
 pub(crate) struct Worked<const D: usize, const N: usize> {
@@ -79,7 +46,9 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     let over_time = samples(&intervals);
     let worst = over_time.iter().fold(over_time[0], |a, b| if b.parts.total() > a.parts.total() { *b } else { a });
     let Impulse { kept, simulated } = preparation.impulse;
+    let differences = preparation.reconstruction().differences();
     Estimate {
+        sources: differences.map(|differences| separation(&intervals, differences, (worst.time, end))),
         error: measures(&intervals, &over_time, worst.parts.total().sqrt(), end),
         time_of_sup: worst.time,
         parts: worst.parts,
@@ -98,10 +67,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
 /// The measures of a run up to `end` (s), of which √sup η is known.
 fn measures(intervals: &[SampledInterval], over_time: &[Sample], sup: f64, end: f64) -> ErrorMeasures {
     let root_mean = |value: &dyn Fn(&(Parts, f64)) -> f64| {
-        let each = |i: &SampledInterval| {
-            let [a, m, b] = &i.samples;
-            trapezoid(i.times[1] - i.times[0], value(a), i.single.then(|| value(m)), value(b))
-        };
+        let each = |i: &SampledInterval| i.integral(|k| value(&i.samples[k]));
         (intervals.iter().map(each).sum::<f64>() / end).sqrt()
     };
     let mean = root_mean(&|s| s.0.total());
@@ -115,53 +81,4 @@ fn measures(intervals: &[SampledInterval], over_time: &[Sample], sup: f64, end: 
         reference_sup,
         reference_mean,
     }
-}
-
-/// All intervals, far and near elements together.
-fn intervals<const D: usize, const N: usize>(
-    times: &TimeGrid,
-    every: usize,
-    last: usize,
-    far: &FarSums,
-    near: &[NearElement<D, N>],
-) -> Vec<SampledInterval> {
-    let mut levels: Vec<usize> = (0..=last).step_by(every).collect();
-    if levels[levels.len() - 1] != last {
-        levels.push(last);
-    }
-    let interval = |k: usize| {
-        let mut samples = [far.levels[k], far.mids[k], far.levels[k + 1]].map(|far| (far, 0.0));
-        for element in near {
-            for (sum, sample) in samples.iter_mut().zip(&element.samples[k]) {
-                sum.0.add(&sample.error);
-                sum.1 += sample.contact;
-            }
-        }
-        let parts = |(error, contact): (ElementError, f64)| {
-            (Parts { kinetic: error.kinetic, elastic: error.elastic, contact }, error.reference + contact)
-        };
-        SampledInterval {
-            times: [times.instants()[levels[k]], times.instants()[levels[k + 1]]],
-            single: levels[k + 1] == levels[k] + 1,
-            samples: samples.map(parts),
-        }
-    };
-    (0..levels.len() - 1).map(interval).collect()
-}
-
-/// All samples in order of time; an instant appears twice where its two sides differ.
-fn samples(intervals: &[SampledInterval]) -> Vec<Sample> {
-    let mut samples: Vec<Sample> = Vec::with_capacity(2 * intervals.len() + 1);
-    for interval in intervals {
-        let [start, end] = interval.times;
-        let times = [start, 0.5 * (start + end), end];
-        for (k, (time, &(parts, reference))) in times.into_iter().zip(&interval.samples).enumerate() {
-            let sample = Sample { time, parts, reference };
-            let repeated = k == 0 && samples.last() == Some(&sample);
-            if !repeated && (k != 1 || interval.single) {
-                samples.push(sample);
-            }
-        }
-    }
-    samples
 }

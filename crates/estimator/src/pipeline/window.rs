@@ -3,12 +3,12 @@
 //! Nothing here depends on the number of threads or on where windows end: every number is computed
 //! by one task from its own data, and sums are taken over fixed blocks of elements in order.
 
-use super::far;
+use super::far::{self, FarSums};
 use super::maps::{Balance, Maps};
 use super::near::{ContactSampling, NearElement, near_elements};
 use super::prepare::Preparation;
 use super::sampling::{Course, Sampling};
-use super::totals::{self, FarSums, Worked};
+use super::totals::{self, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
 use crate::measure::ElementError;

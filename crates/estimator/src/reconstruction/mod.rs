@@ -10,6 +10,7 @@ mod friction;
 mod published;
 
 use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact};
+use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
@@ -130,6 +131,11 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
 
     /// The stress of narrow tractions; `None` if there are none.
     fn concentration(&self) -> Option<&Concentration<D>> {
+        None
+    }
+
+    /// The differences of the simulation and the auxiliary solution at all levels so far; `None` without one.
+    fn differences(&self) -> Option<&[Difference]> {
         None
     }
 

@@ -9,7 +9,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{
-    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request,
+    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request, Separation,
 };
 use percute_testkit::{disc, random_rectangle};
 
@@ -20,6 +20,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         time_of_sup,
         parts,
         over_time,
+        sources,
         by_element,
         maps,
         residuals,
@@ -49,6 +50,11 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     let sample =
         |s: &percute_estimator::Sample| [s.time, s.parts.kinetic, s.parts.elastic, s.parts.contact, s.reference];
     numbers.extend(over_time.iter().flat_map(sample));
+    if let Some(Separation { at_sup, mean, half_size, half_step, over_time }) = sources {
+        numbers.push(*half_step);
+        let all = [at_sup, mean, half_size].into_iter().chain(over_time);
+        numbers.extend(all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]));
+    }
     numbers.extend(by_element);
     numbers.extend(residuals.entries().map(|entry| entry.1));
     for ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } in maps {

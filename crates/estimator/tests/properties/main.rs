@@ -18,4 +18,5 @@ mod loads;
 mod malformed;
 mod maps;
 mod shapes;
+mod sources;
 mod symmetries;

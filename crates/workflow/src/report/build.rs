@@ -3,8 +3,8 @@
 use super::columns::{Columns, Named, PARTS};
 use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
-    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Report, Subject, Versions,
-    WorstElement, meaning,
+    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Report, SourceReport, Subject,
+    Versions, WorstElement, meaning,
 };
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
@@ -72,6 +72,7 @@ impl Report {
             error: estimate.error,
             meaning: meaning(Some(options.reconstruction)),
             parts: estimate.parts,
+            sources: estimate.sources.as_ref().map(SourceReport::new),
             time_of_sup: estimate.time_of_sup,
             worst_elements: worst(subject.problem.mesh(), estimate),
             residuals: estimate.residuals,

@@ -1,6 +1,6 @@
 //! Records over time as one array for each of their numbers.
 
-use percute_estimator::Sample;
+use percute_estimator::{Sample, Sources};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -16,6 +16,10 @@ pub const PARTS: [Named<Sample>; 6] = [
     ("total", |s| s.parts.total()),
     ("reference", |s| s.reference),
 ];
+
+/// The sources of η over time.
+pub const SOURCES: [Named<Sources>; 4] =
+    [("surface", |s| s.surface), ("front", |s| s.front), ("dispersion", |s| s.dispersion), ("mesh", |s| s.mesh)];
 
 /// Records, of which the named numbers are serialised, each as an array.
 #[derive(Clone, Debug)]

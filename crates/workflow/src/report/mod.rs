@@ -6,13 +6,15 @@ mod columns;
 mod contact;
 mod meaning;
 mod simulated;
+mod sources;
 pub(crate) mod summary;
 mod warnings;
 
-pub use columns::{Columns, Named, PARTS};
+pub use columns::{Columns, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
 pub use simulated::simulated;
+pub use sources::SourceReport;
 pub use summary::summary;
 pub use warnings::Warning;
 pub(crate) use warnings::few_samples;
@@ -66,6 +68,7 @@ pub struct Report {
     pub error: ErrorMeasures,
     pub meaning: String,
     pub parts: Parts,
+    pub sources: Option<SourceReport>,
     pub time_of_sup: f64,
     pub worst_elements: Vec<WorstElement>,
     pub residuals: Residuals,

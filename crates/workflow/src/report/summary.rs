@@ -24,6 +24,7 @@ fn cut(line: &str) -> String {
 fn lines(report: &Report) -> Vec<(&'static str, String)> {
     let mut lines = what_was_run(report);
     lines.extend(error(report));
+    lines.extend(sources(report));
     lines.extend(worst_elements(report));
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
@@ -106,6 +107,24 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
         ("error", measure("sup", e.sup, e.relative_sup, e.reference_sup)),
         ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
         ("", format!("at the sup: {shares}")),
+    ]
+}
+
+/// The sources of the error and what would change it.
+fn sources(report: &Report) -> Vec<(&'static str, String)> {
+    let Some(sources) = &report.sources else { return Vec::new() };
+    let (mean, error) = (&sources.mean, report.error.mean);
+    let total = mean.total();
+    if total <= 0.0 {
+        return Vec::new();
+    }
+    let shares =
+        [("surface", mean.surface), ("front", mean.front), ("dispersion", mean.dispersion), ("mesh", mean.mesh)];
+    let shares = shares.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source / total)).join(", ");
+    let [size, step] = [sources.mean_with_half_size, sources.mean_with_half_step].map(|e| 100.0 * (e / error - 1.0));
+    vec![
+        ("sources", format!("{shares} of the mean")),
+        ("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")),
     ]
 }
 

@@ -23,13 +23,33 @@ use std::borrow::Cow;
 pub(super) struct AuxiliarySolution<const D: usize> {
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
-    correction: Vec<[f64; D]>,
-    /// Whether it is made at all.
-    corrected: bool,
+    /// −Kã (N), and 0 on prescribed components.
+    internal: Vec<[f64; D]>,
+    /// ã with its correction, from t_n on.
+    acceleration: Vec<[f64; D]>,
+    /// The same up to t_n: it does not depend on the next step.
+    before: Vec<[f64; D]>,
+    shares: Shares,
     /// How often so far a step has been longer than both its neighbours, or shorter.
     reversals: usize,
     /// Largest kinetic and strain energy of the simulation so far (J).
     peak_energy: f64,
+}
+
+/// Which part of each correction is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shares {
+    /// That of the lumped mass.
+    pub(super) mass: f64,
+    /// That of the central differences.
+    pub(super) time: f64,
+}
+
+impl Shares {
+    /// Both corrections.
+    pub(super) const ALL: Self = Self { mass: 1.0, time: 1.0 };
+    /// None: the scheme of the simulation.
+    pub(super) const NONE: Self = Self { mass: 0.0, time: 0.0 };
 }
 
 /// The motion of a contact node over the next step.
@@ -55,12 +75,14 @@ const FEW: usize = 8;
 const LONGER: f64 = 1e-3;
 
 impl<const D: usize> AuxiliarySolution<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, corrected: bool) -> Self {
+    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, shares: Shares) -> Self {
         Self {
             displacement: problem.initial_displacement().to_vec(),
             half_step: problem.initial_velocity().to_vec(),
-            correction: vec![[0.0; D]; problem.mesh().node_count()],
-            corrected,
+            internal: vec![[0.0; D]; problem.mesh().node_count()],
+            acceleration: vec![[0.0; D]; problem.mesh().node_count()],
+            before: vec![[0.0; D]; problem.mesh().node_count()],
+            shares,
             reversals: 0,
             peak_energy: 0.0,
         }
@@ -106,9 +128,14 @@ impl<const D: usize> AuxiliarySolution<D> {
         self.peak_energy > 0.0 && kinetic_energy(&self.half_step, mass) > UNSTABLE * self.peak_energy
     }
 
-    /// Goes on from t_n to t_{n+1} with ã_n, and with its lumping difference if it is known already; after the last step
-    /// there is nowhere to go.
-    pub(super) fn advance<const N: usize>(
+    /// One at rest, without initial fields.
+    pub(super) fn at_rest<const N: usize>(problem: &Problem<D, N>, shares: Shares) -> Self {
+        let zero = vec![[0.0; D]; problem.mesh().node_count()];
+        Self { displacement: zero.clone(), half_step: zero, ..Self::new(problem, shares) }
+    }
+
+    /// Takes in ã_n, with its lumping difference if it is known already.
+    pub(super) fn accelerate<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         dynamics: &Dynamics<'_, D, N>,
@@ -117,39 +144,65 @@ impl<const D: usize> AuxiliarySolution<D> {
         acceleration: &[[f64; D]],
         once: Option<&[[f64; D]]>,
     ) {
-        if n == times.step_count() {
-            return;
+        self.before.copy_from_slice(acceleration);
+        self.acceleration.copy_from_slice(acceleration);
+        self.reversals += usize::from(n < times.step_count() && reverses(times, n));
+        if self.reversals <= FEW && self.shares != Shares::NONE {
+            let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));
+            self.correct(problem, dynamics, [next * last, last * last], acceleration, once);
         }
-        self.reversals += usize::from(reverses(times, n));
-        if self.reversals > FEW {
-            self.correction.fill([0.0; D]);
-        } else if self.corrected {
-            self.correct(problem, dynamics, times.step(n) * times.step(n.saturating_sub(1)), acceleration, once);
-        }
-        let corrected = acceleration.iter().zip(&self.correction).map(|(a, b)| std::array::from_fn(|c| a[c] + b[c]));
-        percute_core::dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, corrected);
     }
 
-    /// p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã, but for prescribed components, which have the motion they must have.
+    /// v_n, once ã_n is known.
+    pub(super) fn velocity(&self, times: &TimeGrid, n: usize) -> Vec<[f64; D]> {
+        let back = if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) };
+        let each = |(v, a): (&[f64; D], &[f64; D])| std::array::from_fn(|c| v[c] + back * a[c]);
+        self.half_step.iter().zip(&self.before).map(each).collect()
+    }
+
+    /// Goes on from t_n to t_{n+1}; the last step has no next.
+    pub(super) fn advance(&mut self, times: &TimeGrid, n: usize) {
+        if n < times.step_count() {
+            let acceleration = self.acceleration.iter().copied();
+            percute_core::dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, acceleration);
+        }
+    }
+
+    /// Adds p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã, but for prescribed components, which have the motion they must have. Δt² is the
+    /// first of the squares (s²) for the acceleration from t_n on, the second for that before.
     fn correct<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         dynamics: &Dynamics<'_, D, N>,
-        square_of_step: f64,
+        squares: [f64; 2],
         acceleration: &[[f64; D]],
         once: Option<&[[f64; D]]>,
     ) {
+        let Shares { mass, time } = self.shares;
         let difference = |field: &[[f64; D]]| lumping_difference(problem, dynamics.inverse_mass(), field);
-        let once = once.map_or_else(|| Cow::Owned(difference(acceleration)), Cow::Borrowed);
-        let twice = difference(&once);
-        self.correction.fill([0.0; D]);
-        dynamics.stiffness().subtract_internal_forces(acceleration, &mut self.correction);
-        let (time, damping) = (square_of_step / 12.0, damping::<D>());
-        let parts = self.correction.iter_mut().zip(dynamics.inverse_mass()).zip(once.iter().zip(&twice));
-        for ((value, inverse), (once, twice)) in parts {
-            (0..D).for_each(|c| value[c] = time * inverse * value[c] + 0.5 * once[c] - damping * twice[c]);
+        let lumping = (mass != 0.0).then(|| {
+            let once = once.map_or_else(|| Cow::Owned(difference(acceleration)), Cow::Borrowed);
+            let twice = difference(&once);
+            (once, twice)
+        });
+        self.internal.fill([0.0; D]);
+        dynamics.stiffness().subtract_internal_forces(acceleration, &mut self.internal);
+        for p in problem.prescribed() {
+            self.internal[p.node.index()][p.component] = 0.0;
         }
-        problem.prescribed().iter().for_each(|p| self.correction[p.node.index()][p.component] = 0.0);
+        let damping = mass * damping::<D>();
+        for (total, square) in [&mut self.acceleration, &mut self.before].into_iter().zip(squares) {
+            let time = time * square / 12.0;
+            for (i, (total, inverse)) in total.iter_mut().zip(dynamics.inverse_mass()).enumerate() {
+                for c in 0..D {
+                    let mut correction = time * inverse * self.internal[i][c];
+                    if let Some((once, twice)) = &lumping {
+                        correction = correction + 0.5 * mass * once[i][c] - damping * twice[i][c];
+                    }
+                    total[c] += correction;
+                }
+            }
+        }
     }
 }
 

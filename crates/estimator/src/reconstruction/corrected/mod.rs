@@ -2,7 +2,9 @@
 //! dispersion, with tractions of least energy.
 
 mod auxiliary_solution;
+mod companions;
 mod concentration;
+mod energy_products;
 mod impulse_smoothing;
 mod lumping_difference;
 mod moment_correction;
@@ -12,6 +14,7 @@ use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, 
 use crate::acceleration::accelerate;
 use crate::concentrated::TractionShape;
 use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact, driving_forces};
+use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
@@ -19,7 +22,8 @@ use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
 use crate::time_level::SurfaceStep;
 use crate::traction::{Equilibrated, Equilibration};
-use auxiliary_solution::AuxiliarySolution;
+use auxiliary_solution::{AuxiliarySolution, Shares};
+use companions::{AuxiliaryLevel, Companions};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
@@ -46,6 +50,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
+    companions: Option<Companions<'p, D, N>>,
     /// Whether the lumping difference is wanted.
     mixed: bool,
     minimises: bool,
@@ -57,6 +62,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let keeps = |part: Ablation| options.ablation != part;
+        let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
         let concentrates = match problem.mesh().simplex().shape() {
             Shape::Bar => false,
             Shape::Triangle => true,
@@ -69,8 +75,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             own_forces: OwnForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
-            auxiliary: keeps(Ablation::AuxiliarySolution)
-                .then(|| AuxiliarySolution::new(problem, keeps(Ablation::Correction))),
+            auxiliary: keeps(Ablation::AuxiliarySolution).then(|| AuxiliarySolution::new(problem, shares)),
+            companions: None,
             mixed: options.acceleration(D) == Acceleration::Mixed,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
@@ -131,6 +137,9 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
+        if self.auxiliary.is_some() {
+            self.companions = Some(Companions::new(self.problem, self.times, elements));
+        }
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
         }
@@ -184,7 +193,14 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let pull = driving_forces(problem, &densities.acting);
         let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
-        auxiliary.advance(problem, dynamics, self.times, step.index, &acceleration, lumping_difference.as_deref());
+        let known = lumping_difference.as_deref();
+        auxiliary.accelerate(problem, dynamics, self.times, step.index, &acceleration, known);
+        if let Some(companions) = &mut self.companions {
+            let (solution, density) = (&auxiliary, &densities.acting);
+            let level = AuxiliaryLevel { solution, force: &force, contact: &contact, density, pull: &pull };
+            companions.advance(dynamics, simulated, &level);
+        }
+        auxiliary.advance(self.times, step.index);
         self.auxiliary = Some(auxiliary);
         BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }
@@ -206,6 +222,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
 
     fn own_contacts(&self) -> usize {
         self.own_forces.count()
+    }
+
+    fn differences(&self) -> Option<&[Difference]> {
+        self.companions.as_ref().map(Companions::differences)
     }
 
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {

@@ -1,0 +1,32 @@
+//! The sources of the error in a report.
+
+use super::columns::{Columns, SOURCES};
+use percute_estimator::{Separation, Sources};
+use serde::Serialize;
+
+/// The sources of η (J), and the mean errors (J^½) that a finer mesh and shorter steps would have.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct SourceReport {
+    pub at_sup: Sources,
+    pub mean: Sources,
+    pub half_size: Sources,
+    pub half_step: f64,
+    pub mean_with_half_size: f64,
+    pub mean_with_half_step: f64,
+    pub over_time: Columns<Sources, 4>,
+}
+
+impl SourceReport {
+    pub(super) fn new(separation: &Separation) -> Self {
+        Self {
+            at_sup: separation.at_sup,
+            mean: separation.mean,
+            half_size: separation.half_size,
+            half_step: separation.half_step,
+            mean_with_half_size: separation.mean_with_half_size(),
+            mean_with_half_step: separation.mean_with_half_step(),
+            over_time: Columns::new(separation.over_time.clone(), SOURCES),
+        }
+    }
+}
