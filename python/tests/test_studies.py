@@ -7,9 +7,10 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import bar, block
-from percute.verification import speeds
+from percute.verification import sources, speeds
 from percute.verification.bodies import BODIES, corners, graded
 from percute.verification.impacts import MESHES, RECONSTRUCTION_OPTIONS, Case, cases
+from percute.verification.parallel import Resolution
 from percute.verification.turning import ACCELERATIONS, bodies
 
 
@@ -87,6 +88,30 @@ def test_the_mode_of_a_square_has_the_known_effectivities() -> None:
         assert (lame[name].sup, lame[name].mean) == pytest.approx(known, rel=0.015)
         # Rounding of the rotation.
         assert (spinning[name].sup, spinning[name].mean) == pytest.approx((lame[name].sup, lame[name].mean), rel=1e-9)
+
+
+def test_sources_say_what_half_the_size_changes() -> None:
+    """Within 20 % of the change in a run: a front, a corner at 4 m/s, a smooth mode; and half the step of a bar that vibrates."""
+    of = {(subject.name, subject.level): subject for subject in sources.subjects()}
+    assert len(of) == len(sources.subjects())
+    names = ("flat", "corner, 4 m/s", "square in Lamé's mode", "vibrating bar")
+    flat, corner, mode, bar = Resolution(threads=1).map(sources._halve, [of[name, 1] for name in names])
+    for each in (flat, corner, mode, bar):
+        assert each.size.off < sources.CLOSE and each.expected.total / each.before.total - 1.0 == pytest.approx(each.size.expected)
+    assert bar.step.off < 0.1 and bar.step.expected > 0.5
+    # What each is made of.
+    assert flat.before.front > 0.5 * flat.before.total and corner.before.surface > 0.9 * corner.before.total
+    assert mode.before.mesh > 0.9 * mode.before.total and mode.before.front == mode.before.surface == 0.0
+
+
+def test_refinement_at_the_contact_helps_corners_not_fronts() -> None:
+    of = sources.impacts()
+    runs = [(name, of[name]) for name in ("flat", "corner, 4 m/s")]
+    flat, corner = Resolution(threads=1).map(sources._locally, runs)
+    assert flat[1].front < 0.7 * flat[0].front and flat[1].total > 0.9 * flat[0].total
+    # All of the error was at the corner: the rest stays as small as it was.
+    assert corner[1].total < 0.8 * corner[0].total
+    assert abs(corner[1].dispersion + corner[1].mesh - corner[0].dispersion - corner[0].mesh) < 0.01 * corner[0].total
 
 
 def test_refined_meshes_are_nested() -> None:

@@ -130,11 +130,13 @@ class Case:
 
     def problem(self, refinements: int, places: NDArray[np.float64] | None = None, size: float = 0.0) -> pc.Problem:
         """Give the problem on one of the meshes, with elements of a size at some places."""
+        mesh = self.mesh(refinements)
+        return self.on(mesh if places is None else graded(mesh, places, size))
+
+    def on(self, mesh: pc.Mesh) -> pc.Problem:
+        """Give the problem on a mesh."""
         angle = math.radians(self.tilt)
         normal, tangent = np.array([math.sin(angle), math.cos(angle)]), np.array([math.cos(angle), -math.sin(angle)])
-        mesh = self.mesh(refinements)
-        if places is not None:
-            mesh = graded(mesh, places, size)
         lowest = float(np.min(mesh.points[:, 0] * normal[0] + mesh.points[:, 1] * normal[1])) - self.gap
         return pc.Problem(
             mesh,

@@ -25,17 +25,22 @@ RULE = ((0.112_701_665_379_258_3, 5 / 18), (0.5, 8 / 18), (0.887_298_334_620_741
 """Points and weights of Gauss's rule on [0, 1], exact to degree 5."""
 
 
-def _run(bar: tuple[int, float], stop: Stop) -> tuple[float, float, float]:
-    """Give the largest true error and estimate (% of the norm of the mode), and the error of the frequency (%)."""
-    per_wave, ratio = bar
-    elements = round(per_wave * WAVE_NUMBER * LENGTH / math.tau)
+def problem_of(elements: int) -> pc.Problem:
+    """Give the bar with so many elements."""
     mesh = pc.Mesh.bar(LENGTH, elements=elements)
-    problem = pc.Problem(
+    return pc.Problem(
         mesh,
         material=pc.Elastic(young=YOUNG, density=DENSITY, section=SECTION),
         initial_velocity=AMPLITUDE * FREQUENCY * np.sin(WAVE_NUMBER * mesh.points),
         supports=[pc.Support(group=group, components="x") for group in ("start", "end")],
     )
+
+
+def _run(bar: tuple[int, float], stop: Stop) -> tuple[float, float, float]:
+    """Give the largest true error and estimate (% of the norm of the mode), and the error of the frequency (%)."""
+    per_wave, ratio = bar
+    elements = round(per_wave * WAVE_NUMBER * LENGTH / math.tau)
+    problem = problem_of(elements)
     # Δt_c = h/c on a uniform bar, eq. [33].
     step = ratio * LENGTH / elements * math.sqrt(DENSITY / YOUNG)
     count = round(PERIODS * math.tau / FREQUENCY / step)
