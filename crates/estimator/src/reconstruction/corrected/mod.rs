@@ -2,7 +2,7 @@
 //! dispersion, with tractions of least energy.
 
 mod auxiliary_solution;
-mod companions;
+mod compared_motions;
 mod concentration;
 mod energy_products;
 mod impulse_smoothing;
@@ -23,7 +23,7 @@ use crate::residual::worse;
 use crate::time_level::SurfaceStep;
 use crate::traction::{Equilibrated, Equilibration};
 use auxiliary_solution::{AuxiliarySolution, Shares};
-use companions::{AuxiliaryLevel, Companions};
+use compared_motions::{AuxiliaryLevel, ComparedMotions};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
@@ -50,7 +50,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     auxiliary: Option<AuxiliarySolution<D>>,
-    companions: Option<Companions<'p, D, N>>,
+    compared: Option<ComparedMotions<'p, D, N>>,
     /// Whether the lumping difference is wanted.
     mixed: bool,
     minimises: bool,
@@ -76,7 +76,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             auxiliary: keeps(Ablation::AuxiliarySolution).then(|| AuxiliarySolution::new(problem, shares)),
-            companions: None,
+            compared: None,
             mixed: options.acceleration(D) == Acceleration::Mixed,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
@@ -138,7 +138,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
         if self.auxiliary.is_some() {
-            self.companions = Some(Companions::new(self.problem, self.times, elements));
+            self.compared = Some(ComparedMotions::new(self.problem, self.times, elements));
         }
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
@@ -195,10 +195,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
         let known = lumping_difference.as_deref();
         auxiliary.accelerate(problem, dynamics, self.times, step.index, &acceleration, known);
-        if let Some(companions) = &mut self.companions {
+        if let Some(compared) = &mut self.compared {
             let (solution, density) = (&auxiliary, &densities.acting);
             let level = AuxiliaryLevel { solution, force: &force, contact: &contact, density, pull: &pull };
-            companions.advance(dynamics, simulated, &level);
+            compared.advance(dynamics, simulated, &level);
         }
         auxiliary.advance(self.times, step.index);
         self.auxiliary = Some(auxiliary);
@@ -225,7 +225,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn differences(&self) -> Option<&[Difference]> {
-        self.companions.as_ref().map(Companions::differences)
+        self.compared.as_ref().map(ComparedMotions::differences)
     }
 
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {

@@ -21,7 +21,7 @@ use percute_core::time::TimeGrid;
 /// The corrections that elements and steps, or steps alone, half as long need no more: errors are of second order.
 const QUARTERS: f64 = 0.75;
 
-/// The auxiliary solution at a level, as the companions see it.
+/// The auxiliary solution at a level, as it is compared.
 #[derive(Clone, Copy)]
 pub(super) struct AuxiliaryLevel<'a, const D: usize> {
     pub(super) solution: &'a AuxiliarySolution<D>,
@@ -36,7 +36,7 @@ pub(super) struct AuxiliaryLevel<'a, const D: usize> {
 
 /// The motions, and the energies of their differences so far.
 #[derive(Debug)]
-pub(super) struct Companions<'p, const D: usize, const N: usize> {
+pub(super) struct ComparedMotions<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     products: EnergyProducts<'p, D, N>,
@@ -47,7 +47,7 @@ pub(super) struct Companions<'p, const D: usize, const N: usize> {
     differences: Vec<Difference>,
 }
 
-impl<'p, const D: usize, const N: usize> Companions<'p, D, N> {
+impl<'p, const D: usize, const N: usize> ComparedMotions<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, elements: &[Element<D, N>]) -> Self {
         let shared = |mass| AuxiliarySolution::new(problem, Shares { mass, time: QUARTERS });
         Self {
