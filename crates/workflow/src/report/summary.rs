@@ -123,7 +123,7 @@ fn sources(report: &Report) -> Vec<(&'static str, String)> {
     let shares = shares.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source / total)).join(", ");
     let [size, step] = [sources.mean_with_half_size, sources.mean_with_half_step].map(|e| 100.0 * (e / error - 1.0));
     vec![
-        ("sources", format!("{shares} of the mean")),
+        ("sources", format!("{shares} of the squared mean")),
         ("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")),
     ]
 }
