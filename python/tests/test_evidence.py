@@ -219,14 +219,14 @@ def test_every_estimate_states_the_ranges_of_the_page(block_history: pc.History)
         inside += ends(cells[:2])
     for name, _, _, after, _, lowest, _, highest, *_ in of_page("Γ_DA", "T − t_c (L/c)"):
         # Until the end of contact.
-        if name == "corrected" and after == "2.0":
+        if name == "corrected":
+            assert after == "2.0"
             inside += [float(lowest), float(highest)]
-        elif name != "corrected":
-            least.append(float(lowest))
+    least += map(float, re.findall(r"([\d.]+) to [\d.]+ with `(?:consistent|published)`", PAGE.read_text(encoding="utf-8")))
     inside += [value for name, values in families().items() if name not in OTHERWISE for value in values]
     otherwise = [value for name, values in families().items() if name in OTHERWISE for value in values]
-    for _, _, _, _, _, *cells, _ in of_page("case", "phases", "sup after 1"):
-        otherwise += ends(cells)
+    for _, _, *cells in of_page("case", "sup after 1, meshes 2; 3"):
+        otherwise += [float(number) for cell in cells for number in cell.split("; ")]
     low, high = math.floor(20 * min(inside)) / 20, math.ceil(10 * max(inside)) / 10
     lower, higher = math.floor(10 * min(otherwise)) / 10, math.ceil(10 * max(otherwise)) / 10
     meaning = pc.estimate(block_history).meaning

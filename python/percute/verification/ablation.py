@@ -75,19 +75,19 @@ def compute(section: Section, resolution: Resolution) -> None:
     bodies = _bodies(resolution)
     on_bodies = resolution.map(lambda case, stop: case.run(CHOICES, stop), bodies, lambda case: case.cost)
     results = list(zip(bodies, on_bodies, strict=True))
-    attempts = Table("ablation-attempts", "The attempts.", [Column("attempt"), Column("difference and effect")])
+    attempts = Table("ablation-attempts", "The attempts: what each leaves out, and why this matters.", [Column("attempt"), Column("difference and effect")], on_page=False)
     for name, (_, description) in ATTEMPTS.items():
         attempts.add(name, description)
     section.add(
         "The default `corrected` is made of several parts (see the page on reconstructions). Each is left out in turn here, and the other "
         "reconstructions stand beside it: e/e_Ex on a part of the grid of bars, and e/e_ref on plane bodies.",
-        attempts,
         Figure(
             "ablation",
             "Effectivity index of the largest error [15] over refinement (both axes logarithmic), a panel for each body, a curve for each "
             "attempt. A rising curve exceeds the true error more and more as the mesh becomes finer.",
             _draw(results),
         ),
+        attempts,
     )
     if not resolution.small:
         section.add(_bar(on_bars))

@@ -214,10 +214,10 @@ def _by_choice(grid: Grid) -> Table:
     caption = (
         f"Effectivity e/e_Ex over {ELEMENTS[0]} to {ELEMENTS[-1]} elements, Δt/Δt_c from {RATIOS[0]} to {RATIOS[-1]:g} and the fractions "
         f"{', '.join(map(str, FRACTIONS))} of a step: its range, the places of its ends, and the part of it in the range that the paper states; on the "
-        f"page of the largest error with Γ_DA `{DEFAULT}`."
+        f"page until the end of contact with Γ_DA `{DEFAULT}`."
     )
     columns = [Column("reconstruction"), Column("Γ_DA"), Column("measure"), Column("T − t_c", "L/c", digits=2), Column("runs"), *Summary.COLUMNS]
-    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT})
+    table = Table("bar-maps-summary", caption, columns, on_page={"Γ_DA": DEFAULT, "T − t_c": ENDS[0]})
     for (c, choice), (m, measure), end in product(enumerate(CHOICES), enumerate(MEASURES), ENDS):
         summary = Summary(grid.effectivities(c, m, _until(end)))
         table.add(*choice.values(), measure, end, summary.count, *summary.cells())

@@ -164,13 +164,10 @@ def compute(section: Section, resolution: Resolution) -> None:
         "`corrected` separates η into sources and says what elements or steps half as long would change (page on sources). Real runs show "
         "how far this is true: each motion is run with elements half as long, at the same Courant number, and with steps half as long on the same "
         "mesh. The numbers are means over time. The true error is that against a much finer mesh, squared.",
-        _shares(results),
         _changes(results),
         _verdict(results),
-        "### Refinement at the contact alone",
-        "The elements with a node that touches are refined once or twice, the others as far as the mesh requires. Slow corners and curves gain what "
-        "they gain from a mesh that is fine everywhere. A front does not: its energy goes on into the body and is there dispersed.",
-        _local(resolution),
+        *_local(resolution),
+        _shares(results),
     )
 
 
@@ -193,7 +190,7 @@ def _changes(results: list[tuple[Subject, Halved]]) -> Table:
     kinds = ("expected", "real", "off by", "true error")
     columns += [Column(f"{what}: {kind}", "%", digits=3) for what in ("half the size", "half the step") for kind in kinds]
     caption = "Change of the mean of η, expected and real; how far the first is from the second, relative; and that of the true error squared."
-    table = Table("sources-changes", caption, columns)
+    table = Table("sources-changes", caption, columns, on_page={"mesh": 2})
     for subject, each in results:
         values = ((change.expected, change.real, change.off, change.true) for change in (each.size, each.step))
         table.add(subject.name, subject.level + 1, *(100.0 * value for row in values for value in row))
@@ -216,16 +213,23 @@ def _verdict(results: list[tuple[Subject, Halved]]) -> str:
     )
 
 
-def _local(resolution: Resolution) -> Table:
+def _local(resolution: Resolution) -> tuple[str, Table]:
     """Give the sources on meshes that are refined at the contact."""
     of: Mapping[str, Case] = impacts()
     names = ("flat", "corner, 400 m/s", "corner, 4 m/s", "disc, 4 m/s", "crowned, 4 m/s")
     runs = [(name, of[name]) for name in resolution.first(1, names)]
     columns = [Column("case"), Column("refined", "times"), *(Column(source, "%", digits=3) for source in (*SOURCES, "sum"))]
     caption = "Sources of the mean of η on mesh 2, refined at the contact alone, in per cent of the sum without refinement."
-    table = Table("sources-local", caption, columns)
+    table = Table("sources-local", caption, columns, on_page=False)
+    listed = []
     for (name, _), found in zip(runs, resolution.map(_locally, runs), strict=True):
-        total = 0.01 * found[0].total
-        for times, sources in zip(LAYERS, found, strict=True):
-            table.add(name, times, *(getattr(sources, source) / total for source in SOURCES), sources.total / total)
-    return table
+        sums = [sources.total / found[0].total for sources in found]
+        for times, sources, total in zip(LAYERS, found, sums, strict=True):
+            table.add(name, times, *(100.0 * getattr(sources, source) / found[0].total for source in SOURCES), 100.0 * total)
+        listed.append(f"{' and '.join(percent(total) for total in sums[1:])} ({name})")
+    text = (
+        "With only the elements refined that have a node in contact, once and twice, the mean of η falls to "
+        f"{', '.join(listed)} of that without. Slow corners and curves gain what they gain from a mesh that is fine everywhere. A front "
+        "does not: its energy goes on into the body and is there dispersed."
+    )
+    return text, table
