@@ -8,11 +8,10 @@ from itertools import product
 
 import numpy as np
 
-import percute as pc
 from percute.verification import figures
 from percute.verification.bar import BAR, WHOLE, Outcome, Setting
 from percute.verification.choices import ACCELERATIONS, CHOICES, DEFAULT, RECONSTRUCTIONS, of_default
-from percute.verification.page import Column, Figure, Section, Table, percent, short
+from percute.verification.page import Column, Figure, Section, Table, short
 from percute.verification.parallel import Resolution
 
 PAPER = (0.7, 1.8)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Setting
 from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, RECONSTRUCTION_OPTIONS, Case, cases
