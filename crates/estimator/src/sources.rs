@@ -5,7 +5,6 @@
 //! that has accumulated. An element is near if one of its nodes may touch.
 
 use crate::difference::Difference;
-use crate::estimate::Parts;
 use serde::{Deserialize, Serialize};
 
 /// The sources of η (J). Their sum is η. A source may be slightly negative, because D is not orthogonal to the other misfits.
@@ -22,14 +21,14 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// The sources of η at one sample.
-    pub(crate) fn new(parts: &Parts, near: &NearParts, difference: &Difference) -> Self {
+    /// The sources of η at one sample, from its kinetic and elastic parts together and its contact part (J).
+    pub(crate) fn new([misfit, contact_part]: [f64; 2], near: &NearParts, difference: &Difference) -> Self {
         let Difference { energy, near: close, contact, .. } = *difference;
         Self {
-            surface: (parts.contact - near.front) + contact + (near.misfit - close),
+            surface: (contact_part - near.front) + contact + (near.misfit - close),
             front: near.front,
             dispersion: energy - contact,
-            mesh: (parts.kinetic + parts.elastic - near.misfit) - (energy - close),
+            mesh: (misfit - near.misfit) - (energy - close),
         }
     }
 

@@ -15,8 +15,10 @@ pub(super) fn separation(
     for (i, interval) in intervals.iter().enumerate() {
         let [first, last] = interval.levels.map(|n| differences[n]);
         let differences = [first, first.mean(&last), last];
-        let sources: [Sources; 3] =
-            std::array::from_fn(|k| Sources::new(&interval.samples[k].0, &interval.near[k], &differences[k]));
+        let sources: [Sources; 3] = std::array::from_fn(|k| {
+            let (parts, _) = &interval.samples[k];
+            Sources::new([parts.kinetic + parts.elastic, parts.contact], &interval.near[k], &differences[k])
+        });
         let (times, weights) = (interval.instants(), interval.weights());
         for k in 0..3 {
             mean.add(weights[k] / end, &sources[k]);
