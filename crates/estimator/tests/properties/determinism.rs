@@ -13,6 +13,12 @@ use percute_estimator::{
 };
 use percute_testkit::{disc, random_rectangle};
 
+/// Every number of the sources of an error.
+fn of_sources(Separation { at_sup, mean, half_size, half_step, over_time }: &Separation) -> Vec<f64> {
+    let all = [at_sup, mean, half_size].into_iter().chain(over_time);
+    all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]).chain([*half_step]).collect()
+}
+
 /// Every number of an estimate; those of its maps come last.
 fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     let Estimate {
@@ -50,11 +56,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     let sample =
         |s: &percute_estimator::Sample| [s.time, s.parts.kinetic, s.parts.elastic, s.parts.contact, s.reference];
     numbers.extend(over_time.iter().flat_map(sample));
-    if let Some(Separation { at_sup, mean, half_size, half_step, over_time }) = sources {
-        numbers.push(*half_step);
-        let all = [at_sup, mean, half_size].into_iter().chain(over_time);
-        numbers.extend(all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]));
-    }
+    numbers.extend(sources.iter().flat_map(of_sources));
     numbers.extend(by_element);
     numbers.extend(residuals.entries().map(|entry| entry.1));
     for ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } in maps {
