@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+NEGATIVE = 0.2
+"""The part of η by which a source may be negative before no change is predicted."""
+
 __all__ = ["ElementMap", "OverTime", "Parts", "Separation", "Sources", "SourcesOverTime", "WorstElement"]
 
 
@@ -61,13 +64,18 @@ class SourcesOverTime:
     mesh: NDArray[np.float64]
     """Of the mesh in the rest of the body."""
 
+    @property
+    def total(self) -> NDArray[np.float64]:
+        """Their sum, η (J)."""
+        return self.surface + self.front + self.dispersion + self.mesh
+
     def __repr__(self) -> str:
         return f"<percute.SourcesOverTime: {len(self.surface)} samples>"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Separation:
-    """The sources of the error, and what a finer mesh or a shorter step would change; defined in ``docs/estimate.md``."""
+    """The sources of the error, and what a finer mesh or a shorter step would change; defined in ``docs/sources.md``."""
 
     at_sup: Sources
     """At the time of the largest η (J)."""
@@ -81,14 +89,21 @@ class Separation:
     """At all samples (J)."""
 
     @property
-    def mean_with_half_size(self) -> float:
-        """The mean error expected with elements and steps half as long (J^½)."""
-        return math.sqrt(max(self.half_size.total, 0.0))
+    def mean_with_half_size(self) -> float | None:
+        """The mean error expected with elements and steps half as long (J^½).
+
+        None where the sources do not separate: where the mean of one is below −20 % of η, as on bars near the critical step.
+        """
+        return self._expected(self.half_size.total)
 
     @property
-    def mean_with_half_step(self) -> float:
-        """The mean error expected with steps half as long (J^½)."""
-        return math.sqrt(max(self.mean.total + self.half_step, 0.0))
+    def mean_with_half_step(self) -> float | None:
+        """The mean error expected with steps half as long (J^½); None where the sources do not separate."""
+        return self._expected(self.mean.total + self.half_step)
+
+    def _expected(self, total: float) -> float | None:
+        least = min(self.mean.surface, self.mean.front, self.mean.dispersion, self.mean.mesh)
+        return math.sqrt(total) if total > 0.0 and least >= -NEGATIVE * self.mean.total else None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)

@@ -23,12 +23,12 @@ pub struct Sources {
 impl Sources {
     /// The sources of η at one sample, from its kinetic and elastic parts together and its contact part (J).
     pub(crate) fn new([misfit, contact_part]: [f64; 2], near: &NearParts, difference: &Difference) -> Self {
-        let Difference { energy, near: close, contact, .. } = *difference;
+        let Difference { energy, near: near_part, contact, .. } = *difference;
         Self {
-            surface: (contact_part - near.front) + contact + (near.misfit - close),
+            surface: (contact_part - near.front) + contact + (near.misfit - near_part),
             front: near.front,
             dispersion: energy - contact,
-            mesh: (misfit - near.misfit) - (energy - close),
+            mesh: (misfit - near.misfit) - (energy - near_part),
         }
     }
 
@@ -82,16 +82,23 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// The mean error expected with elements and steps half as long (J^½).
+    /// The mean error expected with elements and steps half as long (J^½); `None` where the sources do not separate: where the
+    /// mean of one is below −20 % of η, as on bars near the critical step.
     #[must_use]
-    pub fn mean_with_half_size(&self) -> f64 {
-        self.half_size.total().max(0.0).sqrt()
+    pub fn mean_with_half_size(&self) -> Option<f64> {
+        self.expected(self.half_size.total())
     }
 
-    /// The mean error expected with steps half as long (J^½).
+    /// The mean error expected with steps half as long (J^½); `None` where the sources do not separate.
     #[must_use]
-    pub fn mean_with_half_step(&self) -> f64 {
-        (self.mean.total() + self.half_step).max(0.0).sqrt()
+    pub fn mean_with_half_step(&self) -> Option<f64> {
+        self.expected(self.mean.total() + self.half_step)
+    }
+
+    fn expected(&self, total: f64) -> Option<f64> {
+        let Sources { surface, front, dispersion, mesh } = self.mean;
+        let least = surface.min(front).min(dispersion).min(mesh);
+        (total > 0.0 && least >= -NEGATIVE * self.mean.total()).then(|| total.sqrt())
     }
 }
 
@@ -109,6 +116,8 @@ pub(crate) fn half_size(mean: &Sources, difference: &Difference) -> Sources {
     ])
 }
 
+/// The part of η by which a source may be negative: 0.9 of the critical step has 0.17 on bars, the critical step itself 2.
+const NEGATIVE: f64 = 0.2;
 /// The mass of the surface layer, which arrives at full speed, falls like h.
 const FRONT: f64 = 0.5;
 /// The misfit of interpolation falls like h² in smooth fields. Waves that the finer mesh carries anew add as much at most.

@@ -7,6 +7,9 @@ use std::ops::Deref;
 /// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
 const TRIBUTARY: f64 = 0.3;
 
+/// Costs that differ by less than this part are the same: far above the rounding of gaps.
+const TIE: f64 = 1e-9;
+
 /// A hat on one edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Hat {
@@ -94,20 +97,27 @@ impl<'a> ShapeCosts<'a> {
         Self { gaps, tributary, direction, energy, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
-    /// The shape of least gap energy and stress energy under a normal force (N).
+    /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored shapes may
+    /// cost the same: rounding must not choose between them, and the best symmetric one is taken.
     pub(crate) fn shape(&self, normal: f64) -> TractionShape {
-        let least = |shapes: &mut dyn Iterator<Item = TractionShape>| {
-            let ranked = shapes.map(|shape| (self.cost(&shape, normal), shape));
-            ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(TractionShape::of_one(0), |(_, shape)| shape)
-        };
+        let halvings = || 0..=HATS;
         if self.gaps.len() == 1 {
-            return least(&mut (0..=HATS).map(TractionShape::of_one));
+            return self.cheapest(halvings().map(TractionShape::of_one), normal).1;
         }
-        let pairs = (0..=HATS).flat_map(|a| (0..=HATS).map(move |b| [a, b]));
-        least(&mut pairs.map(|halvings| {
+        let pair = |halvings: [usize; 2]| {
             let share = self.share(halvings, normal);
             TractionShape::of_two([share, 1.0 - share], halvings)
-        }))
+        };
+        let (cost, best) = self.cheapest(halvings().flat_map(|a| halvings().map(move |b| [a, b])).map(pair), normal);
+        let [first, second] = best.hats.map(|hat| hat.halvings);
+        let tied = first != second && self.cost(&pair([second, first]), normal) <= (1.0 + TIE) * cost;
+        if tied { self.cheapest(halvings().map(|k| pair([k, k])), normal).1 } else { best }
+    }
+
+    /// The cheapest of some shapes, with its cost over the normal force (m).
+    fn cheapest(&self, shapes: impl Iterator<Item = TractionShape>, normal: f64) -> (f64, TractionShape) {
+        let ranked = shapes.map(|shape| (self.cost(&shape, normal), shape));
+        ranked.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, TractionShape::of_one(0)))
     }
 
     /// The best share of the first of two hats: the cost is quadratic in it.
@@ -223,6 +233,20 @@ mod tests {
                     let closed = costs.cost(&shape(costs.share([a, b], force)), force);
                     assert!(closed <= least * (1.0 + 1e-12), "{a} {b} {closed} {least}");
                 }
+            }
+        }
+    }
+
+    /// Rounding of the gaps does not choose between a shape and its mirror image.
+    #[test]
+    fn symmetric_nodes_have_symmetric_shapes() {
+        let (energy, _) = corner(0.25 * std::f64::consts::PI);
+        for k in 0..60 {
+            let gap = 1e-7 * 1.2_f64.powi(k);
+            for gaps in [[gap, gap], [gap * (1.0 + 1e-13), gap], [gap, gap * (1.0 + 1e-13)]] {
+                let shape = costs(&energy, &gaps).shape(1e4);
+                assert_eq!(shape[0].halvings, shape[1].halvings, "{gap}");
+                assert!((shape[0].share - 0.5).abs() < 1e-9, "{gap}");
             }
         }
     }

@@ -80,6 +80,7 @@ impl Report {
             balance: simulation.balance,
             balance_over_time: Columns::new(over_time, ENERGIES),
             kept_impulse: estimate.kept_impulse,
+            own_contacts: estimate.own_contacts,
             contact: ContactReport::new(contact),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),

@@ -76,6 +76,7 @@ pub struct Report {
     pub balance: Balance,
     pub balance_over_time: Columns<(f64, Balance), 7>,
     pub kept_impulse: Option<f64>,
+    pub own_contacts: usize,
     pub contact: Option<ContactReport>,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,

@@ -12,8 +12,8 @@ pub struct SourceReport {
     pub mean: Sources,
     pub half_size: Sources,
     pub half_step: f64,
-    pub mean_with_half_size: f64,
-    pub mean_with_half_step: f64,
+    pub mean_with_half_size: Option<f64>,
+    pub mean_with_half_step: Option<f64>,
     pub over_time: Columns<Sources, 4>,
 }
 

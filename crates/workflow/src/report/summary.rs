@@ -1,6 +1,6 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
-use super::{ADMISSIBLE, ProblemSummary, Report, meaning};
+use super::{ADMISSIBLE, ProblemSummary, Report, SOURCES, meaning};
 use crate::message::{counted, percent, short, trimmed};
 use percute_core::dynamics::Balance;
 
@@ -118,14 +118,13 @@ fn sources(report: &Report) -> Vec<(&'static str, String)> {
     if total <= 0.0 {
         return Vec::new();
     }
-    let shares =
-        [("surface", mean.surface), ("front", mean.front), ("dispersion", mean.dispersion), ("mesh", mean.mesh)];
-    let shares = shares.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source / total)).join(", ");
-    let [size, step] = [sources.mean_with_half_size, sources.mean_with_half_step].map(|e| 100.0 * (e / error - 1.0));
-    vec![
-        ("sources", format!("{shares} of the squared mean")),
-        ("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")),
-    ]
+    let shares = SOURCES.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source(mean) / total)).join(", ");
+    let mut lines = vec![("sources", format!("{shares} of the squared mean"))];
+    if let (Some(size), Some(step)) = (sources.mean_with_half_size, sources.mean_with_half_step) {
+        let [size, step] = [size, step].map(|e| 100.0 * (e / error - 1.0));
+        lines.push(("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")));
+    }
+    lines
 }
 
 /// The error in one line, the last one, for `tail -n 1`.

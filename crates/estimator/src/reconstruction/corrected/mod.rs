@@ -38,7 +38,7 @@ use percute_core::time::TimeGrid;
 use std::borrow::Cow;
 use traction_minimisation::TractionMinimisation;
 
-/// The reconstruction that drops no reaction.
+/// The reconstruction that drops no reaction, except at nodes with a contact of their own.
 #[derive(Debug)]
 pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

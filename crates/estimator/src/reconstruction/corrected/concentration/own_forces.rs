@@ -63,8 +63,8 @@ impl<const D: usize> OwnForces<D> {
             let (last, approach) = (self.contacts[at].take(), approach(at));
             // Reactions of a foreign history need not be in the cone.
             let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(&contact[at])).0;
-            let stopping = (-approach.gap / approach.mobility).max(0.0);
-            if last.is_none() && simulated == 0.0 && stopping == 0.0 {
+            let largest = (-approach.gap / approach.mobility).max(0.0);
+            if last.is_none() && simulated == 0.0 && largest == 0.0 {
                 continue;
             }
             let Some(gaps) = concentration.gaps(at, gap) else { continue };
@@ -77,10 +77,10 @@ impl<const D: usize> OwnForces<D> {
             };
             let direction = last.map_or(*own.frame.normal(), |last| last.direction);
             let costs = concentration.costs(problem, at, &direction, &gaps);
-            if last.is_none() && !alone(&costs.shape(if simulated > 0.0 { simulated } else { stopping })) {
+            if last.is_none() && !alone(&costs.shape(if simulated > 0.0 { simulated } else { largest })) {
                 continue;
             }
-            self.contacts[at] = own.contact(&costs, own.normal(&costs, stopping), last);
+            self.contacts[at] = own.contact(&costs, own.normal(&costs, largest), last);
             contact[at] = self.contacts[at].map_or([0.0; D], |own| own.force);
             arresting[at] = [0.0; D];
             self.replaced[at] = true;
@@ -108,11 +108,11 @@ impl<const D: usize> Own<D> {
         self.star.own([normal[0], normal[D - 1]])
     }
 
-    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction; `stopping`
+    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction; `largest`
     /// brings it there without.
-    fn normal(&self, costs: &ShapeCosts<'_>, stopping: f64) -> f64 {
+    fn normal(&self, costs: &ShapeCosts<'_>, largest: f64) -> f64 {
         let across = self.across();
-        let (mut low, mut high) = (0.0, stopping);
+        let (mut low, mut high) = (0.0, largest);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             let local = costs.approach(&costs.shape(middle), across, middle);

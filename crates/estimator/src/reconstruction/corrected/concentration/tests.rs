@@ -175,13 +175,13 @@ fn own_forces_close_the_gap() {
     let mut own = OwnForces::new(&problem);
     let found = apply(&mut own, force, -6e-5);
     let size = found[0] * normal[0] + found[1] * normal[1];
-    let (gaps, stopping) = (concentration.gaps(at, &gap).unwrap(), 6e7);
+    let (gaps, largest) = (concentration.gaps(at, &gap).unwrap(), 6e7);
     let costs = concentration.costs(&problem, at, &normal, &gaps);
     let across = concentration.nodes[at].frame.own(normal);
     let remaining = |size: f64| -6e-5 + 1e-12 * size + costs.approach(&costs.shape(size), across, size);
-    assert!(size > 0.0 && size < 0.1 * stopping, "{size}");
+    assert!(size > 0.0 && size < 0.1 * largest, "{size}");
     // 40 bisections of the force that stops the node.
-    assert!(remaining(size - 2e-12 * stopping) < 0.0 && remaining(size + 2e-12 * stopping) > 0.0);
+    assert!(remaining(size - 2e-12 * largest) < 0.0 && remaining(size + 2e-12 * largest) > 0.0);
     assert_eq!(apply(&mut own.clone(), force, 1e-9), [0.0; 2]);
     for reaction in [[0.0; 2], force.map(|f| 1e-3 * f), force.map(|f| 3.0 * f)] {
         assert_eq!(apply(&mut OwnForces::new(&problem), reaction, -6e-5), found);
