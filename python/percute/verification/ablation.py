@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import percute as pc
 from percute.verification import figures
 from percute.verification.bar import Outcome, Setting
+from percute.verification.choices import RECONSTRUCTIONS
 from percute.verification.impacts import FLAT, GOOD, KINDS, Case, Found, cases, curve
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution, Stop
@@ -84,7 +86,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         Figure(
             "ablation",
             "Effectivity index of the largest error [15] over refinement (both axes logarithmic), a panel for each body, a curve for each "
-            "attempt. A rising curve exceeds the true error more and more as the mesh becomes finer.",
+            "attempt; dashed for the other reconstructions. A rising curve exceeds the true error more and more as the mesh becomes finer.",
             _draw(results),
         ),
         attempts,
@@ -136,7 +138,11 @@ def _plane(results: Sequence[tuple[Case, list[Found | None]]]) -> Table:
 
 
 def _draw(results: Sequence[tuple[Case, list[Found | None]]]) -> figures.Drawing:
-    panels = [(case.name, [curve(attempt, found[:MESHES], k, 0, k) for k, attempt in enumerate(ATTEMPTS)]) for case, found in results]
+
+    def drawn(k: int, attempt: str, found: list[Found | None]) -> figures.Curve:
+        return replace(curve(attempt, found[:MESHES], k, 0, k), dashed=attempt in RECONSTRUCTIONS[1:])
+
+    panels = [(case.name, [drawn(k, attempt, found) for k, attempt in enumerate(ATTEMPTS)]) for case, found in results]
     ticks = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
     x, y = "times finer than mesh 1", "e/e_ref"
     return figures.lines(panels, x, y, log="xy", columns=2, band=GOOD, xticks=(1, 2, 4), yticks=ticks)
