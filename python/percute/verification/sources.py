@@ -176,7 +176,7 @@ def compute(section: Section, resolution: Resolution) -> None:
 
 def _shares(results: list[tuple[Subject, Halved]]) -> Table:
     """Give the sources of each run, and on elements half as long."""
-    columns = [Column("case"), Column("mesh")]
+    columns = [Column("case"), Column("number of the mesh")]
     columns += [Column(f"{source}{when}", "%", digits=3) for source in SOURCES for when in ("", ", expected", ", found")]
     caption = "Sources of the mean of η in per cent of its sum: of the run, expected with elements half as long, and found there."
     table = Table("sources", caption, columns, on_page=False)

@@ -119,7 +119,7 @@ fn sources(report: &Report) -> Vec<(&'static str, String)> {
         return Vec::new();
     }
     let shares = SOURCES.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source(mean) / total)).join(", ");
-    let mut lines = vec![("sources", format!("{shares} of the squared mean"))];
+    let mut lines = vec![("sources", format!("{shares} of mean²"))];
     if let (Some(size), Some(step)) = (sources.mean_with_half_size, sources.mean_with_half_step) {
         let [size, step] = [size, step].map(|e| 100.0 * (e / error - 1.0));
         lines.push(("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")));
