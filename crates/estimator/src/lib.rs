@@ -27,6 +27,8 @@ pub mod reference;
 mod replay;
 mod request;
 mod residual;
+#[allow(dead_code, reason = "for the sweeps over lanes, which follow")]
+mod simd;
 mod sources;
 mod stress;
 mod time_level;
