@@ -1,0 +1,14 @@
+//! What all measurements of speed share: one block, its product K·u, and timed runs.
+
+mod block;
+mod csr;
+mod order;
+mod run;
+
+pub use block::{Block, Motion, SIZES, material};
+pub use csr::Csr;
+pub use order::Order;
+pub use run::{Last, Timed, estimated, simulated, steps};
+
+/// Any failure of a measurement.
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
