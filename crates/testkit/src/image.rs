@@ -88,6 +88,12 @@ impl Renumbering {
     pub fn nodal<T: Copy>(&self, field: &[T]) -> Vec<T> {
         permuted(&self.node, field)
     }
+
+    /// A value of each element in the new order.
+    #[must_use]
+    pub fn elemental<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        permuted(&self.element, values)
+    }
 }
 
 /// `values` with entry i at place `new[i]`.

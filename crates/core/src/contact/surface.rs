@@ -4,6 +4,7 @@ use super::coulomb::Coulomb;
 use super::frame::Frame;
 use super::obstacle::Obstacle;
 use crate::ids::{FacetId, NodeId};
+use crate::mesh::{Mesh, NewNumbers};
 
 /// A node of the candidate facets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +108,21 @@ impl<const D: usize> ContactSurface<D> {
     pub(super) fn law(&self, at: usize) -> Coulomb {
         let contact = &self.nodes[at];
         if contact.guided { Coulomb::FRICTIONLESS } else { self.obstacles[contact.obstacle].law() }
+    }
+
+    /// The surface of the renumbered mesh: nodes and facets in the same order.
+    pub(crate) fn renumbered<const N: usize>(&self, old: &Mesh<D, N>, new: &NewNumbers) -> Self {
+        let node = |contact: &ContactNode| ContactNode { node: new.node(contact.node), ..*contact };
+        let facet = |facet: &ContactFacet<D>| {
+            let nodes = &old.facets()[facet.facet.index()].nodes;
+            ContactFacet { facet: new.facet(facet.facet), nodes: new.along(nodes, facet.nodes), ..*facet }
+        };
+        Self {
+            obstacles: self.obstacles.clone(),
+            nodes: self.nodes.iter().map(node).collect(),
+            points: self.points.clone(),
+            facets: self.facets.iter().map(facet).collect(),
+        }
     }
 
     /// Adds an obstacle with its candidates. The facets have positions in `nodes`.

@@ -7,14 +7,18 @@ mod check;
 mod generator;
 mod geometry;
 mod import_warning;
+mod order;
 mod parts;
 mod refine;
 mod refine_locally;
+mod renumber;
 mod star;
 mod topology;
 
 pub use check::MeshError;
 pub use import_warning::ImportWarning;
+pub use order::Numbering;
+pub(crate) use renumber::NewNumbers;
 pub use star::{Star, Stars};
 pub use topology::Facet;
 

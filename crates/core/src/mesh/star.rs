@@ -58,6 +58,37 @@ impl Stars {
         self.links.len()
     }
 
+    /// The stars after renumbering, which keeps the order around each node: `nodes` has the old number of each new node. A
+    /// closed chain begins at its lowest element.
+    pub(super) fn renumbered(&self, nodes: &[NodeId], element: &[u32], facet: &[u32]) -> Self {
+        let mut stars = Self {
+            offsets: Vec::with_capacity(self.offsets.len()),
+            elements: Vec::with_capacity(self.elements.len()),
+            links: Vec::with_capacity(self.links.len()),
+        };
+        stars.offsets.push(0);
+        let element = |e: &ElementId| ElementId::new(element[e.index()] as usize);
+        let facet = |f: &Option<FacetId>| f.map(|f| FacetId::new(facet[f.index()] as usize));
+        for &node in nodes {
+            let star = self.star(node);
+            let (at, count) = (stars.elements.len(), star.elements.len());
+            stars.elements.extend(star.elements.iter().map(element));
+            stars.links.extend(star.links[..count].iter().map(facet));
+            if star.is_closed() {
+                let around = &mut stars.elements[at..];
+                let lowest = (0..count).min_by_key(|&k| around[k]).unwrap_or(0);
+                around.rotate_left(lowest);
+                let links = stars.links.len() - count;
+                stars.links[links..].rotate_left(lowest);
+                stars.links.push(stars.links[links]);
+            } else {
+                stars.links.push(facet(&star.links[count]));
+            }
+            stars.offsets.push(stars.elements.len() as u32);
+        }
+        stars
+    }
+
     /// Builds all stars; a star that falls into several chains is a non-manifold node.
     pub(super) fn new<const D: usize, const N: usize>(
         simplex: &dyn Simplex<D, N>,

@@ -5,6 +5,7 @@ mod builder;
 mod candidates;
 mod error;
 mod plausibility;
+mod renumber;
 
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};

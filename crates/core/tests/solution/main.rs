@@ -13,6 +13,7 @@ mod free_vibration;
 mod from_rest;
 mod invariance;
 mod loads;
+mod numbering;
 mod run;
 mod supports;
 mod symmetry_plane;

@@ -7,9 +7,10 @@
 use crate::bodies::{aluminium, steps};
 use crate::estimating::{all_choices, estimate, history, reactions};
 use percute_core::contact::Obstacle;
+use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::{Numbering, TriangleMesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
@@ -168,6 +169,22 @@ proptest! {
         let image = Throw { mesh, ..throw.clone() };
         let expected = Expected { element: &|e| new.element[e], ..SAME };
         compare(&throw.problem(|v| v), &image.problem(|v| v), &throw.times, &expected)?;
+    }
+
+    /// The same of a problem that is renumbered as a whole.
+    #[test]
+    fn renumbered_after_the_checks(
+        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+    ) {
+        let throw = Throw::new(mesh, along, speed, friction, driven);
+        let (_, new) = renumbered(&throw.mesh, seed).unwrap();
+        let numbering = Numbering::new(
+            new.nodal(&(0..new.node.len()).map(NodeId::new).collect::<Vec<_>>()),
+            new.elemental(&(0..new.element.len()).map(ElementId::new).collect::<Vec<_>>()),
+        );
+        let problem = throw.problem(|v| v);
+        let expected = Expected { element: &|e| new.element[e], ..SAME };
+        compare(&problem, &problem.renumbered(&numbering), &throw.times, &expected)?;
     }
 
     #[test]

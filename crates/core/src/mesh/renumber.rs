@@ -1,0 +1,91 @@
+//! The same mesh under other numbers.
+
+use super::order::{inverse, sorted};
+use super::{Facet, Mesh, Numbering};
+use crate::ids::{ElementId, FacetId, NodeId};
+use std::collections::BTreeMap;
+
+/// New numbers by old ones: what a [`Numbering`] holds the other way round.
+pub(crate) struct NewNumbers {
+    pub(crate) node: Vec<u32>,
+    pub(crate) element: Vec<u32>,
+    pub(crate) facet: Vec<u32>,
+}
+
+impl NewNumbers {
+    /// The new number of a node.
+    pub(crate) fn node(&self, old: NodeId) -> NodeId {
+        NodeId::new(self.node[old.index()] as usize)
+    }
+
+    /// The new number of an element.
+    pub(crate) fn element(&self, old: ElementId) -> ElementId {
+        ElementId::new(self.element[old.index()] as usize)
+    }
+
+    /// The new number of a facet.
+    pub(crate) fn facet(&self, old: FacetId) -> FacetId {
+        FacetId::new(self.facet[old.index()] as usize)
+    }
+
+    /// The values at the nodes of an old facet in the order of its new nodes.
+    pub(crate) fn along<T: Copy, const D: usize>(&self, old: &[NodeId; D], values: [T; D]) -> [T; D] {
+        let mut order: [usize; D] = std::array::from_fn(|p| p);
+        order.sort_unstable_by_key(|&p| self.node(old[p]));
+        order.map(|p| values[p])
+    }
+}
+
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// The mesh under new numbers, and those by the old ones: as if it were made from the renumbered points, elements and
+    /// groups. Each element keeps the order of its nodes.
+    pub(crate) fn renumbered(&self, numbering: &Numbering) -> (Self, NewNumbers) {
+        let (nodes, elements) = (numbering.nodes(), numbering.elements());
+        let mut new = NewNumbers { node: inverse(nodes), element: vec![0; elements.len()], facet: Vec::new() };
+        elements.iter().enumerate().for_each(|(at, old)| new.element[old.index()] = at as u32);
+        let ends = |f: usize| {
+            let mut ends = self.facets[f].nodes.map(|node| new.node[node.index()]);
+            ends.sort_unstable();
+            ends
+        };
+        let order = sorted(self.facets.len(), nodes.len(), ends);
+        new.facet = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(at, &old)| new.facet[old as usize] = at as u32);
+
+        let mesh = Self {
+            simplex: self.simplex,
+            points: nodes.iter().map(|node| self.points[node.index()]).collect(),
+            cells: elements.iter().map(|e| self.cells[e.index()].map(|node| new.node(node))).collect(),
+            facets: order.iter().map(|&old| renumbered(&self.facets[old as usize], &new)).collect(),
+            cell_facets: elements.iter().map(|e| self.cell_facets[e.index()].map(|f| new.facet(f))).collect(),
+            stars: self.stars.renumbered(nodes, &new.element, &new.facet),
+            facet_groups: groups(&self.facet_groups, |f| new.facet(f)),
+            element_groups: groups(&self.element_groups, |e| new.element(e)),
+            size: self.size,
+            reoriented: self.reoriented,
+            parts: self.parts,
+            import_warnings: self.import_warnings.clone(),
+        };
+        (mesh, new)
+    }
+}
+
+/// A facet under new numbers; the lower element owns it.
+fn renumbered<const D: usize>(facet: &Facet<D>, new: &NewNumbers) -> Facet<D> {
+    let mut nodes = facet.nodes.map(|node| new.node(node));
+    nodes.sort_unstable();
+    let (owner, neighbour) = (new.element(facet.owner), facet.neighbour.map(|e| new.element(e)));
+    match neighbour {
+        Some(other) => Facet { nodes, owner: owner.min(other), neighbour: Some(owner.max(other)) },
+        None => Facet { nodes, owner, neighbour },
+    }
+}
+
+fn groups<Id: Copy + Ord>(groups: &BTreeMap<String, Vec<Id>>, new: impl Fn(Id) -> Id) -> BTreeMap<String, Vec<Id>> {
+    let renumbered = |members: &Vec<Id>| {
+        let mut members: Vec<Id> = members.iter().map(|&id| new(id)).collect();
+        members.sort_unstable();
+        members
+    };
+    groups.iter().map(|(name, members)| (name.clone(), renumbered(members))).collect()
+}
