@@ -18,6 +18,7 @@ mod message;
 pub mod observer;
 pub mod problem;
 mod ratio;
+mod simd;
 pub mod simplex;
 pub mod time;
 

@@ -2,8 +2,10 @@
 
 use super::balance::BalanceKeeper;
 use super::contact::Contact;
-use super::{Balance, Dynamics, advance};
-use crate::history::{SinkError, State, StateSink, Step, StepForces};
+use super::moving::MovingBody;
+use super::pass::Motion;
+use super::{Balance, Dynamics};
+use crate::history::{SinkError, State, StateSink, Step};
 use crate::observer::{Observer, Progress};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -91,33 +93,36 @@ pub fn simulate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
     let dynamics = Dynamics::new(problem, times);
-    let mut displacement = problem.initial_displacement().to_vec();
-    let mut velocity = problem.initial_velocity().to_vec();
-    let mut forces = StepForces::new(problem);
+    let mut body = MovingBody::new(&dynamics);
     let mut contact = Contact::new(problem.surface().nodes().len());
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let (mut done, mut interrupted) = (0, false);
 
     for n in 0..=times.step_count() {
-        dynamics.evaluate(n, &displacement, &mut forces);
-        contact.react(&dynamics, n, &displacement, &velocity, &mut forces.total);
+        let motion = match n.checked_sub(1) {
+            Some(last) => Motion::Advance { h: times.velocity_step(last), dt: times.step(last) },
+            None => Motion::Start,
+        };
+        body.step(&dynamics, n, motion);
+        contact.react(&dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
         if n == 0 {
             contact.settle_start(&dynamics);
             refuse_a_start_too_near(&dynamics, &contact)?;
         }
+        body.sum_up(&dynamics, n);
         let step = Step {
             index: n,
             time: times.instants()[n],
-            displacement: &displacement,
+            displacement: &body.displacement,
             reaction: &contact.reaction,
             touching: &contact.touching,
             velocity: None,
             acceleration: None,
         };
-        let state = State::new(step, times, &forces, &velocity, &dynamics.inverse_mass);
+        let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
         if !balance.record(problem, times, &state) {
-            return Err(unstable(&dynamics, n, &velocity));
+            return Err(unstable(&dynamics, n, &body.velocity));
         }
         sink.accept(&state).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
@@ -127,7 +132,6 @@ pub fn simulate<const D: usize, const N: usize>(
             interrupted = true;
             break;
         }
-        advance(times, n, &mut velocity, &mut displacement, dynamics.accelerations(&forces.total));
     }
     Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
 }

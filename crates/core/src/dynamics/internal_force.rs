@@ -1,113 +1,277 @@
 //! Internal forces of the P1 elements, ∫σ_h ∇φ_i.
 
-use crate::ids::{ElementId, NodeId};
-use crate::material::{Elastic, Law, LinearLaw};
+use super::element_pairs::{ChunkData, ElementPairs, PairNodes};
+use crate::mesh::Strips;
 use crate::problem::Problem;
-
-/// One element, in the 48 bytes (in 2D) that its internal forces need: the sweep over a large
-/// mesh waits for memory, so nothing else is stored.
-#[derive(Clone, Copy, Debug)]
-struct Cell<const D: usize, const N: usize> {
-    nodes: [NodeId; N],
-    material: u32,
-    /// √|E| ∇φ_i of all nodes but the first; the gradients sum to zero.
-    gradients: [[f64; D]; D],
-}
+use crate::simd::{Lanes, Task, Wide, dispatch};
+use crate::simplex::Shape;
 
 /// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
+///
+/// The sweep goes over pairs of elements that share a facet: a pair has four nodes to read and write where two triangles
+/// have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
-pub struct Stiffness<const D: usize, const N: usize, L: LinearLaw = Elastic> {
-    cells: Vec<Cell<D, N>>,
-    laws: Vec<L>,
+pub struct Stiffness<const D: usize, const N: usize> {
+    pub(super) shape: Shape,
+    pub(super) strips: Strips,
+    pub(super) pairs: ElementPairs,
 }
 
 impl<const D: usize, const N: usize> Stiffness<D, N> {
     /// Prepares the elements of a problem.
     #[must_use]
     pub fn new(problem: &Problem<D, N>) -> Self {
-        let cell = |(e, nodes): (usize, &[NodeId; N])| {
-            let element = ElementId::new(e);
-            let root = problem.volume(element).sqrt();
-            let geometry = problem.mesh().cell_geometry(element);
-            let mut gradients = [[0.0; D]; D];
-            for i in 1..N {
-                gradients[i - 1] = geometry.gradients[i].map(|g| root * g);
+        Self::on_strips(problem, Strips::new(problem.mesh().cells()))
+    }
+
+    /// The same with a cut of its own.
+    pub(super) fn on_strips(problem: &Problem<D, N>, strips: Strips) -> Self {
+        let pairs = ElementPairs::new(problem, &strips);
+        Self { shape: problem.mesh().simplex().shape(), strips, pairs }
+    }
+
+    /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
+    pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+        let mut energies = vec![0.0; self.strips.count()];
+        for parity in 0..2 {
+            for strip in (parity..self.strips.count()).step_by(2) {
+                let nodes = self.strips.nodes(strip);
+                let sweep = StripSweep {
+                    stiffness: self,
+                    strip,
+                    displacement: &displacement[nodes.clone()],
+                    force: &mut force[nodes],
+                };
+                energies[strip] = dispatch(sweep);
             }
-            Cell { nodes: *nodes, material: u32::from(problem.element_material()[e]), gradients }
-        };
-        Self {
-            cells: problem.mesh().cells().iter().enumerate().map(cell).collect(),
-            laws: problem.materials().to_vec(),
+        }
+        0.5 * energies.iter().sum::<f64>()
+    }
+}
+
+/// The sweep over one strip alone.
+struct StripSweep<'a, const D: usize, const N: usize> {
+    stiffness: &'a Stiffness<D, N>,
+    strip: usize,
+    displacement: &'a [[f64; D]],
+    force: &'a mut [[f64; D]],
+}
+
+impl<const D: usize, const N: usize> Task for StripSweep<'_, D, N> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> f64 {
+        let Self { stiffness, strip, displacement, force } = self;
+        let mut energy = [0.0; 8];
+        for (_, chunk) in stiffness.pairs.strip(strip) {
+            sweep(lanes, stiffness.shape, &chunk, displacement, force, &mut energy);
+        }
+        energy.iter().sum()
+    }
+}
+
+/// Subtracts the internal forces of a chunk and adds twice its strain energy; nodes are counted in the strip.
+#[inline(always)]
+pub(super) fn sweep<L: Lanes, const D: usize>(
+    lanes: L,
+    shape: Shape,
+    chunk: &ChunkData<'_>,
+    displacement: &[[f64; D]],
+    force: &mut [[f64; D]],
+    energy: &mut Wide,
+) {
+    match shape {
+        Shape::Bar => any(chunk, displacement, force, energy),
+        Shape::Triangle => {
+            let displacement = displacement.as_flattened().as_chunks().0;
+            triangles(lanes, chunk, displacement, force.as_flattened_mut().as_chunks_mut().0, energy);
         }
     }
 }
 
-impl<const D: usize, const N: usize, L: LinearLaw> Stiffness<D, N, L> {
-    /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
-    pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        let mut energy = 0.0;
-        for cell in &self.cells {
-            // √|E| ∇u, from differences with the first node: a translation leaves no rounding.
-            let first = displacement[cell.nodes[0].index()];
+/// Two pairs of triangles at a time. Their gradients ∂u/∂x and ∂u/∂y have a sign less, so that forces are added.
+#[inline(always)]
+fn triangles<L: Lanes>(
+    l: L,
+    chunk: &ChunkData<'_>,
+    displacement: &[[f64; 2]],
+    force: &mut [[f64; 2]],
+    energy: &mut Wide,
+) {
+    let u = displacement;
+    // One check of an index is enough for both.
+    let force = &mut force[..u.len()];
+    let [direct, other] = chunk.law;
+    let (direct_x, direct_y) = (l.twice([[direct, 1.0]; 2]), l.twice([[1.0, direct]; 2]));
+    let (other_x, other_y) = (l.twice([[other, 1.0]; 2]), l.twice([[1.0, other]; 2]));
+    let mut total = l.load(energy);
+    for ([a, b], gradients) in chunk.nodes.iter().zip(chunk.gradients) {
+        let (a, b) = (places(a), places(b));
+        let base = l.twice([u[a[0]], u[b[0]]]);
+        let (shared_a, shared_b) = (u[a[2]], u[b[2]]);
+        let first = l.sub(base, l.quad([u[a[1]], shared_a, u[b[1]], shared_b]));
+        let last = l.sub(base, l.quad([shared_a, u[a[3]], shared_b, u[b[3]]]));
+        let [first_gradient, last_gradient] = gradients.0;
+        let (g, h) = (l.load(&first_gradient), l.load(&last_gradient));
+        let (gx, gy, hx, hy) = (l.first(g), l.second(g), l.first(h), l.second(h));
+        let along_x = l.add(l.mul(first, gx), l.mul(last, hx));
+        let along_y = l.add(l.mul(first, gy), l.mul(last, hy));
+        // (σ_xx, σ_yx) and (σ_xy, σ_yy), over G.
+        let on_x = l.add(l.mul(direct_x, along_x), l.mul(other_x, l.swap(along_y)));
+        let on_y = l.add(l.mul(direct_y, along_y), l.mul(other_y, l.swap(along_x)));
+        total = l.add(total, l.add(l.mul(on_x, along_x), l.mul(on_y, along_y)));
+        let first = l.add(l.mul(on_x, gx), l.mul(on_y, gy));
+        let last = l.add(l.mul(on_x, hx), l.mul(on_y, hy));
+        // Element B lies in vectors 1 and 3; the vectors 0 and 2 of these sums are those of the pairs.
+        let shared = l.add(last, l.cross(first));
+        let other = l.cross(last);
+        let base = l.add(l.add(first, shared), other);
+        let (first, shared, other, base) = (l.ends(first), l.ends(shared), l.ends(other), l.ends(base));
+        for (p, node) in [a, b].iter().enumerate() {
+            l.take_from(&mut force[node[0]], base[p]);
+            l.add_to(&mut force[node[1]], first[p]);
+            l.add_to(&mut force[node[2]], shared[p]);
+            l.add_to(&mut force[node[3]], other[p]);
+        }
+    }
+    *energy = l.store(total);
+}
+
+#[inline(always)]
+fn places([a, b, c, d]: &PairNodes) -> [usize; 4] {
+    [*a as usize, *b as usize, *c as usize, *d as usize]
+}
+
+/// The same for simplices of any dimension up to 2, one element at a time.
+#[inline(always)]
+fn any<const D: usize>(chunk: &ChunkData<'_>, u: &[[f64; D]], force: &mut [[f64; D]], energy: &mut Wide) {
+    let [direct, other] = chunk.law;
+    for (nodes, gradients) in chunk.nodes.iter().zip(chunk.gradients) {
+        for (lane, slot) in energy.iter_mut().step_by(2).enumerate() {
+            let (pair, l) = (lane / 2, lane % 2);
+            let node = |i: usize| nodes[pair][if i == 0 { 0 } else { i + l }] as usize;
+            let slope = |i: usize, b: usize| gradients.0[i][2 * lane + b];
             let mut gradient = [[0.0; D]; D];
-            for i in 1..N {
-                let value = displacement[cell.nodes[i].index()];
+            for i in 0..D {
                 for a in 0..D {
                     for b in 0..D {
-                        gradient[a][b] += (value[a] - first[a]) * cell.gradients[i - 1][b];
+                        gradient[a][b] += (u[node(i + 1)][a] - u[node(0)][a]) * slope(i, b);
                     }
                 }
             }
-            let stress = self.laws[cell.material as usize].stress(&gradient);
-            let mut sum = [0.0; D];
-            for i in 1..N {
-                let slot = &mut force[cell.nodes[i].index()];
-                for a in 0..D {
-                    let mut f = 0.0;
-                    for b in 0..D {
-                        f += stress[a][b] * cell.gradients[i - 1][b];
-                    }
-                    slot[a] -= f;
-                    sum[a] += f;
-                }
-            }
-            let slot = &mut force[cell.nodes[0].index()];
+            let mut stress = [[0.0; D]; D];
             for a in 0..D {
-                slot[a] += sum[a];
                 for b in 0..D {
-                    energy += stress[a][b] * gradient[a][b];
+                    stress[a][b] = gradient[a][b] + gradient[b][a];
+                }
+                let others = (0..D).filter(|&b| b != a).map(|b| gradient[b][b]).sum::<f64>();
+                stress[a][a] = direct * gradient[a][a] + other * others;
+            }
+            for i in 0..D {
+                for a in 0..D {
+                    let f: f64 = (0..D).map(|b| stress[a][b] * slope(i, b)).sum();
+                    force[node(i + 1)][a] -= f;
+                    force[node(0)][a] += f;
                 }
             }
+            *slot += (0..D)
+                .flat_map(|a| (0..D).map(move |b| (a, b)))
+                .map(|(a, b)| stress[a][b] * gradient[a][b])
+                .sum::<f64>();
         }
-        0.5 * energy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ids::ElementId;
+    use crate::material::{Elastic, Law};
+    use crate::mesh::TriangleMesh;
+    use crate::problem::{BarProblem, TriangleProblem};
+    use crate::simd::Portable;
+    use percute_testkit::{Random, random_rectangle};
+
+    /// A random mesh of this crate's own types, with groups of elements.
+    fn random_mesh(n: usize, seed: u64) -> TriangleMesh {
+        let mesh = random_rectangle(1.0, 0.7, n, seed).unwrap();
+        let groups = [(0, "soft"), (1, "hard")].map(|(k, name)| {
+            (name.to_string(), (0..mesh.element_count()).filter(|e| (e / 7) % 2 == k).collect::<Vec<_>>())
+        });
+        let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
+        TriangleMesh::new(mesh.points().to_vec(), &cells, &Default::default(), &groups.into()).unwrap()
     }
 
-    /// Largest ω² of any element alone with its lumped mass (1/s²): a bound on that of the mesh.
-    #[must_use]
-    pub(super) fn element_bound(&self, problem: &Problem<D, N>) -> f64 {
-        let mut largest: f64 = 0.0;
-        for (e, cell) in self.cells.iter().enumerate() {
+    /// The forces and the energy, element by element with the law and the gradients as they are stated.
+    fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64; D]]) -> (Vec<[f64; D]>, f64) {
+        let (mut force, mut energy) = (vec![[0.0; D]; u.len()], 0.0);
+        for (e, cell) in problem.mesh().cells().iter().enumerate() {
             let element = ElementId::new(e);
-            let share = problem.material(element).density() * problem.volume(element) / N as f64;
-            largest = largest.max(self.element_eigenvalue(cell) / share);
+            let (material, volume) = (problem.material(element), problem.volume(element));
+            let gradients = problem.mesh().cell_geometry(element).gradients;
+            let mut gradient = [[0.0; D]; D];
+            for (node, slope) in cell.iter().zip(&gradients) {
+                (0..D * D).for_each(|k| gradient[k / D][k % D] += u[node.index()][k / D] * slope[k % D]);
+            }
+            let stress = material.stress(&gradient);
+            energy += volume * material.strain_energy(&gradient);
+            for (node, slope) in cell.iter().zip(&gradients) {
+                (0..D * D).for_each(|k| force[node.index()][k / D] -= volume * stress[k / D][k % D] * slope[k % D]);
+            }
         }
-        largest
+        (force, energy)
     }
 
-    /// Largest eigenvalue of one element's stiffness matrix (N/m).
-    fn element_eigenvalue(&self, cell: &Cell<D, N>) -> f64 {
-        let law = &self.laws[cell.material as usize];
-        let mut all = [[0.0; D]; N];
-        for i in 1..N {
-            all[i] = cell.gradients[i - 1];
-            (0..D).for_each(|b| all[0][b] -= all[i][b]);
+    /// Forces within 1e-14 of the largest that elements exchange, which is far below one unit of displacement on an
+    /// element; the energy, a sum of positive terms, relatively.
+    fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, strips: Strips, random: &mut Random) {
+        let u: Vec<[f64; D]> =
+            problem.mesh().points().iter().map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0))).collect();
+        let stiffness = Stiffness::on_strips(problem, strips);
+        let (expected, energy) = plain(problem, &u);
+        let mut force = vec![[0.0; D]; u.len()];
+        let found = stiffness.subtract_internal_forces(&u, &mut force);
+        let scale = expected.iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
+        for (found, expected) in force.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((found - expected).abs() <= 1e-14 * scale, "{found} against {expected}, scale {scale}");
         }
-        let force = |j: usize, c: usize, i: usize, a: usize| -> f64 {
-            let mut gradient = [[0.0; D]; D];
-            gradient[c] = all[j];
-            (0..D).map(|b| law.tangent(&[[0.0; D]; D], &gradient)[a][b] * all[i][b]).sum()
-        };
-        let stiffness = nalgebra::DMatrix::from_fn(N * D, N * D, |r, s| force(s / D, s % D, r / D, r % D));
-        stiffness.symmetric_eigenvalues().max()
+        assert!((found / energy - 1.0).abs() < 1e-14, "{found} against {energy}");
+    }
+
+    /// Two materials, in bands that cut pairs apart, and strips of any length.
+    #[test]
+    fn the_sweep_agrees_with_the_plain_sum() {
+        let mut random = Random::new(5);
+        let soft = Elastic::plane_strain(3.0, 0.4, 1.0, 0.5).unwrap();
+        for seed in 0..20 {
+            let mesh = random_mesh(5 + seed as usize, seed);
+            let strips = Strips::with_fewest(mesh.cells(), 8 + seed as usize);
+            let hard = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
+            let problem = TriangleProblem::builder(mesh).material_of("soft", soft).material_of("hard", hard);
+            check(&problem.build().unwrap(), strips, &mut random);
+        }
+        for elements in [1, 2, 3, 8, 101] {
+            let mesh = crate::mesh::BarMesh::uniform_bar(2.0, elements).unwrap();
+            let strips = Strips::with_fewest(mesh.cells(), 10);
+            let problem = BarProblem::builder(mesh).material(Elastic::bar(3.0, 1.0, 0.1).unwrap()).build().unwrap();
+            check(&problem, strips, &mut random);
+        }
+    }
+
+    /// The instruction set of the machine and plain arrays.
+    #[test]
+    fn all_vectors_give_the_same_bits() {
+        let mesh = random_mesh(30, 3);
+        let law = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
+        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
+        let (stiffness, mut random) = (Stiffness::new(&problem), Random::new(6));
+        let u: Vec<[f64; 2]> =
+            problem.mesh().points().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
+        let mut forces = [vec![[0.0; 2]; u.len()], vec![[0.0; 2]; u.len()]];
+        let [a, b] =
+            forces.each_mut().map(|force| StripSweep { stiffness: &stiffness, strip: 0, displacement: &u, force });
+        assert_eq!(dispatch(a).to_bits(), b.run(Portable).to_bits());
+        assert!(forces[0] == forces[1]);
     }
 }

@@ -5,8 +5,11 @@ mod balancing;
 mod central_difference;
 mod contact;
 mod critical_step;
+mod element_pairs;
 mod evaluation;
 mod internal_force;
+mod moving;
+mod pass;
 mod update;
 
 pub use balance::Balance;
@@ -17,7 +20,6 @@ pub use evaluation::{Evaluation, replay};
 pub use internal_force::Stiffness;
 pub use update::advance;
 
-use crate::history::StepForces;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -31,6 +33,10 @@ pub struct Dynamics<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     stiffness: Stiffness<D, N>,
     inverse_mass: Vec<f64>,
+    /// Nodes on which contact or a support acts, ascending.
+    apart: Vec<u32>,
+    /// Whether a step is worked on by all threads of the pool of the caller.
+    parallel: bool,
 }
 
 impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
@@ -38,7 +44,12 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
         let inverse_mass = problem.mass().iter().map(|m| 1.0 / m).collect();
-        Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass }
+        let contact = problem.surface().nodes().iter().map(|contact| contact.node);
+        let supported = problem.prescribed().iter().map(|p| p.node);
+        let mut apart: Vec<u32> = contact.chain(supported).map(|node| node.index() as u32).collect();
+        apart.sort_unstable();
+        apart.dedup();
+        Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass, apart, parallel: false }
     }
 
     /// The problem.
@@ -68,16 +79,6 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
         self.stiffness.subtract_internal_forces(displacement, force)
     }
 
-    /// The forces at t_n but for contact.
-    fn evaluate(&self, n: usize, displacement: &[[f64; D]], forces: &mut StepForces<D>) {
-        let StepForces { strain, total, before_contact, supports } = forces;
-        *strain = self.forces(n, displacement, total);
-        self.apply_supports(n, total, |i, reaction| supports[i] = reaction);
-        for (contact, before) in self.problem.surface().nodes().iter().zip(before_contact) {
-            *before = total[contact.node.index()];
-        }
-    }
-
     /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain
     /// energy (J).
     pub fn forces_without_contact(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
@@ -95,11 +96,6 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
             reaction(i, needed - *slot);
             *slot = needed;
         }
-    }
-
-    /// M⁻¹ of these forces (m/s²).
-    fn accelerations(&self, force: &[[f64; D]]) -> impl Iterator<Item = [f64; D]> {
-        force.iter().zip(&self.inverse_mass).map(|(f, inverse)| f.map(|f| inverse * f))
     }
 
     /// a_n of a prescribed component: what takes its half-step velocities from one to the next,

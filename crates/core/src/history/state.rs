@@ -10,6 +10,8 @@ use crate::time::TimeGrid;
 pub(crate) struct StepForces<const D: usize> {
     /// Strain energy ½ u_n·K u_n (J).
     pub(crate) strain: f64,
+    /// Kinetic energy (J) and momentum (kg m/s) of v_n by the scheme.
+    pub(crate) energies: (f64, [f64; D]),
     /// M a_n (N).
     pub(crate) total: Vec<[f64; D]>,
     /// The same but for contact at the nodes of the contact surface (N).
@@ -22,6 +24,7 @@ impl<const D: usize> StepForces<D> {
     pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         Self {
             strain: 0.0,
+            energies: (0.0, [0.0; D]),
             total: vec![[0.0; D]; problem.mesh().node_count()],
             before_contact: vec![[0.0; D]; problem.surface().nodes().len()],
             supports: vec![0.0; problem.prescribed().len()],
@@ -129,27 +132,20 @@ impl<'a, const D: usize> State<'a, D> {
     #[must_use]
     pub fn energies(&self, mass: &[f64]) -> (f64, [f64; D]) {
         if self.step.velocity.is_none() && self.step.acceleration.is_none() {
-            return energies(mass, self.half_step, self.back, &self.forces.total);
+            return self.forces.energies;
         }
-        energies(mass, &self.velocity(), 0.0, &self.forces.total)
+        let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
+        for (v, mass) in self.velocity().iter().zip(mass) {
+            for c in 0..D {
+                momentum[c] += mass * v[c];
+                kinetic[c] += mass * v[c] * v[c];
+            }
+        }
+        (0.5 * kinetic.iter().sum::<f64>(), momentum)
     }
 }
 
 /// ½Δt_{n−1} (s), 0 at the start.
 pub(crate) fn half_of_last(times: &TimeGrid, n: usize) -> f64 {
     if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) }
-}
-
-/// Those of the velocities v + `back` a.
-fn energies<const D: usize>(mass: &[f64], velocity: &[[f64; D]], back: f64, force: &[[f64; D]]) -> (f64, [f64; D]) {
-    let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
-    for ((v, f), mass) in velocity.iter().zip(force).zip(mass) {
-        for c in 0..D {
-            // m v_n without the inverse mass: one array less to read.
-            let p = mass * v[c] + back * f[c];
-            momentum[c] += p;
-            kinetic[c] += p * p / mass;
-        }
-    }
-    (0.5 * kinetic.iter().sum::<f64>(), momentum)
 }

@@ -152,6 +152,11 @@ impl LinearLaw for Elastic {
         let alpha = 0.5 / self.shear;
         (alpha, alpha * self.lambda / (D as f64 * self.lambda + 2.0 * self.shear))
     }
+
+    #[inline]
+    fn moduli(&self) -> (f64, f64) {
+        (self.lambda, self.shear)
+    }
 }
 
 #[cfg(test)]

@@ -56,6 +56,9 @@ pub trait Law {
 pub trait LinearLaw: Law {
     /// The factors (α, β) of τ : K⁻¹ : τ = α τ:τ − β (tr τ)² (1/Pa).
     fn compliance<const D: usize>(&self) -> (f64, f64);
+
+    /// Lamé's moduli λ and G of σ = λ tr ε 1 + 2G ε, in the dimension of the mesh (Pa).
+    fn moduli(&self) -> (f64, f64);
 }
 
 /// The sum of products of entries, a:b.

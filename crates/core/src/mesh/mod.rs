@@ -13,6 +13,7 @@ mod refine;
 mod refine_locally;
 mod renumber;
 mod star;
+mod strips;
 mod topology;
 
 pub use check::MeshError;
@@ -20,6 +21,7 @@ pub use import_warning::ImportWarning;
 pub use order::Numbering;
 pub(crate) use renumber::NewNumbers;
 pub use star::{Star, Stars};
+pub use strips::Strips;
 pub use topology::Facet;
 
 use crate::ids::{ElementId, FacetId, NodeId};

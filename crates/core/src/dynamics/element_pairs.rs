@@ -1,0 +1,220 @@
+//! The elements of the sweep, two and two across a common facet.
+
+use crate::ids::{ElementId, NodeId};
+use crate::material::LinearLaw;
+use crate::mesh::Strips;
+use crate::problem::Problem;
+use std::ops::Range;
+
+/// A sweep goes over so many pairs at a time: some 30 kB with their nodes, which the first cache holds.
+const CHUNK: usize = 128;
+
+/// Numbers of the four nodes of a pair in its strip: A has nodes 0 to D, B has node 0 and nodes 2 to D + 1.
+pub(super) type PairNodes = [u32; 4];
+
+/// √(|E| G) ∇φ_i in two pairs: `[i][2 (2 p + l) + b]` is component b at node i + 1 + l of element l of pair p.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub(super) struct Gradients(pub(super) [[f64; 8]; 2]);
+
+/// Pairs of elements of one law.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunk {
+    /// Where the quads of the next chunk begin.
+    end: u32,
+    law: u32,
+    /// No node of this chunk or of those before it in the strip has this number or a higher one.
+    pub(super) reached: u32,
+    /// No node of a later chunk of the strip has a lower number.
+    pub(super) left: u32,
+}
+
+/// The elements of all strips in pairs, and the pairs two and two: 40 bytes for each element of a plane mesh.
+#[derive(Clone, Debug)]
+pub(super) struct ElementPairs {
+    nodes: Vec<[PairNodes; 2]>,
+    gradients: Vec<Gradients>,
+    chunks: Vec<Chunk>,
+    /// Where the chunks of each strip begin.
+    of_strip: Vec<u32>,
+    /// (λ + 2G)/G and λ/G of the laws.
+    laws: Vec<[f64; 2]>,
+}
+
+/// One chunk as the sweep needs it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ChunkData<'a> {
+    pub(super) nodes: &'a [[PairNodes; 2]],
+    pub(super) gradients: &'a [Gradients],
+    pub(super) law: [f64; 2],
+}
+
+/// An element and the element across one of its facets, if it has a partner.
+struct Pair<const N: usize> {
+    first: ElementId,
+    second: Option<ElementId>,
+    /// The local node of the first element that the second does not have.
+    apart: usize,
+}
+
+impl ElementPairs {
+    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, strips: &Strips) -> Self {
+        let (laws, law_of_material) = laws(problem);
+        let half = problem.mesh().element_count() / 4 + strips.count();
+        let mut all = Self {
+            nodes: Vec::with_capacity(half),
+            gradients: Vec::with_capacity(half),
+            chunks: Vec::new(),
+            of_strip: vec![0],
+            laws,
+        };
+        let mut taken = vec![false; problem.mesh().element_count()];
+        for strip in 0..strips.count() {
+            let law = |e: usize| law_of_material[usize::from(problem.element_material()[e])];
+            let mut pairs = pair(problem, strips.elements(strip), &mut taken, law);
+            let first_chunk = all.chunks.len();
+            for window in pairs.chunks_mut(CHUNK) {
+                window.sort_by_key(|pair| law(pair.first.index()));
+                for same in window.chunk_by(|a, b| law(a.first.index()) == law(b.first.index())) {
+                    all.add(problem, strips.nodes(strip).start, same, law(same[0].first.index()));
+                }
+            }
+            all.close(first_chunk, strips.nodes(strip).len());
+        }
+        all.nodes.shrink_to_fit();
+        all.gradients.shrink_to_fit();
+        all
+    }
+
+    /// Adds a chunk of pairs.
+    fn add<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        start: usize,
+        pairs: &[Pair<N>],
+        law: u32,
+    ) {
+        let mesh = problem.mesh();
+        for two in pairs.chunks(2) {
+            let (mut nodes, mut gradients) = ([[0; 4]; 2], Gradients::default());
+            for (p, pair) in two.iter().enumerate() {
+                let cell = &mesh.cells()[pair.first.index()];
+                // Node 1 of A is the one that B does not have.
+                let order: [usize; N] = std::array::from_fn(|i| (pair.apart + N - 1 + i) % N);
+                let mut of_pair = [cell[order[0]]; 4];
+                (1..N).for_each(|i| of_pair[i] = cell[order[i]]);
+                if let Some(second) = pair.second {
+                    let other = mesh.cells()[second.index()].iter().find(|node| !cell.contains(node));
+                    of_pair[N] = *other.unwrap_or(&cell[order[0]]);
+                }
+                for (l, element) in [Some(pair.first), pair.second].into_iter().enumerate() {
+                    let Some(element) = element else { continue };
+                    let (cell, geometry) = (&mesh.cells()[element.index()], mesh.cell_geometry(element));
+                    let root = (problem.volume(element) * problem.material(element).moduli().1).sqrt();
+                    for i in 0..D {
+                        let at = cell.iter().position(|node| *node == of_pair[i + 1 + l]).unwrap_or(0);
+                        for b in 0..D {
+                            gradients.0[i][2 * (2 * p + l) + b] = root * geometry.gradients[at][b];
+                        }
+                    }
+                }
+                nodes[p] = of_pair.map(|node: NodeId| (node.index() - start) as u32);
+            }
+            if two.len() == 1 {
+                nodes[1] = [nodes[0][0]; 4];
+            }
+            self.nodes.push(nodes);
+            self.gradients.push(gradients);
+        }
+        let quads = &self.nodes[self.chunks.last().map_or(0, |chunk| chunk.end as usize)..];
+        let reached = quads.as_flattened().as_flattened().iter().fold(0, |most, node| most.max(node + 1));
+        self.chunks.push(Chunk { end: self.nodes.len() as u32, law, reached, left: 0 });
+    }
+
+    /// Completes the chunks of a strip of so many nodes.
+    fn close(&mut self, first_chunk: usize, nodes: usize) {
+        let mut reached = 0;
+        for chunk in &mut self.chunks[first_chunk..] {
+            reached = chunk.reached.max(reached);
+            chunk.reached = reached;
+        }
+        // The last chunk is followed by no other: all nodes have been reached, and all are left.
+        if let Some(last) = self.chunks[first_chunk..].last_mut() {
+            last.reached = nodes as u32;
+        }
+        let mut left = nodes as u32;
+        for k in (first_chunk..self.chunks.len()).rev() {
+            self.chunks[k].left = left;
+            let start = if k == 0 { 0 } else { self.chunks[k - 1].end as usize };
+            let quads = &self.nodes[start..self.chunks[k].end as usize];
+            left = quads.as_flattened().as_flattened().iter().fold(left, |least, &node| least.min(node));
+        }
+        self.of_strip.push(self.chunks.len() as u32);
+    }
+
+    /// The chunks of a strip, with their data.
+    #[inline(always)]
+    pub(super) fn strip(&self, strip: usize) -> impl Iterator<Item = (&Chunk, ChunkData<'_>)> {
+        let range = self.of_strip[strip] as usize..self.of_strip[strip + 1] as usize;
+        let first = if range.start == 0 { 0 } else { self.chunks[range.start - 1].end as usize };
+        self.chunks[range].iter().scan(
+            first,
+            #[inline(always)]
+            |start, chunk| {
+                let quads = *start..chunk.end as usize;
+                *start = quads.end;
+                let (nodes, gradients) = (&self.nodes[quads.clone()], &self.gradients[quads]);
+                Some((chunk, ChunkData { nodes, gradients, law: self.laws[chunk.law as usize] }))
+            },
+        )
+    }
+}
+
+/// The different laws, and that of each material.
+fn laws<const D: usize, const N: usize>(problem: &Problem<D, N>) -> (Vec<[f64; 2]>, Vec<u32>) {
+    let mut laws: Vec<[f64; 2]> = Vec::new();
+    let of_material = problem.materials().iter().map(|material| {
+        let (lambda, shear) = material.moduli();
+        let law = [(lambda + 2.0 * shear) / shear, lambda / shear];
+        let known = laws.iter().position(|other| *other == law);
+        known.unwrap_or_else(|| {
+            laws.push(law);
+            laws.len() - 1
+        }) as u32
+    });
+    let of_material = of_material.collect();
+    (laws, of_material)
+}
+
+/// Joins elements of a strip that share a facet and a law: each with its free neighbour of the lowest number.
+fn pair<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    strip: Range<usize>,
+    taken: &mut [bool],
+    law: impl Fn(usize) -> u32,
+) -> Vec<Pair<N>> {
+    let mesh = problem.mesh();
+    let mut pairs = Vec::with_capacity(strip.len() / 2 + strip.len() / 16 + 1);
+    for e in strip.clone() {
+        if std::mem::replace(&mut taken[e], true) {
+            continue;
+        }
+        let first = ElementId::new(e);
+        let mut partner: Option<(usize, usize)> = None;
+        for (apart, facet) in mesh.cell_facets()[e].iter().enumerate() {
+            let facet = &mesh.facets()[facet.index()];
+            let other = if facet.owner == first { facet.neighbour } else { Some(facet.owner) };
+            let Some(other) = other.map(ElementId::index) else { continue };
+            let free = strip.contains(&other) && !taken[other] && law(other) == law(e);
+            if free && partner.is_none_or(|(known, _)| other < known) {
+                partner = Some((other, apart));
+            }
+        }
+        if let Some((other, _)) = partner {
+            taken[other] = true;
+        }
+        let apart = partner.map_or(1, |(_, apart)| apart);
+        pairs.push(Pair { first, second: partner.map(|(other, _)| ElementId::new(other)), apart });
+    }
+    pairs
+}

@@ -1,0 +1,76 @@
+//! The body as it moves from step to step.
+
+use super::Dynamics;
+use super::pass::{Fields, Motion, Pass, Sums};
+use crate::history::{StepForces, half_of_last};
+use crate::problem::Problem;
+
+/// The fields of an instant.
+#[derive(Clone, Debug)]
+pub(super) struct MovingBody<const D: usize> {
+    /// u_n (m).
+    pub(super) displacement: Vec<[f64; D]>,
+    /// v_{n−½} (m/s), v₀ at the start.
+    pub(super) velocity: Vec<[f64; D]>,
+    pub(super) forces: StepForces<D>,
+    external: Vec<[f64; D]>,
+    sums: Vec<Sums<D>>,
+    total: Sums<D>,
+}
+
+impl<const D: usize> MovingBody<D> {
+    /// At rest in its initial fields.
+    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
+        let problem: &Problem<D, N> = dynamics.problem;
+        let loaded = if problem.is_loaded() { problem.mesh().node_count() } else { 0 };
+        Self {
+            displacement: problem.initial_displacement().to_vec(),
+            velocity: problem.initial_velocity().to_vec(),
+            forces: StepForces::new(problem),
+            external: vec![[0.0; D]; loaded],
+            sums: vec![Sums::ZERO; dynamics.stiffness.strips.count()],
+            total: Sums::ZERO,
+        }
+    }
+
+    /// Moves to t_n and computes the forces there but for contact.
+    pub(super) fn step<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize, motion: Motion<'_, D>) {
+        if !self.external.is_empty() {
+            dynamics.problem.external_forces(dynamics.times.instants()[n], &mut self.external);
+        }
+        let pass = Pass {
+            stiffness: &dynamics.stiffness,
+            mass: dynamics.problem.mass(),
+            inverse_mass: &dynamics.inverse_mass,
+            apart: &dynamics.apart,
+            external: &self.external,
+            motion,
+            back: half_of_last(dynamics.times, n),
+            parallel: dynamics.parallel,
+        };
+        self.total = pass.run(Fields {
+            start: 0,
+            displacement: &mut self.displacement,
+            velocity: &mut self.velocity,
+            force: &mut self.forces.total,
+            sums: &mut self.sums,
+        });
+        let StepForces { strain, total, before_contact, supports, .. } = &mut self.forces;
+        *strain = self.total.strain();
+        dynamics.apply_supports(n, total, |i, reaction| supports[i] = reaction);
+        for (contact, before) in dynamics.problem.surface().nodes().iter().zip(before_contact) {
+            *before = total[contact.node.index()];
+        }
+    }
+
+    /// Kinetic energy and momentum, once the reactions are among the forces.
+    pub(super) fn sum_up<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) {
+        let (mut sums, back) = (self.total, half_of_last(dynamics.times, n));
+        for (i, &node) in dynamics.apart.iter().enumerate() {
+            let node = node as usize;
+            let masses = [dynamics.problem.mass()[node], dynamics.inverse_mass[node]];
+            sums.add(i % 4, masses, back, &self.velocity[node], &self.forces.total[node]);
+        }
+        self.forces.energies = (sums.kinetic(), sums.momentum());
+    }
+}
