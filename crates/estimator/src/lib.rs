@@ -27,7 +27,6 @@ pub mod reference;
 mod replay;
 mod request;
 mod residual;
-#[allow(dead_code, reason = "for the sweeps over lanes, which follow")]
 mod simd;
 mod sources;
 mod stress;

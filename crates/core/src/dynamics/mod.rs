@@ -100,7 +100,8 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
 
     /// a_n of a prescribed component: what takes its half-step velocities from one to the next,
     /// each the mean of v_d at the ends of its step.
-    fn prescribed_acceleration(&self, n: usize, index: usize) -> f64 {
+    #[must_use]
+    pub fn prescribed_acceleration(&self, n: usize, index: usize) -> f64 {
         let p = &self.problem.prescribed()[index];
         if p.motion.is_none() {
             return 0.0;

@@ -92,7 +92,8 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// a_n of a node (m/s²).
     #[inline]
-    fn acceleration_of(&self, node: usize) -> [f64; D] {
+    #[must_use]
+    pub fn acceleration_of(&self, node: usize) -> [f64; D] {
         match self.step.acceleration {
             Some(given) => given[node],
             None => self.forces.total[node].map(|f| self.inverse_mass[node] * f),

@@ -44,6 +44,8 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     ready: VecDeque<ForcesKnown<D>>,
     /// Densities off contact of the steps since the last sampled level that was handed on.
     off_contact: Vec<OffContact<D>>,
+    /// Displacement of the simulation at the last level, if its difference is not measured (m).
+    unmeasured: Vec<[f64; D]>,
     /// Number of steps taken in.
     count: usize,
     given: Given,
@@ -68,6 +70,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             motions: VecDeque::new(),
             ready: VecDeque::new(),
             off_contact: Vec::new(),
+            unmeasured: Vec::new(),
             count: 0,
             given: Given::default(),
             impulse: Impulse::default(),
@@ -164,6 +167,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated);
+        self.unmeasured.clear();
+        if n.is_multiple_of(self.every) || n == self.times.step_count() {
+            self.reconstruction.differ([step.displacement, now.velocity()]);
+        } else if self.reconstruction.differences().is_some() {
+            self.unmeasured.extend_from_slice(step.displacement);
+        }
         let BalancedFields { displacement, force, contact, densities, lumping_difference } = balanced;
         let level = TimeLevel {
             index: n,
@@ -193,6 +202,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Takes in that no more steps come.
     pub(super) fn finish(&mut self) {
+        // The last level of an interrupted run is sampled as well.
+        if let (Some(last), false) = (self.motions.back(), self.unmeasured.is_empty()) {
+            self.reconstruction.differ([&self.unmeasured, last.now.velocity()]);
+        }
         self.complete_interval();
         // No step follows: the contact force does not jump at the last level.
         if let Some(ForcesBefore { forces: last, .. }) = self.current.take() {

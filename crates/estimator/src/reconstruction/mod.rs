@@ -98,6 +98,10 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         BalancedFields { displacement, force, contact, densities: None, lumping_difference: None }
     }
 
+    /// Measures the difference of the simulation and the auxiliary solution at the level that `advance` has taken in last, from the
+    /// displacement (m) and u̇_CA (m/s) of the simulation. At most once for a level; the others have a difference of 0.
+    fn differ(&mut self, _simulated: [&[[f64; D]]; 2]) {}
+
     /// F_DA over a step.
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D>;
 
@@ -134,7 +138,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         None
     }
 
-    /// The differences of the simulation and the auxiliary solution at all levels so far; `None` without one.
+    /// The differences of the simulation and the auxiliary solution by level; `None` without one.
     fn differences(&self) -> Option<&[Difference]> {
         None
     }

@@ -54,7 +54,7 @@ impl<const D: usize> ImpulseSmoothing<D> {
         times: &TimeGrid,
         n: usize,
         reaction: &[[f64; D]],
-        acceleration: &[[f64; D]],
+        acceleration: impl Fn(usize) -> [f64; D],
     ) -> Vec<[f64; D]> {
         let (now, step) = (times.instants()[n], times.step(n.max(1) - 1));
         // The reaction at t_0 acts for half a step.
@@ -66,7 +66,7 @@ impl<const D: usize> ImpulseSmoothing<D> {
             let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
                 let i = contact.node.index();
-                let inertia = problem.mass()[i] * frame.split(&acceleration[i]).0;
+                let inertia = problem.mass()[i] * frame.split(&acceleration(i)).0;
                 let share = (inertia / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
@@ -121,8 +121,8 @@ mod tests {
         let problem = bar();
         let mut smoothing = ImpulseSmoothing::new(&problem);
         let one = |(n, &(reaction, acceleration)): (usize, &(f64, f64))| {
-            let all = [[acceleration], [0.0], [0.0]];
-            smoothing.advance(&problem, times, n, &[[reaction]], &all)[0][0]
+            let all = |node| [if node == 0 { acceleration } else { 0.0 }];
+            smoothing.advance(&problem, times, n, &[[reaction]], all)[0][0]
         };
         steps.iter().enumerate().map(one).collect()
     }

@@ -1,13 +1,11 @@
 //! The full reaction as a density on all candidate facets of its node, balanced by an auxiliary solution with less
 //! dispersion, with tractions of least energy.
 
-mod auxiliary_solution;
-mod compared_motions;
 mod concentration;
-mod energy_products;
 mod impulse_smoothing;
 mod lumping_difference;
 mod moment_correction;
+mod motions;
 mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
@@ -22,16 +20,15 @@ use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
 use crate::time_level::SurfaceStep;
 use crate::traction::{Equilibrated, Equilibration};
-use auxiliary_solution::{AuxiliarySolution, Shares};
-use compared_motions::{AuxiliaryLevel, ComparedMotions};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
 use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
+use motions::{AuxiliaryLevel, Motions, Shares, SimulatedLevel};
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::Dynamics;
-use percute_core::history::Step;
+use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
@@ -49,8 +46,9 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     own_forces: OwnForces<D>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
-    auxiliary: Option<AuxiliarySolution<D>>,
-    compared: Option<ComparedMotions<'p, D, N>>,
+    motions: Option<Motions<'p, D, N>>,
+    /// ΣF²k and ΣF² over the nodes at the last level (N²).
+    halvings: [f64; 2],
     /// Whether the lumping difference is wanted.
     mixed: bool,
     minimises: bool,
@@ -75,8 +73,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             own_forces: OwnForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
-            auxiliary: keeps(Ablation::AuxiliarySolution).then(|| AuxiliarySolution::new(problem, shares)),
-            compared: None,
+            motions: keeps(Ablation::AuxiliarySolution).then(|| Motions::new(problem, times, shares)),
+            halvings: [0.0; 2],
             mixed: options.acceleration(D) == Acceleration::Mixed,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
@@ -86,6 +84,24 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 _ => 1.0,
             },
         }
+    }
+
+    /// The fields of the simulation, where there is no auxiliary solution.
+    fn balance_simulation(
+        &self,
+        dynamics: &Dynamics<'_, D, N>,
+        state: &State<'_, D>,
+        contact: Vec<[f64; D]>,
+        gap: &[f64],
+    ) -> BalancedFields<D> {
+        let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
+        let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
+        let densities = self.level([&contact, step.reaction], gap);
+        let pull = driving_forces(problem, &densities.acting);
+        let lumping_difference = self.mixed.then(|| {
+            lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
+        });
+        BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }
 
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
@@ -137,8 +153,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
-        if self.auxiliary.is_some() {
-            self.compared = Some(ComparedMotions::new(self.problem, self.times, elements));
+        if let Some(motions) = &mut self.motions {
+            motions.prepare(elements);
         }
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
@@ -153,8 +169,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
-        match &self.auxiliary {
-            Some(auxiliary) if auxiliary.is_unstable(self.problem.mass()) => Err(EstimateError::AuxiliarySolution {
+        match &self.motions {
+            Some(motions) if motions.is_unstable() => Err(EstimateError::AuxiliarySolution {
                 step: step.index,
                 time: step.time,
                 longest_step: self.times.longest_step(),
@@ -167,42 +183,42 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
         let mut contact = match &mut self.impulse_smoothing {
-            Some(smoothing) => smoothing.advance(problem, self.times, step.index, step.reaction, &state.acceleration()),
+            Some(smoothing) => {
+                smoothing.advance(problem, self.times, step.index, step.reaction, |node| state.acceleration_of(node))
+            }
             None => step.reaction.to_vec(),
         };
-        let (gap, inverse_mass) = (problem.surface().gaps(step.displacement), dynamics.inverse_mass());
-        let Some(mut auxiliary) = self.auxiliary.take() else {
-            let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
-            let densities = self.level([&contact, step.reaction], &gap);
-            let pull = driving_forces(problem, &densities.acting);
-            let lumping_difference = self.mixed.then(|| {
-                lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
-            });
-            return BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference };
+        let gap = problem.surface().gaps(step.displacement);
+        let Some(mut motions) = self.motions.take() else {
+            return self.balance_simulation(dynamics, state, contact, &gap);
         };
-        auxiliary.watch(simulated, problem.mass());
-        let displacement = auxiliary.displacement().to_vec();
-        let mut force = vec![[0.0; D]; displacement.len()];
-        dynamics.forces_without_contact(step.index, &displacement, &mut force);
+        motions.begin(dynamics, step.index);
         let mut arresting = step.reaction.to_vec();
         if let Some(concentration) = &self.concentration {
-            let approach = |at: usize| auxiliary.approach(problem, inverse_mass, self.times, (step.index, at), &force);
-            self.own_forces.apply(problem, concentration, &gap, approach, [&mut contact, &mut arresting]);
+            let approaches = motions.approaches(dynamics, step.index);
+            self.own_forces.apply(problem, concentration, &gap, |at| approaches[at], [&mut contact, &mut arresting]);
         }
         let densities = self.level([&contact, &arresting], &gap);
+        self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
-        let acceleration = accelerate(problem, inverse_mass, force.clone(), &pull);
-        let lumping_difference = self.mixed.then(|| lumping_difference(problem, inverse_mass, &acceleration));
-        let known = lumping_difference.as_deref();
-        auxiliary.accelerate(problem, dynamics, self.times, step.index, &acceleration, known);
-        if let Some(compared) = &mut self.compared {
-            let (solution, density) = (&auxiliary, &densities.acting);
-            let level = AuxiliaryLevel { solution, force: &force, contact: &contact, density, pull: &pull };
-            compared.advance(dynamics, simulated, &level);
-        }
-        auxiliary.advance(self.times, step.index);
-        self.auxiliary = Some(auxiliary);
+        let nodal = || vec![[0.0; D]; problem.mesh().node_count()];
+        let (mut displacement, mut force, mut lumping_difference) = (nodal(), nodal(), self.mixed.then(nodal));
+        let mut level = AuxiliaryLevel {
+            displacement: &mut displacement,
+            force: &mut force,
+            lumping_difference: lumping_difference.as_deref_mut(),
+        };
+        let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction);
+        let simulated = SimulatedLevel { velocity, strain, reaction };
+        motions.advance(dynamics, step.index, &simulated, &pull, &mut level);
+        self.motions = Some(motions);
         BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
+    }
+
+    fn differ(&mut self, simulated: [&[[f64; D]]; 2]) {
+        if let Some(motions) = &mut self.motions {
+            motions.differ(simulated, self.halvings);
+        }
     }
 
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
@@ -225,7 +241,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn differences(&self) -> Option<&[Difference]> {
-        self.compared.as_ref().map(ComparedMotions::differences)
+        self.motions.as_ref().map(Motions::differences)
     }
 
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
@@ -237,4 +253,11 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             minimisation.improve(self.problem, equilibration, choice, levels, self.concentration.as_ref());
         }
     }
+}
+
+/// ΣF²k and ΣF² over the nodes, with the contact force F and the halvings k of its hats.
+fn halvings<const D: usize>(contact: &[[f64; D]], density: &Densities<D>) -> [f64; 2] {
+    let size = |force: &[f64; D]| force.iter().map(|f| f * f).sum::<f64>().sqrt();
+    let narrow = density.hats().iter().map(|hat| size(&hat.resultant) * size(&contact[hat.node]) * hat.halvings as f64);
+    [narrow.sum(), contact.iter().flatten().map(|f| f * f).sum()]
 }

@@ -6,7 +6,7 @@
 
 use super::Concentration;
 use crate::concentrated::{ShapeCosts, StarFrame, TractionShape};
-use crate::reconstruction::corrected::auxiliary_solution::Approach;
+use crate::reconstruction::corrected::motions::Approach;
 use percute_core::contact::{Coulomb, Frame};
 use percute_core::problem::Problem;
 

@@ -4,7 +4,7 @@ use super::own_forces::OwnForces;
 use super::star::CandidateEdge;
 use super::*;
 use crate::contact_density::{Densities, nodal_forces};
-use crate::reconstruction::corrected::auxiliary_solution::Approach;
+use crate::reconstruction::corrected::motions::Approach;
 use crate::reconstruction::{StepDensities, SurfaceSteps, check};
 use crate::time_level::SurfaceStep;
 use percute_core::contact::Obstacle;

@@ -1,0 +1,289 @@
+//! The four motions beside their plain formulas, one field and one sweep at a time.
+
+use super::super::lumping_difference::lumping_difference;
+use super::weights::damping;
+use super::*;
+use crate::element::elements;
+use crate::inertia::mass_product;
+use percute_core::contact::Obstacle;
+use percute_core::dynamics::critical_time_step;
+use percute_core::ids::ElementId;
+use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
+use percute_core::material::{Elastic, Law};
+use percute_core::mesh::{BarMesh, ElementGroups, Mesh, TriangleMesh};
+use percute_core::problem::Initial;
+use percute_core::simplex::{Element as Simplices, Simplex};
+use percute_testkit::{Random, random_rectangle};
+
+/// One motion.
+struct Plain<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    half_step: Vec<[f64; D]>,
+    shares: Shares,
+    /// A motion from rest: without initial fields, loads and motions of supports.
+    from_rest: bool,
+}
+
+/// Its fields at one level.
+struct PlainLevel<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    velocity: Vec<[f64; D]>,
+    force: Vec<[f64; D]>,
+    lumping: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Plain<D> {
+    fn new<const N: usize>(problem: &Problem<D, N>, shares: Shares) -> Self {
+        let (displacement, half_step) = (problem.initial_displacement().to_vec(), problem.initial_velocity().to_vec());
+        Self { displacement, half_step, shares, from_rest: false }
+    }
+
+    fn from_rest<const N: usize>(problem: &Problem<D, N>) -> Self {
+        let zero = vec![[0.0; D]; problem.mesh().node_count()];
+        Self { displacement: zero.clone(), half_step: zero, shares: Shares::NONE, from_rest: true }
+    }
+
+    /// The level n under contact forces (N), and the step to the next one.
+    fn advance<const N: usize>(
+        &mut self,
+        dynamics: &Dynamics<'_, D, N>,
+        times: &TimeGrid,
+        n: usize,
+        contact: &[[f64; D]],
+    ) -> PlainLevel<D> {
+        let (problem, inverse) = (dynamics.problem(), dynamics.inverse_mass());
+        let mut force = vec![[0.0; D]; inverse.len()];
+        if self.from_rest {
+            dynamics.stiffness().subtract_internal_forces(&self.displacement, &mut force);
+        } else {
+            dynamics.forces_without_contact(n, &self.displacement, &mut force);
+        }
+        let mut plain = crate::acceleration::accelerate(problem, inverse, force.clone(), contact);
+        if self.from_rest {
+            problem.prescribed().iter().for_each(|p| plain[p.node.index()][p.component] = 0.0);
+        }
+        let once = lumping_difference(problem, inverse, &plain);
+        let twice = lumping_difference(problem, inverse, &once);
+        let mut internal = vec![[0.0; D]; inverse.len()];
+        dynamics.stiffness().subtract_internal_forces(&plain, &mut internal);
+        problem.prescribed().iter().for_each(|p| internal[p.node.index()][p.component] = 0.0);
+        let [next, last] = [times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1))];
+        let Shares { mass, time } = self.shares;
+        let corrected = |square: f64| -> Vec<[f64; D]> {
+            let one = |i: usize, c: usize| {
+                let lumped = mass * (0.5 * once[i][c] - damping::<D>() * twice[i][c]);
+                plain[i][c] + lumped + time * square / 12.0 * internal[i][c] * inverse[i]
+            };
+            (0..inverse.len()).map(|i| std::array::from_fn(|c| one(i, c))).collect()
+        };
+        let back = if n == 0 { 0.0 } else { 0.5 * times.step(n - 1) };
+        let before = corrected(last * last);
+        let velocity = self.half_step.iter().zip(&before).map(|(v, a)| std::array::from_fn(|c| v[c] + back * a[c]));
+        let (displacement, velocity) = (self.displacement.clone(), velocity.collect());
+        let accelerations = corrected(next * last);
+        percute_core::dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, accelerations);
+        PlainLevel { displacement, velocity, force, lumping: once }
+    }
+}
+
+/// ½∫σ:ε + ½∫ρ y·z, element by element.
+fn energy<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    [a, b]: [&[Vec<[f64; D]>; 2]; 2],
+    wanted: impl Fn(usize) -> bool,
+) -> f64 {
+    let mut sum = 0.0;
+    for (e, element) in elements(problem).iter().enumerate().filter(|(e, _)| wanted(*e)) {
+        let stress = problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(&a[0])));
+        let gradient = element.gradient(&element.gather(&b[0]));
+        let work: f64 = stress.iter().flatten().zip(gradient.iter().flatten()).map(|(s, g)| s * g).sum();
+        let mass = N as f64 * element.nodal_mass;
+        sum += 0.5 * (element.volume * work + mass_product(mass, &element.gather(&a[1]), &element.gather(&b[1])));
+    }
+    sum
+}
+
+fn minus<const D: usize>(a: &[Vec<[f64; D]>; 2], b: &[Vec<[f64; D]>; 2]) -> [Vec<[f64; D]>; 2] {
+    let one = |k: usize| a[k].iter().zip(&b[k]).map(|(a, b)| std::array::from_fn(|c| a[c] - b[c])).collect();
+    [one(0), one(1)]
+}
+
+/// Largest difference over the largest value of the second.
+fn miss<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
+    let scale = largest(&mut b.iter().flatten().copied());
+    let distance = largest(&mut a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a - b));
+    if scale == 0.0 { distance } else { distance / scale }
+}
+
+fn random_field<const D: usize>(count: usize, scale: f64, random: &mut Random) -> Vec<[f64; D]> {
+    (0..count).map(|_| std::array::from_fn(|_| random.between(-scale, scale))).collect()
+}
+
+/// The motions one by one, in the order of the lanes.
+fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; MOTIONS] {
+    let quarters = Shares { mass: 0.75, time: 0.75 };
+    let one = |shares| Plain::new(problem, shares);
+    [one(Shares::ALL), one(quarters), one(Shares { mass: 0.0, ..quarters }), Plain::from_rest(problem)]
+}
+
+/// Checks fields, forces and energies of all levels, under any contact forces and a random motion in place of the simulation.
+fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, fewest: usize) {
+    let dynamics = Dynamics::new(problem, times);
+    let mut motions = Motions::new(problem, times, Shares::ALL);
+    let nodes: Vec<[u32; N]> = motions.cells.cells.iter().map(|cell| cell.nodes).collect();
+    let count = problem.mesh().node_count();
+    motions.blocks = Blocks::new(&nodes, count, fewest);
+    motions.prepare(&elements(problem));
+    let mut plain = plain(problem);
+    let (mut random, contacts) = (Random::new(5), problem.surface().nodes().len());
+    for n in 0..=times.step_count() {
+        let [pull, reaction] = [0, 1].map(|_| random_field::<D>(contacts, 0.1, &mut random));
+        let simulated = [1.0, 1.0].map(|scale| random_field::<D>(count, scale, &mut random));
+        let [mut displacement, mut force, mut lumping] = [0; 3].map(|_| vec![[0.0; D]; count]);
+        motions.begin(&dynamics, n);
+        let approaches = motions.approaches(&dynamics, n).to_vec();
+        let mut level = AuxiliaryLevel {
+            displacement: &mut displacement,
+            force: &mut force,
+            lumping_difference: Some(&mut lumping),
+        };
+        let given = SimulatedLevel { velocity: &simulated[1], strain: 0.0, reaction: &reaction };
+        motions.advance(&dynamics, n, &given, &pull, &mut level);
+        motions.differ([&simulated[0], &simulated[1]], [0.0; 2]);
+
+        let velocity = plain[0].half_step.clone();
+        let contact: Vec<[f64; D]> =
+            reaction.iter().zip(&pull).map(|(r, p)| std::array::from_fn(|c| r[c] - p[c])).collect();
+        let forces = [&pull, &pull, &reaction, &contact];
+        let levels: [PlainLevel<D>; MOTIONS] =
+            std::array::from_fn(|l| plain[l].advance(&dynamics, times, n, forces[l]));
+        let own = &levels[0];
+        for (found, expected) in [(&displacement, &own.displacement), (&force, &own.force), (&lumping, &own.lumping)] {
+            // Rounding of some twenty terms grows with the steps.
+            let miss = miss(found, expected);
+            assert!(miss < 1e-12, "{n}: {miss}");
+        }
+        compare_approaches(&dynamics, times, n, &approaches, (own, &velocity));
+        compare_energies(problem, motions.differences().last().unwrap(), simulated, levels);
+    }
+    assert_eq!(motions.differences().len(), times.step_count() + 1);
+}
+
+/// Checks the gaps at t_{n+1}, with this velocity in the step before.
+fn compare_approaches<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    times: &TimeGrid,
+    n: usize,
+    approaches: &[Approach<D>],
+    (own, velocity): (&PlainLevel<D>, &[[f64; D]]),
+) {
+    let surface = dynamics.problem().surface();
+    for (at, approach) in approaches.iter().enumerate() {
+        let i = surface.nodes()[at].node.index();
+        let mobility = times.step(n) * times.velocity_step(n) * dynamics.inverse_mass()[i];
+        let next = std::array::from_fn(|c| {
+            own.displacement[i][c] + times.step(n) * velocity[i][c] + mobility * own.force[i][c]
+        });
+        let gap = surface.gap(at, &next);
+        assert!((approach.gap - gap).abs() < 1e-12 * gap.abs(), "{n}: {} for {gap}", approach.gap);
+    }
+}
+
+fn compare_energies<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    found: &Difference,
+    simulated: [Vec<[f64; D]>; 2],
+    levels: [PlainLevel<D>; MOTIONS],
+) {
+    let touches = |e: usize| {
+        let nodes = problem.mesh().cells()[e];
+        problem.surface().nodes().iter().any(|contact| nodes.contains(&contact.node))
+    };
+    let [own, half_size, half_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
+    let differences = [minus(&simulated, &own), contact, minus(&half_size, &own), minus(&half_step, &own)];
+    let product = |a: usize, b: usize| energy(problem, [&differences[a], &differences[b]], |_| true);
+    let [whole, square] = [product(0, 0), product(1, 1)];
+    let pairs = [
+        (found.energy, whole, whole),
+        (found.near, energy(problem, [&differences[0]; 2], touches), whole),
+        // The product may be small beside the two energies.
+        (found.contact, product(0, 1), (whole * square).sqrt()),
+        (found.dispersion, whole - 2.0 * product(0, 1) + square, whole + square),
+        (found.half_size, product(2, 2), product(2, 2)),
+        (found.half_step, product(3, 3), product(3, 3)),
+    ];
+    for (k, (found, expected, scale)) in pairs.into_iter().enumerate() {
+        // Differences of like motions have lost digits.
+        let tolerance = if k < 4 { 1e-12 } else { 1e-8 };
+        assert!((found - expected).abs() <= tolerance * scale, "energy {k}: {found} for {expected}");
+    }
+}
+
+/// A rough body of two materials with an obstacle, a fixed and a driven support and loads.
+fn loaded<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    laws: [Elastic; 2],
+    [fixed, driven, loaded]: [&str; 3],
+) -> Problem<D, N>
+where
+    Simplices<D, N>: Simplex<D, N>,
+{
+    let facets = mesh.facet_groups().iter().map(|(name, facets)| {
+        let nodes = facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index()));
+        (name.clone(), nodes.collect())
+    });
+    let cells: Vec<[usize; N]> = mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+    let group = |soft: bool| (0..cells.len()).filter(|e| (e % 3 == 0) == soft).collect();
+    let groups = ElementGroups::from([("soft".to_string(), group(true)), ("hard".to_string(), group(false))]);
+    let mesh = Mesh::new(mesh.points().to_vec(), &cells, &facets.collect(), &groups).unwrap();
+    let normal = std::array::from_fn(|c| if c + 1 == D { 1.0 } else { 0.0 });
+    let below = std::array::from_fn(|c| if c + 1 == D { -10.0 } else { 0.0 });
+    let table = |values: [f64; 2]| Table::new(vec![0.0, 1.0], values.map(|v| [v; D]).to_vec()).unwrap();
+    let support = |group: &str, component: usize, velocity| Support {
+        group: group.into(),
+        components: std::array::from_fn(|c| c == component),
+        velocity,
+    };
+    let rough = random_field(mesh.node_count(), 0.01, &mut Random::new(3));
+    let mut builder = Problem::builder(mesh)
+        .material_of("hard", laws[0])
+        .material_of("soft", laws[1])
+        .obstacle(Obstacle::plane(below, normal, 0.0, None).unwrap())
+        .initial_displacement(Initial::Nodal(rough))
+        .support(support(driven, D - 1, Some(table([0.0, 0.4]))))
+        .body_force(BodyForce { group: Some("soft".into()), value: table([0.3, -0.2]) });
+    if D > 1 {
+        let profile = Profile { value: 1.0, gradient: [0.2; D] };
+        let traction = Traction { group: loaded.into(), value: table([0.1, 0.5]), profile };
+        builder = builder.support(support(fixed, 0, None)).traction(traction);
+    }
+    builder.build().unwrap()
+}
+
+/// Steps that become longer, and shorter again, of at most the critical one.
+fn uneven<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize) -> TimeGrid {
+    let step = |n: usize| critical_time_step(problem) * (0.6 + 0.3 * (0.3 * n as f64).sin());
+    TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn triangles() {
+    let laws =
+        [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
+    for (mesh, fewest) in [
+        (random_rectangle(1.0, 0.8, 6, 3).unwrap(), 4),
+        (TriangleMesh::rectangle(1.0, 0.8, 3, 40).unwrap(), 1),
+        (TriangleMesh::rectangle(1.0, 0.8, 3, 41).unwrap(), 20),
+    ] {
+        let problem = loaded(&mesh, laws, ["left", "top", "right"]);
+        compare(&problem, &uneven(&problem, 30), fewest);
+    }
+}
+
+#[test]
+fn bars() {
+    let laws = [Elastic::bar(3.0, 1.0, 0.5).unwrap(), Elastic::bar(1.0, 2.0, 0.7).unwrap()];
+    let problem = loaded(&BarMesh::uniform_bar(1.0, 23).unwrap(), laws, ["start", "end", "start"]);
+    compare(&problem, &uneven(&problem, 30), 2);
+}
