@@ -1,11 +1,9 @@
 //! The data of an element, computed once.
 
+use crate::lanes::Value;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Law;
 use percute_core::problem::Problem;
-
-/// Elements or nodes in a block of parallel work: small enough to share the work, large enough to be worth a task.
-pub(crate) const BLOCK: usize = 256;
 
 /// Geometry and mass of one element.
 #[derive(Clone, Copy, Debug)]
@@ -52,13 +50,14 @@ pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) 
 impl<const D: usize, const N: usize> Element<D, N> {
     /// ∂u_a/∂x_b of a linear field, from differences with its value at the first node.
     #[inline]
-    pub(crate) fn gradient(&self, u: &[[f64; D]; N]) -> [[f64; D]; D] {
+    pub(crate) fn gradient<T: Value>(&self, u: &[[T; D]; N]) -> [[T; D]; D] {
         let inverse = 1.0 / self.volume;
-        let mut gradient = [[0.0; D]; D];
+        let mut gradient = [[T::ZERO; D]; D];
         for i in 1..N {
             for a in 0..D {
+                let difference = (u[i][a] - u[0][a]) * inverse;
                 for b in 0..D {
-                    gradient[a][b] += inverse * (u[i][a] - u[0][a]) * self.gradients[i][b];
+                    gradient[a][b] += difference * self.gradients[i][b];
                 }
             }
         }
@@ -73,8 +72,8 @@ impl<const D: usize, const N: usize> Element<D, N> {
 
     /// Vσ∇φ_i of node `i`.
     #[inline]
-    pub(crate) fn internal_force(&self, i: usize, stress: &[[f64; D]; D]) -> [f64; D] {
-        let mut force = [0.0; D];
+    pub(crate) fn internal_force<T: Value>(&self, i: usize, stress: &[[T; D]; D]) -> [T; D] {
+        let mut force = [T::ZERO; D];
         for a in 0..D {
             for b in 0..D {
                 force[a] += stress[a][b] * self.gradients[i][b];

@@ -1,5 +1,6 @@
 //! Γ_DA on an element, from ã at its nodes (§6.2.2).
 
+use crate::lanes::Value;
 use crate::options::Acceleration;
 
 /// The linear map, constant in time, from nodal ã to the nodal values of Γ_DA/ρ.
@@ -53,11 +54,11 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 
     /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã and the lumping difference, which `mixed` has, or from theirs.
     #[inline(always)]
-    pub(crate) fn apply(
+    pub(crate) fn apply<T: Value>(
         &self,
-        acceleration: &[[f64; D]; N],
-        lumping_difference: Option<&[[f64; D]; N]>,
-    ) -> [[f64; D]; N] {
+        acceleration: &[[T; D]; N],
+        lumping_difference: Option<&[[T; D]; N]>,
+    ) -> [[T; D]; N] {
         let mean = mean(acceleration);
         // The lumped moment is D + 2 times that of the linear field.
         match self.choice {
@@ -66,7 +67,7 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
             Acceleration::Rigid => self.turned([mean; N], (D + 2) as f64, acceleration),
             // M_consistent Γ/ρ = M_lumped ã.
             Acceleration::Weak => {
-                acceleration.map(|a| std::array::from_fn(|c| (D + 2) as f64 * a[c] - N as f64 * mean[c]))
+                acceleration.map(|a| std::array::from_fn(|c| a[c] * (D + 2) as f64 - mean[c] * N as f64))
             }
             Acceleration::Mixed => lumping_difference.map_or(*acceleration, |difference| {
                 let mean = self::mean(difference);
@@ -78,9 +79,9 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 
     /// A field with this multiple of the rotation that is nearest to a nodal field.
     #[inline(always)]
-    fn turned(&self, mut field: [[f64; D]; N], factor: f64, nodal: &[[f64; D]; N]) -> [[f64; D]; N] {
+    fn turned<T: Value>(&self, mut field: [[T; D]; N], factor: f64, nodal: &[[T; D]; N]) -> [[T; D]; N] {
         for rotation in &self.rotations[..rotation_count(D)] {
-            let turning = factor * (rotation.work_on(nodal) * rotation.inverse);
+            let turning = rotation.work_on(nodal) * rotation.inverse * factor;
             for i in 0..N {
                 (0..D).for_each(|c| field[i][c] += turning * rotation.field[i][c]);
             }
@@ -91,10 +92,10 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 
 /// The mean over the nodes.
 #[inline(always)]
-fn mean<const D: usize, const N: usize>(nodal: &[[f64; D]; N]) -> [f64; D] {
-    let mut mean = [0.0; D];
+fn mean<T: Value, const D: usize, const N: usize>(nodal: &[[T; D]; N]) -> [T; D] {
+    let mut mean = [T::ZERO; D];
     for value in nodal {
-        (0..D).for_each(|c| mean[c] += value[c] / N as f64);
+        (0..D).for_each(|c| mean[c] += value[c] * (1.0 / N as f64));
     }
     mean
 }
@@ -102,8 +103,8 @@ fn mean<const D: usize, const N: usize>(nodal: &[[f64; D]; N]) -> [f64; D] {
 impl<const D: usize, const N: usize> Rotation<D, N> {
     /// Σ of the products with another nodal field.
     #[inline(always)]
-    fn work_on(&self, nodal: &[[f64; D]; N]) -> f64 {
-        let mut work = 0.0;
+    fn work_on<T: Value>(&self, nodal: &[[T; D]; N]) -> T {
+        let mut work = T::ZERO;
         for i in 0..N {
             (0..D).for_each(|c| work += nodal[i][c] * self.field[i][c]);
         }
@@ -121,10 +122,10 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
 
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.
 #[inline(always)]
-pub(crate) fn mass_product<const D: usize, const N: usize>(mass: f64, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> f64 {
-    let mut product = 0.0;
+pub(crate) fn mass_product<T: Value, const D: usize, const N: usize>(mass: f64, a: &[[T; D]; N], b: &[[T; D]; N]) -> T {
+    let mut product = T::ZERO;
     for c in 0..D {
-        let (mut sum_a, mut sum_b) = (0.0, 0.0);
+        let (mut sum_a, mut sum_b) = (T::ZERO, T::ZERO);
         for i in 0..N {
             product += a[i][c] * b[i][c];
             sum_a += a[i][c];
@@ -132,7 +133,7 @@ pub(crate) fn mass_product<const D: usize, const N: usize>(mass: f64, a: &[[f64;
         }
         product += sum_a * sum_b;
     }
-    mass * product / ((D + 1) * (D + 2)) as f64
+    product * (mass / ((D + 1) * (D + 2)) as f64)
 }
 
 #[cfg(test)]

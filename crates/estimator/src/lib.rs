@@ -8,6 +8,7 @@
 //! relation de comportement pour les problèmes d'impact*. All units are SI.
 
 mod acceleration;
+mod blocks;
 mod concentrated;
 mod contact_density;
 mod difference;
@@ -17,6 +18,7 @@ mod estimate;
 mod increment;
 mod inertia;
 mod kinematic;
+mod lanes;
 mod loaded;
 mod map;
 mod measure;

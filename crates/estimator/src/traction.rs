@@ -10,17 +10,19 @@ mod equilibrated;
 mod mass_term;
 mod star_solver;
 
+use crate::blocks::{ElementBlocks, StarBlocks};
 use crate::contact_density::Densities;
 use crate::element::Element;
+use crate::lanes::Value;
 use crate::loaded::LoadedFacets;
-use crate::time_level::TimeLevel;
-pub(crate) use equilibrated::{Equilibrated, FemStress};
+use crate::time_level::{ForcesKnown, TimeLevel};
+pub(crate) use equilibrated::{EquilibratedLevel, EquilibratedLevels, KeptLevel};
 use mass_term::MassTerm;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::material::Law;
 use percute_core::mesh::Star;
 use percute_core::problem::Problem;
-use star_solver::{Ends, StarSolver};
+use star_solver::{Compatibility, Ends};
 
 /// Facet without prescribed moments.
 const FREE: u32 = u32::MAX;
@@ -33,6 +35,8 @@ const EXPLAINED: f64 = 1e-12;
 pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     pub(crate) elements: Vec<Element<D, N>>,
+    pub(crate) blocks: ElementBlocks<N>,
+    star_blocks: StarBlocks<N>,
     /// For each facet, its place among the loaded facets, then the candidate facets of contact.
     slots: Vec<u32>,
     /// For each local node, the facets by which its star enters and leaves an element.
@@ -41,15 +45,6 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     loaded: usize,
     /// Where the links of each contact node's star begin among those of all contact nodes.
     contact_links: Vec<usize>,
-}
-
-/// How far a star is from compatible.
-#[derive(Clone, Copy, Debug, Default)]
-struct Compatibility {
-    /// Largest |Σ η b − r| (N).
-    miss: f64,
-    /// Largest term (N).
-    scale: f64,
 }
 
 impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
@@ -67,7 +62,8 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
         let crossing = problem.mesh().simplex().facets_around();
-        Self { problem, elements, slots, crossing, loaded, contact_links }
+        let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
+        Self { problem, elements, blocks, star_blocks, slots, crossing, loaded, contact_links }
     }
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.
@@ -87,54 +83,41 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         Problem::<D, N>::facet_moments(area, &densities[contact])[position]
     }
 
-    /// Solves one star. `moments` receives, for each link, the moment that leaves the element before
-    /// it (and enters, with the other sign, the one after it).
-    fn solve_star(
-        &self,
-        level: &TimeLevel<D>,
-        stress: &FemStress<D>,
-        node: NodeId,
-        mass_term: MassTerm<'_, D>,
-        densities: &Densities<D>,
-        moments: &mut [[f64; D]],
-    ) -> Compatibility {
-        let star = self.problem.mesh().stars().star(node);
-        let ends = self.ends(level, densities, node, &star);
-        let stress = &stress.of_element;
-        let solver = StarSolver { all: self, level, stress, node, mass_term, elements: star.elements, ends: &ends };
-        let mut scale: f64 = 0.0;
-        let lack = solver.along(moments, &mut scale);
-        let miss = ends.close(&lack, moments);
-        for c in 0..D {
-            scale = scale.max(moments[0][c].abs()).max(ends.moments[1][c].abs());
-        }
-        Compatibility { miss, scale }
+    /// Whether a facet has known moments that may differ from zero.
+    #[inline(always)]
+    fn is_known(&self, facet: FacetId) -> bool {
+        self.slots[facet.index()] != FREE
     }
 
     /// The known moments of the first and the last link of a star.
-    #[inline]
-    fn ends(&self, level: &TimeLevel<D>, densities: &Densities<D>, node: NodeId, star: &Star<'_>) -> Ends<D> {
+    #[inline(always)]
+    fn ends<T: Value>(&self, star: &Star<'_>, known: impl Fn(FacetId) -> [T; D]) -> Ends<D, T> {
         let closed = star.is_closed();
         let links = [star.links[0], star.links[star.elements.len()]].map(|link| link.filter(|_| !closed));
-        let known = |link: Option<FacetId>| link.map_or([0.0; D], |f| self.known_moment(level, densities, f, node));
         let supported = |link: Option<FacetId>| link.map_or([false; D], |f| self.problem.supported(f));
-        Ends { closed, moments: links.map(known), supported: links.map(supported) }
+        Ends { closed, moments: links.map(|link| link.map_or([T::ZERO; D], &known)), supported: links.map(supported) }
+    }
+
+    /// The local number of a node in an element.
+    #[inline(always)]
+    fn position(&self, element: ElementId, node: NodeId) -> usize {
+        self.elements[element.index()].nodes.iter().position(|&n| n == node).unwrap_or(0)
     }
 
     /// The residual of a star, relative to its largest term.
     ///
     /// The terms of ∫σ_h∇φ_i are themselves sums, modulus times displacement gradient, that cancel in a
     /// turning body. They are looked at only where what is left of them does not explain the miss.
-    fn star_residual(&self, star: Compatibility, level: &TimeLevel<D>, stress: &FemStress<D>, node: NodeId) -> f64 {
+    fn star_residual(&self, star: Compatibility<f64>, forces: &ForcesKnown<D>, force_scale: f64, node: NodeId) -> f64 {
         let relative = |scale: f64| if star.miss == 0.0 { 0.0 } else { star.miss / scale };
-        let scale = star.scale.max(1e-12 * stress.force_scale);
+        let scale = star.scale.max(1e-12 * force_scale);
         if relative(scale) <= EXPLAINED {
             return relative(scale);
         }
         let largest = |m: f64, values: &[f64; D]| values.iter().fold(m, |m, x| m.max(x.abs()));
         let terms = |&element: &ElementId| {
             let (data, law) = (&self.elements[element.index()], self.problem.material(element));
-            let gradient = data.gradient(&data.gather(&level.displacement)).iter().fold(0.0, largest);
+            let gradient = data.gradient(&data.gather(&forces.level.displacement)).iter().fold(0.0, largest);
             let modulus = law.density() * law.wave_speed() * law.wave_speed();
             modulus * gradient * data.gradients.iter().fold(0.0, largest)
         };

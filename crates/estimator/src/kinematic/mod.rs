@@ -15,14 +15,15 @@ mod window;
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
+use crate::lanes::{FieldLanes, Lanes};
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 
 /// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ElementMotion<const D: usize, const N: usize> {
-    displacement: [[f64; D]; N],
-    velocity: [[f64; D]; N],
+pub(crate) struct ElementMotion<const D: usize, const N: usize, T = f64> {
+    displacement: [[T; D]; N],
+    velocity: [[T; D]; N],
 }
 
 impl<const D: usize, const N: usize> ElementMotion<D, N> {
@@ -40,15 +41,43 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     pub(crate) fn set_normal(&mut self, i: usize, frame: &Frame<D>, track: &ContactTrack, instant: usize) {
         settle(&mut self.displacement[i], &mut self.velocity[i], frame, track, instant);
     }
+}
 
-    #[inline]
-    pub(crate) fn displacement(&self) -> &[[f64; D]; N] {
+impl<const D: usize, const N: usize, T> ElementMotion<D, N, T> {
+    #[inline(always)]
+    pub(crate) fn displacement(&self) -> &[[T; D]; N] {
         &self.displacement
     }
 
-    #[inline]
-    pub(crate) fn velocity(&self) -> &[[f64; D]; N] {
+    #[inline(always)]
+    pub(crate) fn velocity(&self) -> &[[T; D]; N] {
         &self.velocity
+    }
+}
+
+/// u_CA and u̇_CA at some nodes, at some half-step instants side by side.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MotionLanes<const D: usize> {
+    displacement: FieldLanes<D>,
+    velocity: FieldLanes<D>,
+}
+
+impl<const D: usize> MotionLanes<D> {
+    /// Takes the values at these nodes, at each instant.
+    #[inline(always)]
+    pub(crate) fn gather<'m>(
+        &mut self,
+        nodes: &[u32],
+        motions: impl Iterator<Item = Option<&'m NodalMotion<D>>> + Clone,
+    ) {
+        self.displacement.gather(nodes, motions.clone().map(|motion| motion.map(NodalMotion::displacement)));
+        self.velocity.gather(nodes, motions.map(|motion| motion.map(NodalMotion::velocity)));
+    }
+
+    /// The motion of an element without contact node, whose nodes have these places.
+    #[inline(always)]
+    pub(crate) fn element<const N: usize>(&self, local: &[u32; N]) -> ElementMotion<D, N, Lanes> {
+        ElementMotion { displacement: self.displacement.of(local), velocity: self.velocity.of(local) }
     }
 }
 

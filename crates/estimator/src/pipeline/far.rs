@@ -1,18 +1,23 @@
-//! Elements without a candidate node of contact, sampled as soon as a level is equilibrated.
+//! Elements without a candidate node of contact, sampled as soon as their levels are equilibrated.
 
 use super::maps::Contribution;
-use super::sampling::{ContactPart, Course, ElementInterval, ElementSampler, Sampling};
-use crate::element::BLOCK;
-use crate::measure::ElementError;
-use crate::residual::Residuals;
+use super::sampled_levels::SampledLevels;
+use super::sampling::{Course, ElementSample, Sampling, trapezoid};
+use crate::blocks::BLOCK;
+use crate::increment::IncrementLanes;
+use crate::kinematic::MotionLanes;
+use crate::lanes::{LANES, Lanes, Value};
+use crate::measure::{BalanceFields, Balanced, ElementError, ElementMeasure};
+use crate::residual::{Residuals, worse};
+use crate::simd::dispatch;
+use crate::stress::{EnergyForm, EnergyForms};
 use crate::time_level::{Side, Velocities};
-use crate::traction::Equilibrated;
 use percute_core::ids::ElementId;
 use rayon::prelude::*;
 
-/// Away from contact the pointwise equilibrium of σ_DA is checked at every level of so many: a check costs more than the
-/// measure itself.
-const CHECK: usize = 64;
+/// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in its turn: a
+/// check costs more than the measure itself.
+const CHECKS: usize = 64;
 
 /// Sums over far elements at the levels and in the middles between them.
 #[derive(Clone, Debug, Default)]
@@ -22,91 +27,251 @@ pub(crate) struct FarSums {
 }
 
 impl FarSums {
-    pub(crate) fn new(levels: usize, mids: usize) -> Self {
-        Self { levels: vec![ElementError::default(); levels], mids: vec![ElementError::default(); mids] }
-    }
-
-    /// Adds another block of elements.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.levels.iter_mut().zip(&other.levels).for_each(|(a, b)| a.add(b));
-        self.mids.iter_mut().zip(&other.mids).for_each(|(a, b)| a.add(b));
-    }
-
-    /// Appends a later window.
-    pub(crate) fn extend(&mut self, later: Self) {
-        self.levels.extend(later.levels);
-        self.mids.extend(later.mids);
+    /// Appends later levels.
+    fn extend(&mut self, levels: &ElementError<Lanes>, mids: &ElementError<Lanes>, count: usize, begins: bool) {
+        self.levels.extend((0..count).map(|lane| levels.lane(lane)));
+        self.mids.extend((usize::from(begins)..count).map(|lane| mids.lane(lane)));
     }
 }
 
-/// The results of the far elements in one window.
-pub(super) struct FarBlock {
-    pub(super) sums: FarSums,
-    pub(super) residuals: Residuals,
-    pub(super) kept: Vec<Contribution>,
+/// The results of a block of far elements.
+struct FarBlock {
+    levels: ElementError<Lanes>,
+    mids: ElementError<Lanes>,
+    residuals: Residuals,
+    kept: Vec<Contribution>,
 }
 
-/// Samples all far elements at the levels from `first` on, by blocks, in their order. Earlier levels were sampled before.
+/// The fields of a block at some levels, and in the middles before them.
+#[derive(Default)]
+struct BlockFields<const D: usize> {
+    now: VelocityLanes<D>,
+    mid: VelocityLanes<D>,
+    balance: BalanceFields<D>,
+}
+
+/// [`Velocities`] side by side.
+#[derive(Default)]
+struct VelocityLanes<const D: usize> {
+    motion: MotionLanes<D>,
+    increment: IncrementLanes<D>,
+    lumping_increment: IncrementLanes<D>,
+}
+
+impl<const D: usize> VelocityLanes<D> {
+    #[inline(always)]
+    fn gather<'v>(
+        &mut self,
+        nodes: &[u32],
+        velocities: impl Iterator<Item = Option<&'v Velocities<D>>> + Clone,
+        mixed: bool,
+    ) {
+        self.motion.gather(nodes, velocities.clone().map(|v| v.map(|v| &v.motion)));
+        self.increment.gather(nodes, velocities.clone().map(|v| v.map(|v| &v.increment)));
+        if mixed {
+            self.lumping_increment.gather(nodes, velocities.map(|v| v.and_then(|v| v.lumping_increment.as_ref())));
+        }
+    }
+}
+
+/// Samples all far elements at some levels, by blocks, and adds them up in the order of the blocks.
 pub(super) fn sample<const D: usize, const N: usize>(
     shared: &Sampling<'_, '_, D, N>,
-    levels: &[Equilibrated<D>],
-    first: usize,
+    levels: &SampledLevels<'_, D>,
     is_near: &[bool],
     courses: &mut [Course],
-) -> Vec<FarBlock> {
-    let block = |(block, courses): (usize, &mut [Course])| {
-        let sums = FarSums::new(levels.len() - first, levels.len() - 1);
-        let mut found = FarBlock { sums, residuals: Residuals::default(), kept: Vec::new() };
-        for (k, course) in courses.iter_mut().enumerate() {
-            let id = block * BLOCK + k;
-            if !is_near[id] {
-                let sampler = ElementSampler::new(shared, ElementId::new(id));
-                found.sample(&sampler, levels, first, course);
-            }
-        }
-        found
+    sums: &mut FarSums,
+) -> (Residuals, Vec<Contribution>) {
+    let all = FarLevels::new(shared, levels);
+    let block = |fields: &mut BlockFields<D>, (block, courses): (usize, &mut [Course])| {
+        dispatch(
+            #[inline(always)]
+            || all.sample(block, fields, is_near, courses),
+        )
     };
-    courses.par_chunks_mut(BLOCK).enumerate().map(block).collect()
+    let blocks: Vec<FarBlock> =
+        courses.par_chunks_mut(BLOCK).enumerate().map_init(BlockFields::default, block).collect();
+    let (mut at_levels, mut in_mids) = (ElementError::zero(), ElementError::zero());
+    let (mut residuals, mut kept) = (Residuals::default(), Vec::new());
+    for block in blocks {
+        at_levels.add(&block.levels);
+        in_mids.add(&block.mids);
+        residuals.merge(&block.residuals);
+        kept.extend(block.kept);
+    }
+    sums.extend(&at_levels, &in_mids, levels.levels.len(), levels.before.is_none());
+    (residuals, kept)
 }
 
-impl FarBlock {
-    /// Adds one element.
-    fn sample<const D: usize, const N: usize>(
-        &mut self,
-        sampler: &ElementSampler<'_, '_, D, N>,
-        levels: &[Equilibrated<D>],
-        first: usize,
-        course: &mut Course,
-    ) {
-        let balanced = |level| sampler.balanced(level, &[None; N], Side::After);
-        let gather = |velocities: &Velocities<D>| sampler.velocities(velocities);
-        let mut before = balanced(&levels[0]);
-        let begins = first == 0;
-        if begins {
-            sampler.check(&before, &levels[0], CHECK, &mut self.residuals);
+/// The data that all blocks share at some levels.
+struct FarLevels<'a, 's, 'p, const D: usize, const N: usize> {
+    shared: &'a Sampling<'s, 'p, D, N>,
+    levels: &'a SampledLevels<'a, D>,
+    /// Which levels end an interval of a single step, and whether any does.
+    single: [bool; LANES],
+    has_mids: bool,
+    /// Length of the interval before each level (s).
+    lengths: [f64; LANES],
+    /// An element is checked at each level of so many.
+    turns: usize,
+    /// The number of each level, modulo the turns.
+    turn: [usize; LANES],
+    /// The levels of which maps are wanted.
+    wanted: [bool; LANES],
+}
+
+impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
+    fn new(shared: &'a Sampling<'s, 'p, D, N>, levels: &'a SampledLevels<'a, D>) -> Self {
+        let (forces, instants) = (levels.levels.forces(), shared.times.instants());
+        let single: [bool; LANES] = std::array::from_fn(|lane| lane < forces.len() && levels.is_single(lane));
+        let length = |lane: usize| {
+            let before = (lane < forces.len()).then(|| levels.before(lane)).flatten();
+            before.map_or(0.0, |before| instants[forces[lane].level.index] - instants[before.index()])
+        };
+        let turns = (shared.problem.mesh().element_count() / CHECKS).max(CHECKS);
+        let index = |lane: usize| forces.get(lane).map(|f| f.level.index);
+        Self {
+            shared,
+            levels,
+            single,
+            has_mids: single.contains(&true),
+            lengths: std::array::from_fn(length),
+            turns,
+            turn: std::array::from_fn(|lane| index(lane).map_or(usize::MAX, |n| n % turns)),
+            wanted: std::array::from_fn(|lane| index(lane).is_some_and(|n| shared.maps.want(n))),
         }
-        for (k, pair) in levels.windows(2).enumerate() {
-            let (from, to) = (&pair[0], &pair[1]);
-            let after = balanced(to);
-            sampler.check(&after, to, CHECK, &mut self.residuals);
-            let start = (begins && k == 0).then(|| gather(&from.forces().now));
-            let mid = to.forces().mid.as_ref().filter(|_| to.index() == from.index() + 1).map(gather);
-            let interval = ElementInterval {
-                steps: [from.index(), to.index()],
-                balanced: [&before, &after],
-                start: start.as_ref(),
-                mid: mid.as_ref(),
-                end: &gather(&to.forces().now),
-                contact: [ContactPart::default(); 3],
-                hats: [&[]; 3],
-            };
-            let [start, middle, end] = sampler.sample(&interval, course, &mut self.kept);
-            if begins && k == 0 {
-                self.sums.levels[0].add(&start.error);
+    }
+
+    #[inline(always)]
+    fn sample(&self, block: usize, fields: &mut BlockFields<D>, is_near: &[bool], courses: &mut [Course]) -> FarBlock {
+        let mut found = FarBlock {
+            levels: ElementError::zero(),
+            mids: ElementError::zero(),
+            residuals: Residuals::default(),
+            kept: Vec::new(),
+        };
+        let (problem, equilibration) = (self.shared.problem, self.shared.equilibration);
+        let (range, block) = (equilibration.blocks.elements(block), equilibration.blocks.block(block));
+        self.gather(fields, block.nodes);
+        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let mut worst = Lanes::ZERO;
+        for start in range.clone().step_by(LANES) {
+            let group = start..(start + LANES).min(range.end);
+            let lanes = forms.prepare(problem, group.clone().map(ElementId::new));
+            for (e, lane) in group.zip(lanes) {
+                if !is_near[e] {
+                    let (k, id) = (e - range.start, ElementId::new(e));
+                    let form = forms.of(problem, id, lane);
+                    let measure = ElementMeasure::new(problem, &equilibration.elements[e], id, self.shared.choice);
+                    let element = FarElement { all: self, measure, form, id, local: &block.local[k] };
+                    element.sample(fields, &mut courses[k], &mut found, &mut worst);
+                }
             }
-            self.sums.mids[k].add(&middle.error);
-            self.sums.levels[k + 1 - first].add(&end.error);
-            before = after;
         }
+        let worst = worst.0.into_iter().fold(0.0, worse);
+        found.residuals.element_resultants = worse(found.residuals.element_resultants, worst);
+        found
+    }
+
+    #[inline(always)]
+    fn gather(&self, fields: &mut BlockFields<D>, nodes: &[u32]) {
+        let forces = self.levels.levels.forces();
+        fields.balance.gather(nodes, self.levels.levels);
+        let mixed = fields.balance.is_mixed();
+        fields.now.gather(nodes, forces.iter().map(|f| Some(&f.now)), mixed);
+        if self.has_mids {
+            let mids = forces.iter().zip(self.single).map(|(f, single)| f.mid.as_ref().filter(|_| single));
+            fields.mid.gather(nodes, mids, mixed);
+        }
+    }
+}
+
+/// One far element.
+struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {
+    all: &'f FarLevels<'a, 's, 'p, D, N>,
+    measure: ElementMeasure<'f, D, N>,
+    form: EnergyForm<'f>,
+    id: ElementId,
+    local: &'f [u32; N],
+}
+
+impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
+    /// Samples the element at all levels and in the middles before them.
+    #[inline(always)]
+    fn sample(&self, fields: &BlockFields<D>, course: &mut Course, found: &mut FarBlock, worst: &mut Lanes) {
+        let balanced = {
+            let (equilibration, levels) = (self.all.shared.equilibration, self.all.levels.levels);
+            self.measure.balanced(&fields.balance.nodal_balance(equilibration, levels, self.id, self.local))
+        };
+        let residual = self.measure.resultant_residual(&balanced, self.all.levels.levels.force_scale());
+        *worst = worst.worse(residual);
+        self.check(&balanced, &mut found.residuals);
+        let mixed = fields.balance.is_mixed();
+        let now = self.error(&balanced, &fields.now, mixed);
+        found.levels.add(&now);
+        let mut mid = ElementError::zero();
+        if self.all.has_mids {
+            let middle = Balanced::middle(&self.before(&balanced), &balanced);
+            mid = self.error(&middle, &fields.mid, mixed).only(&self.all.single);
+            found.mids.add(&mid);
+        }
+        self.integrate(&now, &mid, course, &mut found.kept);
+    }
+
+    /// The fields that balance at the level before each level.
+    #[inline(always)]
+    fn before(&self, balanced: &Balanced<D, N, Lanes>) -> Balanced<D, N, Lanes> {
+        let Some(level) = &self.all.levels.before else {
+            return Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.later(0.0));
+        };
+        let fields = self.measure.nodal_balance(self.all.shared.equilibration, level, &[None; N], Side::After);
+        Balanced::combine(&self.measure.balanced(&fields), balanced, |before: f64, now: Lanes| now.later(before))
+    }
+
+    #[inline(always)]
+    fn error(
+        &self,
+        balanced: &Balanced<D, N, Lanes>,
+        velocities: &VelocityLanes<D>,
+        mixed: bool,
+    ) -> ElementError<Lanes> {
+        let lumping = mixed.then(|| velocities.lumping_increment.of(self.local));
+        let increment = self.measure.increment_of(&velocities.increment.of(self.local), lumping.as_ref());
+        let motion = velocities.motion.element(self.local);
+        self.measure.error(&self.form, balanced, &increment, &motion, |_| Lanes::ZERO)
+    }
+
+    /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear and the
+    /// same at all levels.
+    #[inline(always)]
+    fn check(&self, balanced: &Balanced<D, N, Lanes>, residuals: &mut Residuals) {
+        let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;
+        if let Some(lane) = self.all.turn.iter().position(|&level| level == turn) {
+            let one = Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.0[lane]);
+            self.measure.check_stress(&one, self.all.levels.levels.force_scale().0[lane], residuals);
+        }
+    }
+
+    /// Goes on with the integral of η over time, and keeps the samples that are wanted.
+    #[inline(always)]
+    fn integrate(
+        &self,
+        now: &ElementError<Lanes>,
+        mid: &ElementError<Lanes>,
+        course: &mut Course,
+        kept: &mut Vec<Contribution>,
+    ) {
+        let (totals, mids) = (now.total(), mid.total());
+        let mut last = course.last().total();
+        for (lane, forces) in self.all.levels.levels.forces().iter().enumerate() {
+            let middle = self.all.single[lane].then_some(mids.0[lane]);
+            course.add(trapezoid(self.all.lengths[lane], last, middle, totals.0[lane]));
+            last = totals.0[lane];
+            if self.all.wanted[lane] {
+                course.reach(ElementSample::away_from_contact(now.lane(lane)));
+                course.keep(self.id, forces.level.index, kept);
+            }
+        }
+        course.reach(ElementSample::away_from_contact(now.lane(self.all.levels.levels.len() - 1)));
     }
 }

@@ -1,7 +1,7 @@
 //! The maps that were requested, as they fill: nodal motion and element fields when their level is
 //! worked on, contributions as elements get there, the motion at contact when the run is over.
 
-use crate::element::BLOCK;
+use crate::blocks::BLOCK;
 use crate::element::Element;
 use crate::kinematic::{ContactTrack, settle};
 use crate::map::{AdmissibleFields, ElementMap};
@@ -9,7 +9,7 @@ use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
-use crate::traction::{Equilibrated, Equilibration};
+use crate::traction::{EquilibratedLevel, EquilibratedLevels, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -58,14 +58,14 @@ impl<const D: usize> Maps<D> {
         &mut self,
         instants: &[f64],
         balance: &Balance<'_, D, N>,
-        levels: &[Equilibrated<D>],
+        levels: &EquilibratedLevels<D>,
     ) {
         let zeros = vec![0.0; balance.equilibration.elements.len()];
-        for level in levels {
+        for level in (0..levels.len()).map(|k| levels.level(k)) {
             if !self.want(level.index()) {
                 continue;
             }
-            let fields = self.request.fields.then(|| fields(balance, level));
+            let fields = self.request.fields.then(|| fields(balance, &level));
             self.made.push(ElementMap {
                 step: level.index(),
                 time: instants[level.index()],
@@ -123,7 +123,10 @@ pub(super) struct Balance<'a, const D: usize, const N: usize> {
 
 /// The motion of all nodes, normal components at contact still those of the simulation, and the
 /// means of σ_DA and Γ_DA/ρ.
-fn fields<const D: usize, const N: usize>(balance: &Balance<'_, D, N>, level: &Equilibrated<D>) -> AdmissibleFields<D> {
+fn fields<const D: usize, const N: usize>(
+    balance: &Balance<'_, D, N>,
+    level: &EquilibratedLevel<'_, D>,
+) -> AdmissibleFields<D> {
     let Balance { problem, equilibration, choice, concentration } = *balance;
     let elements = &equilibration.elements;
     let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];

@@ -8,6 +8,7 @@ mod maps;
 mod near;
 mod prepare;
 mod sampled_interval;
+mod sampled_levels;
 mod sampling;
 mod separation;
 mod totals;

@@ -2,6 +2,7 @@
 //! and their motion is known only when the next contact of their nodes is.
 
 use super::maps::Contribution;
+use super::sampled_levels::SampledLevels;
 use super::sampling::{
     ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling,
 };
@@ -13,7 +14,8 @@ use crate::measure::Balanced;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
-use crate::traction::Equilibrated;
+use crate::traction::EquilibratedLevel;
+
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use std::collections::VecDeque;
@@ -107,17 +109,17 @@ pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
     /// Takes in the intervals between consecutive levels, then samples those whose motion is known.
-    pub(super) fn advance(&mut self, context: &ContactSampling<'_, '_, D, N>, levels: &[Equilibrated<D>]) {
+    pub(super) fn advance(&mut self, context: &ContactSampling<'_, '_, D, N>, levels: &SampledLevels<'_, D>) {
         let sampler = ElementSampler::new(context.shared, self.element);
         let begins = self.start.is_none();
         if begins {
-            let mut first = self.at(&sampler, &levels[0].forces().now, 0, 0.0);
+            let mut first = self.at(&sampler, &levels.levels.forces()[0].now, 0, 0.0);
             self.settle(context, &mut first);
             self.check_start(context, sampler.element, &first.velocities);
             self.start = Some(first);
         }
-        for (k, pair) in levels.windows(2).enumerate() {
-            self.queue_interval(&sampler, begins && k == 0, &pair[0], &pair[1]);
+        for (k, [from, to]) in levels.intervals().enumerate() {
+            self.queue_interval(&sampler, begins && k == 0, &from, &to);
         }
         self.sample_known(context, &sampler);
     }
@@ -126,8 +128,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         &mut self,
         sampler: &ElementSampler<'_, '_, D, N>,
         first: bool,
-        from: &Equilibrated<D>,
-        to: &Equilibrated<D>,
+        from: &EquilibratedLevel<'_, D>,
+        to: &EquilibratedLevel<'_, D>,
     ) {
         let start = sampler.balanced(from, &self.contact, Side::After);
         let end = sampler.balanced(to, &self.contact, Side::Before);
@@ -142,7 +144,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let mid = forces.mid.as_ref().filter(|_| single);
         let mid = mid.map(|mid| self.at(sampler, mid, 2 * to.index() - 1, friction(0)));
         let stop = self.at(sampler, &forces.now, 2 * to.index(), friction(1));
-        let touches = |level: &Equilibrated<D>, at: usize| level.forces().level.surface.touching[at];
+        let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
         let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact)).collect();

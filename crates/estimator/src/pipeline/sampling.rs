@@ -4,11 +4,12 @@ use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::kinematic::ElementMotion;
-use crate::measure::{Balanced, ElementError, ElementMeasure};
+use crate::measure::{Balanced, ElementError, ElementMeasure, hat_energy};
 use crate::options::Acceleration;
-use crate::residual::Residuals;
+use crate::residual::{Residuals, worse};
+use crate::stress::EnergyForms;
 use crate::time_level::{Side, Velocities};
-use crate::traction::{Equilibrated, Equilibration};
+use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -39,7 +40,14 @@ pub(super) struct ContactPart {
 }
 
 impl ElementSample {
-    fn total(&self) -> f64 {
+    /// Where there is no contact part.
+    #[inline(always)]
+    pub(super) fn away_from_contact(error: ElementError) -> Self {
+        Self { error, contact: ContactPart::default() }
+    }
+
+    #[inline(always)]
+    pub(super) fn total(&self) -> f64 {
         self.error.total() + self.contact.total
     }
 }
@@ -50,6 +58,33 @@ pub(super) struct Course {
     /// ∫η_E dt (J s).
     pub(super) integral: f64,
     last: ElementSample,
+}
+
+impl Course {
+    /// η at the last sample.
+    #[inline(always)]
+    pub(super) fn last(&self) -> &ElementSample {
+        &self.last
+    }
+
+    /// Adds the integral over an interval (J s).
+    #[inline(always)]
+    pub(super) fn add(&mut self, integral: f64) {
+        self.integral += integral;
+    }
+
+    /// Goes on to a sample.
+    #[inline(always)]
+    pub(super) fn reach(&mut self, sample: ElementSample) {
+        self.last = sample;
+    }
+
+    /// Keeps the last sample of an element, at this step; the one after a jump replaces the one before it.
+    pub(super) fn keep(&self, element: ElementId, step: usize, kept: &mut Vec<Contribution>) {
+        kept.pop_if(|last| last.element == element && last.step == step);
+        let ElementSample { error, contact } = self.last;
+        kept.push(Contribution { element, step, error, contact: contact.total, accumulated: self.integral });
+    }
 }
 
 /// The fields of an element at one half-step instant that do not depend on tractions.
@@ -93,12 +128,16 @@ pub(super) struct ElementSampler<'a, 'p, const D: usize, const N: usize> {
     id: ElementId,
     pub(super) element: &'a Element<D, N>,
     measure: ElementMeasure<'a, D, N>,
+    forms: EnergyForms,
+    lane: usize,
 }
 
 impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     pub(super) fn new(shared: &'a Sampling<'a, 'p, D, N>, id: ElementId) -> Self {
-        let element = &shared.equilibration.elements[id.index()];
-        Self { shared, id, element, measure: ElementMeasure::new(shared.problem, element, id, shared.choice) }
+        let (problem, element) = (shared.problem, &shared.equilibration.elements[id.index()]);
+        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let [lane, ..] = forms.prepare(problem, std::iter::once(id));
+        Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice), forms, lane }
     }
 
     /// The fields of the element at a half-step instant.
@@ -111,38 +150,43 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     }
 
     /// The fields that balance at a level; `contact` gives the contact node at each local node.
-    #[inline(always)]
-    pub(super) fn balanced(&self, level: &Equilibrated<D>, contact: &[Option<usize>; N], side: Side) -> Balanced<D, N> {
-        self.measure.balanced(self.shared.equilibration, level, contact, side)
+    pub(super) fn balanced(
+        &self,
+        level: &EquilibratedLevel<'_, D>,
+        contact: &[Option<usize>; N],
+        side: Side,
+    ) -> Balanced<D, N> {
+        self.measure.balanced(&self.measure.nodal_balance(self.shared.equilibration, level, contact, side))
     }
 
     /// Checks their resultants, and their stress at one level of so many, each element in its turn: the map that makes the
     /// stress is linear and the same at all levels.
-    #[inline(always)]
     pub(super) fn check(
         &self,
         balanced: &Balanced<D, N>,
-        level: &Equilibrated<D>,
+        level: &EquilibratedLevel<'_, D>,
         turns: usize,
         residuals: &mut Residuals,
     ) {
-        self.measure.check_resultants(balanced, level.force_scale(), residuals);
+        let residual = self.measure.resultant_residual(balanced, level.force_scale());
+        residuals.element_resultants = worse(residuals.element_resultants, residual);
         if (level.index() + self.id.index()).is_multiple_of(turns) {
             self.measure.check_stress(balanced, level.force_scale(), residuals);
         }
     }
 
     /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are wanted.
-    #[inline(always)]
     pub(super) fn sample(
         &self,
         interval: &ElementInterval<'_, D, N>,
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) -> [ElementSample; 3] {
-        let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, k: usize| ElementSample {
-            error: self.measure.error(balanced, &at.increment, &at.motion, interval.hats[k]),
-            contact: interval.contact[k],
+        let form = self.forms.of(self.shared.problem, self.id, self.lane);
+        let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, k: usize| {
+            let hats = |loading: &_| hat_energy(loading, interval.hats[k]);
+            let error = self.measure.error(&form, balanced, &at.increment, &at.motion, hats);
+            ElementSample { error, contact: interval.contact[k] }
         };
         let [before, after] = interval.balanced;
         if let Some(start) = interval.start {
@@ -159,14 +203,10 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         [start, middle.unwrap_or_default(), end]
     }
 
-    /// Keeps a sample if it is wanted; the one after a jump replaces the one before it.
-    #[inline]
+    /// Keeps a sample if it is wanted.
     fn keep(&self, step: usize, course: &Course, kept: &mut Vec<Contribution>) {
         if self.shared.maps.want(step) {
-            kept.pop_if(|last| last.element == self.id && last.step == step);
-            let ElementSample { error, contact } = course.last;
-            let (contact, accumulated) = (contact.total, course.integral);
-            kept.push(Contribution { element: self.id, step, error, contact, accumulated });
+            course.keep(self.id, step, kept);
         }
     }
 }

@@ -7,27 +7,22 @@ use super::far::{self, FarSums};
 use super::maps::{Balance, Maps};
 use super::near::{ContactSampling, NearElement, near_elements};
 use super::prepare::Preparation;
+use super::sampled_levels::SampledLevels;
 use super::sampling::{Course, Sampling};
 use super::totals::{self, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
+use crate::lanes::LANES;
 use crate::measure::ElementError;
 use crate::options::{Acceleration, Options};
 use crate::reconstruction;
 use crate::residual::{Residuals, worse};
 use crate::time_level::ForcesKnown;
-use crate::traction::{Equilibrated, Equilibration};
+use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
 use rayon::prelude::*;
-
-/// Memory that a window may take unless told otherwise (bytes).
-const MODEST_MEMORY: usize = 1 << 30;
-/// More levels than this gain nothing; fewer make the maps of the elements too often.
-const LEVELS: std::ops::RangeInclusive<usize> = 8..=64;
-/// Elements times levels that are worked on between two looks at whether to stop: about a second.
-const WORK: usize = 2_000_000;
 
 /// Memory of one level (bytes).
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
@@ -36,17 +31,16 @@ fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, optio
     8 * D * (fields * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
 }
 
-/// Number of intervals worked on at once.
-fn size<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
-    let wanted = (WORK / problem.mesh().element_count()).clamp(*LEVELS.start(), *LEVELS.end());
-    options.window.unwrap_or_else(|| wanted.min(MODEST_MEMORY / bytes_of_level(problem, options)).max(1))
+/// Number of levels worked on at once.
+fn size(options: &Options) -> usize {
+    options.window.map_or(LANES, |window| window.min(LANES))
 }
 
 /// About how much memory (bytes) an estimate takes beside its problem: its levels and the data that it keeps of
 /// each element and sample. The queues of elements around contact nodes are not foreseen.
 #[must_use]
 pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
-    let levels = size(problem, options).min(times.step_count()).saturating_add(1);
+    let levels = size(options).min(times.step_count()).saturating_add(1);
     // Elements are prepared twice, for the forces of the levels and for the stars.
     let element = 2 * size_of::<Element<D, N>>() + 8 * N * (D + 1) + size_of::<ElementError>();
     // At the level and half way to the next.
@@ -70,8 +64,10 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     /// Number of intervals worked on at once.
     size: usize,
     /// The last level of the window before.
-    carried: Option<Equilibrated<D>>,
+    carried: Option<KeptLevel<D>>,
     levels: Vec<ForcesKnown<D>>,
+    /// Memory of the levels at work.
+    equilibrated: EquilibratedLevels<D>,
     near: Vec<NearElement<D, N>>,
     is_near: Vec<bool>,
     far: FarSums,
@@ -91,9 +87,10 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             times,
             equilibration: Equilibration::new(problem),
             choice: options.acceleration(D),
-            size: size(problem, options),
+            size: size(options),
             carried: None,
             levels: Vec::new(),
+            equilibrated: EquilibratedLevels::default(),
             near,
             is_near,
             far: FarSums::default(),
@@ -106,7 +103,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     /// Takes in a level; works when the window is full.
     pub(super) fn push(&mut self, pool: &ThreadPool, level: ForcesKnown<D>, preparation: &Preparation<'p, D, N>) {
         self.levels.push(level);
-        if self.levels.len() + usize::from(self.carried.is_some()) > self.size {
+        if self.levels.len() >= self.size {
             pool.install(|| self.work(preparation));
         }
     }
@@ -125,42 +122,28 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         if self.levels.is_empty() {
             return;
         }
-        let (first, mut levels) = self.equilibrate();
-        preparation.reconstruction().improve(&self.equilibration, self.choice, &mut levels[first..]);
-        self.sample(preparation, first, &levels);
-        self.carried = levels.pop();
+        let mut levels = std::mem::take(&mut self.equilibrated);
+        let miss = self.equilibration.solve(std::mem::take(&mut self.levels), &mut levels);
+        self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
+        preparation.reconstruction().improve(&self.equilibration, self.choice, &mut levels);
+        self.sample(preparation, &levels);
+        self.carried = levels.keep_last();
+        self.equilibrated = levels;
     }
 
-    /// The level carried over and the new ones, equilibrated; the first new one is at the index returned.
-    fn equilibrate(&mut self) -> (usize, Vec<Equilibrated<D>>) {
-        let mut levels: Vec<_> = self.carried.take().into_iter().collect();
-        let first = levels.len();
-        for forces in std::mem::take(&mut self.levels) {
-            let stress = self.equilibration.stress(&forces);
-            let (level, miss) = self.equilibration.solve_stars(forces, stress);
-            self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
-            levels.push(level);
-        }
-        (first, levels)
-    }
-
-    /// Samples all elements at the levels from `first` on.
-    fn sample(&mut self, preparation: &Preparation<'p, D, N>, first: usize, levels: &[Equilibrated<D>]) {
+    /// Samples all elements at some levels.
+    fn sample(&mut self, preparation: &Preparation<'p, D, N>, levels: &EquilibratedLevels<D>) {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
         let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks());
         let balance = Balance { problem, equilibration, choice, concentration: reconstruction.concentration() };
-        self.maps.begin(times.instants(), &balance, &levels[first..]);
+        self.maps.begin(times.instants(), &balance, levels);
         let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
-        let blocks = far::sample(&shared, levels, first, &self.is_near, &mut self.courses);
+        let sampled = SampledLevels { before: self.carried.as_ref().map(KeptLevel::level), levels };
+        let (residuals, kept) = far::sample(&shared, &sampled, &self.is_near, &mut self.courses, &mut self.far);
         let context = ContactSampling { shared: &shared, reconstruction, tracks };
-        self.near.par_iter_mut().for_each(|near| near.advance(&context, levels));
-        let mut sums = FarSums::new(levels.len() - first, levels.len() - 1);
-        for block in &blocks {
-            sums.add(&block.sums);
-            self.residuals.merge(&block.residuals);
-            self.maps.put(&block.kept);
-        }
-        self.far.extend(sums);
+        self.near.par_iter_mut().for_each(|near| near.advance(&context, &sampled));
+        self.residuals.merge(&residuals);
+        self.maps.put(&kept);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::options::{Acceleration, Options, Reconstruction};
 use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
-use crate::traction::{Equilibrated, Equilibration};
+use crate::traction::{EquilibratedLevels, Equilibration};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
 pub(crate) use corrected::Concentration;
@@ -148,7 +148,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         &self,
         _equilibration: &Equilibration<'_, D, N>,
         _choice: Acceleration,
-        _levels: &mut [Equilibrated<D>],
+        _levels: &mut EquilibratedLevels<D>,
     ) {
     }
 }

@@ -1,6 +1,7 @@
 //! The stress of a bar element: the quadratic that its loading determines.
 
 use super::{Loading, StressResiduals};
+use crate::lanes::Value;
 use crate::residual::worse;
 use percute_core::material::LinearLaw;
 
@@ -19,20 +20,22 @@ impl BarStress {
     }
 
     /// Stress at both ends and in the middle: σ(0) = −F̂_0 and σ' = Γ_DA − f_d.
-    fn stress<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; 3] {
+    #[inline(always)]
+    fn stress<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> [T; 3] {
         // Facet 1, at node 0, has the outward normal −1.
         let start = -loading.traction[1][0][0];
         let (g0, g1) = (loading.volume[0][0], loading.volume[1][0]);
-        let at = |s: f64| start + self.length * s * (g0 + 0.5 * s * (g1 - g0));
+        let at = |s: f64| start + (g0 + (g1 - g0) * (0.5 * s)) * (self.length * s);
         [at(0.0), at(0.5), at(1.0)]
     }
 
     /// ½∫σ²/E; the square of a quadratic with nodal values a, m, b integrates to
     /// L(4a² + 16m² + 4b² + 4am + 4mb − 2ab)/30.
-    pub(super) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
+    #[inline(always)]
+    pub(super) fn energy<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> T {
         let [a, m, b] = self.stress(loading);
-        let square = 4.0 * (a * a + b * b) + 16.0 * m * m + 4.0 * m * (a + b) - 2.0 * a * b;
-        0.5 * self.compliance * self.length * square / 30.0
+        let square = (a * a + b * b) * 4.0 + m * m * 16.0 + m * (a + b) * 4.0 - a * b * 2.0;
+        square * (0.5 * self.compliance * self.length / 30.0)
     }
 
     /// By Simpson's rule, exact for a quadratic.

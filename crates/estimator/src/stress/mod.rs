@@ -2,11 +2,14 @@
 //! and with Γ_DA − f_d, exactly, and of least complementary energy among a family.
 
 mod bar;
+mod energy_form;
 mod piecewise;
 mod reference;
 mod triangle;
 
+use crate::lanes::Value;
 use bar::BarStress;
+pub(crate) use energy_form::{EnergyForm, EnergyForms};
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
 pub(crate) use piecewise::MONOMIALS;
@@ -15,12 +18,12 @@ pub(crate) use triangle::TriangleStress;
 
 /// What an element's stress must balance, per unit of section or thickness.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Loading<const D: usize, const N: usize> {
+pub(crate) struct Loading<const D: usize, const N: usize, T = f64> {
     /// |e| F̂ at the nodes of each facet: facet k lies opposite to node k, its p-th node is
     /// k + 1 + p (mod N).
-    pub(crate) traction: [[[f64; D]; D]; N],
+    pub(crate) traction: [[[T; D]; D]; N],
     /// Γ_DA − f_d at the nodes (N/m³).
-    pub(crate) volume: [[f64; D]; N],
+    pub(crate) volume: [[T; D]; N],
 }
 
 /// Local number of the p-th node of the facet opposite to node k.
@@ -29,10 +32,20 @@ pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
     (k + 1 + p) % N
 }
 
-/// Position of node i in the facet opposite to node k.
-#[inline]
-pub(crate) const fn facet_position<const N: usize>(k: usize, i: usize) -> usize {
-    (i + N - k - 1) % N
+/// σ = λ tr ε 1 + 2G ε of a displacement gradient (Pa), at some levels.
+#[inline(always)]
+pub(crate) fn hooke<T: Value, const D: usize>(law: &impl LinearLaw, gradient: &[[T; D]; D]) -> [[T; D]; D] {
+    let (lambda, shear) = law.moduli();
+    let mut trace = T::ZERO;
+    (0..D).for_each(|a| trace += gradient[a][a]);
+    let mut stress = [[T::ZERO; D]; D];
+    for a in 0..D {
+        for b in 0..D {
+            stress[a][b] = (gradient[a][b] + gradient[b][a]) * shear;
+        }
+        stress[a][a] += trace * lambda;
+    }
+    stress
 }
 
 /// Largest relative violations of the equations of one element's stress.
@@ -62,23 +75,6 @@ impl StressMap {
                 let corners = std::array::from_fn(|i| [points[i][0], points[i][1]]);
                 Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
             }
-        }
-    }
-
-    /// ½∫σ : K⁻¹ σ (J per unit of section or thickness) of the stress that balances a loading.
-    #[inline]
-    pub(crate) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
-        match self {
-            Self::Bar(map) => map.energy(loading),
-            Self::Triangle(map) => map.energy(loading),
-        }
-    }
-
-    /// The slope of [`StressMap::energy`] in the tractions; in 1D, where nothing is to be chosen, zero.
-    pub(crate) fn traction_slope<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [[[f64; D]; D]; N] {
-        match self {
-            Self::Bar(_) => [[[0.0; D]; D]; N],
-            Self::Triangle(map) => map.traction_slope(loading),
         }
     }
 

@@ -6,6 +6,7 @@ use super::reference::{
     inner_edge, load_share, quadratic_gradients,
 };
 use super::{Loading, StressResiduals};
+use crate::lanes::Value;
 use crate::residual::worse;
 use nalgebra::{Matrix2, Matrix3};
 use percute_core::material::LinearLaw;
@@ -29,7 +30,7 @@ impl TriangleStress {
         let map = Matrix2::from_fn(|c, k| points[k + 1][c] - points[0][c]);
         // Elements are not degenerate.
         let (jacobian, inverse) = (map.determinant(), map.try_inverse().unwrap_or_else(Matrix2::zeros));
-        let form = reference_compliance(&map, law);
+        let form = reference_compliance(&map, law.compliance::<2>());
         let mut all = [[0.0; ALL]; ALL];
         let reference = Reference::get();
         for (gram, (a, b)) in reference.gram.iter().zip(PAIRS) {
@@ -47,22 +48,11 @@ impl TriangleStress {
     /// The loads on the reference triangle.
     #[inline(always)]
     fn pull_back<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> [f64; LOADS] {
-        let mut loads = [0.0; LOADS];
-        let mut put = |slot: usize, v: &[f64; D], factor: f64| {
-            for c in 0..2 {
-                loads[slot + c] = factor * (self.inverse[(c, 0)] * v[0] + self.inverse[(c, 1)] * v[1]);
-            }
-        };
-        for k in 0..N {
-            for p in 0..D {
-                put(4 * k + 2 * p, &loading.traction[k][p], 1.0);
-            }
-            put(12 + 2 * k, &loading.volume[k], self.jacobian);
-        }
-        loads
+        pull_back(&self.inverse, self.jacobian, loading)
     }
 
-    #[inline]
+    /// ½∫σ : K⁻¹ σ (J per unit of thickness).
+    #[cfg(test)]
     pub(crate) fn energy<const D: usize, const N: usize>(&self, loading: &Loading<D, N>) -> f64 {
         let loads = self.pull_back(loading);
         // Column by column: the inner loop has no sum to wait for.
@@ -84,16 +74,7 @@ impl TriangleStress {
                 *sum += 2.0 * entry * load;
             }
         }
-        let mut slope = [[[0.0; D]; D]; N];
-        for (k, slope) in slope.iter_mut().enumerate() {
-            for (p, slope) in slope.iter_mut().enumerate() {
-                let at = 4 * k + 2 * p;
-                for (c, slope) in slope.iter_mut().enumerate() {
-                    *slope = self.inverse[(0, c)] * product[at] + self.inverse[(1, c)] * product[at + 1];
-                }
-            }
-        }
-        slope
+        push_forward(&self.inverse, |k| product[k])
     }
 
     /// Stress (11, 22, 12) at the nodes of the sub-triangles, on the real triangle.
@@ -234,6 +215,40 @@ impl TriangleStress {
     }
 }
 
+/// The loads on the reference triangle; `inverse` is B⁻¹, `jacobian` J.
+#[inline(always)]
+pub(super) fn pull_back<T: Value, const D: usize, const N: usize>(
+    inverse: &Matrix2<f64>,
+    jacobian: f64,
+    loading: &Loading<D, N, T>,
+) -> [T; LOADS] {
+    let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [inverse[(c, 0)], inverse[(c, 1)]]);
+    let own = |v: &[T; D]| [v[0] * xx + v[1] * xy, v[0] * yx + v[1] * yy];
+    let scaled = |v: &[T; D]| own(v).map(|v| v * jacobian);
+    let Loading { traction: t, volume: g } = loading;
+    // One by one: a loop over them would be compiled into one over their components.
+    let [[a, b], [c, d], [e, f]] =
+        [[own(&t[0][0]), own(&t[0][1])], [own(&t[1][0]), own(&t[1][1])], [own(&t[2][0]), own(&t[2][1])]];
+    let [p, q, r] = [scaled(&g[0]), scaled(&g[1]), scaled(&g[2])];
+    [a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1], e[0], e[1], f[0], f[1], p[0], p[1], q[0], q[1], r[0], r[1]]
+}
+
+/// The slope in the tractions of the real triangle, from that in each load on the reference triangle.
+#[inline(always)]
+pub(super) fn push_forward<T: Value, const D: usize, const N: usize>(
+    inverse: &Matrix2<f64>,
+    slope: impl Fn(usize) -> T,
+) -> [[[T; D]; D]; N] {
+    let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [inverse[(0, c)], inverse[(1, c)]]);
+    let own = |at: usize| {
+        let (x, y) = (slope(at), slope(at + 1));
+        let both = [x * xx + y * xy, x * yx + y * yy];
+        std::array::from_fn(|c| both[c])
+    };
+    let all = [[own(0), own(2)], [own(4), own(6)], [own(8), own(10)]];
+    std::array::from_fn(|k| std::array::from_fn(|p| all[k][p]))
+}
+
 /// σ n at a node of a sub-triangle.
 fn traction_at(stress: &[f64; COEFFICIENTS], sub: usize, node: usize, normal: [f64; 2]) -> [f64; 2] {
     let s = |c: usize| stress[at(sub, node, c)];
@@ -242,8 +257,7 @@ fn traction_at(stress: &[f64; COEFFICIENTS], sub: usize, node: usize, normal: [f
 
 /// The energy form α σ:σ − β (tr σ)² of σ = B σ̂ Bᵀ in the components of σ̂; with C = BᵀB it is
 /// α tr(Cσ̂Cσ̂) − β (C:σ̂)².
-fn reference_compliance(map: &Matrix2<f64>, law: &impl LinearLaw) -> [[f64; 3]; 3] {
-    let (alpha, beta) = law.compliance::<2>();
+pub(super) fn reference_compliance(map: &Matrix2<f64>, (alpha, beta): (f64, f64)) -> [[f64; 3]; 3] {
     let metric = |i: usize, j: usize| map[(0, i)] * map[(0, j)] + map[(1, i)] * map[(1, j)];
     let (c11, c22, c12) = (metric(0, 0), metric(1, 1), metric(0, 1));
     let trace = [c11, c22, 2.0 * c12];

@@ -1,42 +1,126 @@
-//! A time level with the stress of the finite elements and equilibrated tractions.
+//! Time levels with equilibrated tractions, side by side.
 
-use super::{Equilibration, MassTerm};
-use crate::element::{BLOCK, Element};
+use super::star_solver::{Compatibility, StarSolver};
+use super::{EXPLAINED, Equilibration, MassTerm};
+use crate::blocks::{BLOCK, StarBlock};
+use crate::element::Element;
+use crate::lanes::{FieldLanes, Lanes, Value};
 use crate::residual::worse;
+use crate::simd::dispatch;
+use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
-use percute_core::ids::{ElementId, NodeId};
-use percute_core::material::Law;
+use percute_core::ids::{ElementId, FacetId, NodeId};
 use rayon::prelude::*;
 
-/// σ_h of a level.
-#[derive(Clone, Debug)]
-pub(crate) struct FemStress<const D: usize> {
-    /// σ_h of each element (Pa).
-    pub(super) of_element: Vec<[[f64; D]; D]>,
+/// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only [`Equilibration`] makes them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EquilibratedLevels<const D: usize> {
+    forces: Vec<ForcesKnown<D>>,
     /// Largest nodal force of any element (N).
-    pub(super) force_scale: f64,
+    force_scale: Lanes,
+    /// Projected traction moments on the links of all stars (N).
+    moments: Vec<[Lanes; D]>,
+    /// Those around contact nodes before t_n, where the contact force jumps there.
+    moments_before: Vec<Option<Vec<[f64; D]>>>,
 }
 
-#[cfg(test)]
-impl<const D: usize> FemStress<D> {
-    /// For tests that change it.
-    pub(crate) fn of_element_mut(&mut self) -> &mut [[[f64; D]; D]] {
-        &mut self.of_element
+/// One of these levels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EquilibratedLevel<'a, const D: usize> {
+    forces: &'a ForcesKnown<D>,
+    force_scale: f64,
+    moments: Moments<'a, D>,
+    moments_before: Option<&'a [[f64; D]]>,
+}
+
+/// The moments of a level on the links of all stars (N).
+#[derive(Clone, Copy, Debug)]
+enum Moments<'a, const D: usize> {
+    Alone(&'a [[f64; D]]),
+    Lane(&'a [[Lanes; D]], usize),
+}
+
+/// A level that is kept for the interval that begins there.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptLevel<const D: usize> {
+    forces: ForcesKnown<D>,
+    force_scale: f64,
+    moments: Vec<[f64; D]>,
+}
+
+impl<const D: usize> EquilibratedLevels<D> {
+    /// Number of levels.
+    pub(crate) fn len(&self) -> usize {
+        self.forces.len()
+    }
+
+    /// One of them.
+    pub(crate) fn level(&self, k: usize) -> EquilibratedLevel<'_, D> {
+        EquilibratedLevel {
+            forces: &self.forces[k],
+            force_scale: self.force_scale.0[k],
+            moments: Moments::Lane(&self.moments, k),
+            moments_before: self.moments_before[k].as_deref(),
+        }
+    }
+
+    /// The fields that the stars were solved for.
+    pub(crate) fn forces(&self) -> &[ForcesKnown<D>] {
+        &self.forces
+    }
+
+    /// f_d on an element (N/m³).
+    pub(crate) fn body_force(&self, element: ElementId) -> [Lanes; D] {
+        let of = |k: usize, c: usize| {
+            self.forces.get(k).and_then(|f| f.level.body_force.get(element.index())).map_or(0.0, |f| f[c])
+        };
+        std::array::from_fn(|c| Lanes::at_levels(|k| of(k, c)))
+    }
+
+    /// Largest nodal force of any element (N).
+    pub(crate) fn force_scale(&self) -> Lanes {
+        self.force_scale
+    }
+
+    /// The moments on the links of all stars (N).
+    pub(crate) fn moments(&self) -> &[[Lanes; D]] {
+        &self.moments
+    }
+
+    /// The same, for changes that balance. No instant of these levels may be a jump.
+    pub(crate) fn moments_mut(&mut self) -> &mut [[Lanes; D]] {
+        &mut self.moments
+    }
+
+    /// For tests that spoil them.
+    #[cfg(test)]
+    pub(crate) fn forces_mut(&mut self) -> &mut [ForcesKnown<D>] {
+        &mut self.forces
+    }
+
+    /// The last level, and all the others' fields, which are no longer needed.
+    pub(crate) fn keep_last(&mut self) -> Option<KeptLevel<D>> {
+        let lane = self.forces.len().checked_sub(1)?;
+        Some(KeptLevel {
+            forces: self.forces.swap_remove(lane),
+            force_scale: self.force_scale.0[lane],
+            moments: self.moments.iter().map(|moment| moment.map(|m| m.0[lane])).collect(),
+        })
     }
 }
 
-/// A level of which all fields are known. Only [`Equilibration`] makes one.
-#[derive(Clone, Debug)]
-pub(crate) struct Equilibrated<const D: usize> {
-    forces: ForcesKnown<D>,
-    stress: FemStress<D>,
-    /// Projected traction moments on the links of all stars (N).
-    moments: Vec<[f64; D]>,
-    /// Those around contact nodes before t_n, where the contact force jumps there.
-    moments_before: Option<Vec<[f64; D]>>,
+impl<const D: usize> KeptLevel<D> {
+    pub(crate) fn level(&self) -> EquilibratedLevel<'_, D> {
+        EquilibratedLevel {
+            forces: &self.forces,
+            force_scale: self.force_scale,
+            moments: Moments::Alone(&self.moments),
+            moments_before: None,
+        }
+    }
 }
 
-impl<const D: usize> Equilibrated<D> {
+impl<'a, const D: usize> EquilibratedLevel<'a, D> {
     /// n.
     #[inline]
     pub(crate) fn index(&self) -> usize {
@@ -45,132 +129,264 @@ impl<const D: usize> Equilibrated<D> {
 
     /// The fields that the stars were solved for.
     #[inline]
-    pub(crate) fn forces(&self) -> &ForcesKnown<D> {
-        &self.forces
-    }
-
-    /// For tests that spoil them.
-    #[cfg(test)]
-    pub(crate) fn forces_mut(&mut self) -> &mut ForcesKnown<D> {
-        &mut self.forces
-    }
-
-    /// σ_h of each element (Pa).
-    #[inline]
-    pub(crate) fn stress(&self) -> &[[[f64; D]; D]] {
-        &self.stress.of_element
+    pub(crate) fn forces(&self) -> &'a ForcesKnown<D> {
+        self.forces
     }
 
     /// Largest nodal force of any element (N).
     #[inline]
     pub(crate) fn force_scale(&self) -> f64 {
-        self.stress.force_scale
+        self.force_scale
     }
 
-    /// The moments on the links of all stars (N), for changes that balance. No instant of such a level may be a jump.
-    pub(crate) fn moments_mut(&mut self) -> &mut [[f64; D]] {
-        &mut self.moments
+    #[inline]
+    fn moment(&self, link: usize) -> [f64; D] {
+        match self.moments {
+            Moments::Alone(moments) => moments[link],
+            Moments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),
+        }
     }
 }
 
-impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
-    /// σ_h of every element, and the largest nodal force.
-    pub(crate) fn stress(&self, forces: &ForcesKnown<D>) -> FemStress<D> {
-        let displacement = &forces.level.displacement;
-        let mut stress = vec![[[0.0; D]; D]; self.elements.len()];
-        let blocks = stress.par_chunks_mut(BLOCK).zip(self.elements.par_chunks(BLOCK)).enumerate();
-        let largest = blocks.map(|(block, (stress, elements))| {
-            let mut largest: f64 = 0.0;
-            for (k, (stress, element)) in stress.iter_mut().zip(elements).enumerate() {
-                let law = self.problem.material(ElementId::new(block * BLOCK + k));
-                *stress = law.stress(&element.gradient(&element.gather(displacement)));
-                largest = largest.max(largest_force(element, stress, &forces.acceleration));
-            }
-            largest
-        });
-        let force_scale = largest.reduce(|| 0.0, f64::max);
-        FemStress { of_element: stress, force_scale }
-    }
+/// The fields of the nodes and elements of a block of stars.
+#[derive(Clone, Debug, Default)]
+struct StarFields<const D: usize> {
+    displacement: FieldLanes<D>,
+    acceleration: FieldLanes<D>,
+    lumping_difference: FieldLanes<D>,
+    /// σ_h (Pa).
+    stress: Vec<[[Lanes; D]; D]>,
+    /// f_d (N/m³), empty if there is none.
+    body_force: Vec<[Lanes; D]>,
+}
 
-    /// Solves the star problems of a level, and returns the largest relative miss of their equations too.
-    pub(crate) fn solve_stars(&self, forces: ForcesKnown<D>, stress: FemStress<D>) -> (Equilibrated<D>, f64) {
+impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
+    /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels. Returns the largest relative miss of their equations. `levels`
+    /// gives its memory.
+    pub(crate) fn solve(&self, forces: Vec<ForcesKnown<D>>, levels: &mut EquilibratedLevels<D>) -> f64 {
+        levels.force_scale = self.force_scale(&forces);
         let stars = self.problem.mesh().stars();
-        let nodes = self.problem.mesh().node_count();
-        let mut moments = vec![[0.0; D]; stars.link_count()];
-        let mut blocks = Vec::with_capacity(nodes.div_ceil(BLOCK));
-        let mut rest = moments.as_mut_slice();
-        for start in (0..nodes).step_by(BLOCK) {
-            let end = (start + BLOCK).min(nodes);
-            let links = stars.link_range(NodeId::new(end - 1)).end - stars.link_range(NodeId::new(start)).start;
-            let (block, others) = rest.split_at_mut(links);
-            blocks.push((start..end, block));
+        levels.moments.resize(stars.link_count(), [Lanes::ZERO; D]);
+        let mut blocks = Vec::with_capacity(self.star_blocks.count());
+        let mut rest = levels.moments.as_mut_slice();
+        for block in 0..self.star_blocks.count() {
+            let nodes = self.star_blocks.centres(block);
+            let links =
+                stars.link_range(NodeId::new(nodes.end - 1)).end - stars.link_range(NodeId::new(nodes.start)).start;
+            let (moments, others) = rest.split_at_mut(links);
+            blocks.push((block, moments));
             rest = others;
         }
-        let solve = |(nodes, mut block): (std::ops::Range<usize>, &mut [[f64; D]])| {
-            let mut worst: f64 = 0.0;
-            for node in nodes.map(NodeId::new) {
-                let (moments, others) = std::mem::take(&mut block).split_at_mut(stars.link_range(node).len());
-                block = others;
-                let mass_term = MassTerm::new(&forces, node);
-                let star = self.solve_star(&forces.level, &stress, node, mass_term, &forces.density, moments);
-                worst = worse(worst, self.star_residual(star, &forces.level, &stress, node));
-            }
-            worst
+        let force_scale = levels.force_scale;
+        let solve = |fields: &mut StarFields<D>, (block, moments): (usize, &mut [[Lanes; D]])| {
+            dispatch(
+                #[inline(always)]
+                || self.solve_block(&forces, &force_scale, block, fields, moments),
+            )
         };
-        let miss = blocks.into_par_iter().map(solve).reduce(|| 0.0, worse);
-        let (moments_before, miss_before) = self.stars_before_jump(&forces, &stress).unzip();
-        let miss = worse(miss, miss_before.unwrap_or(0.0));
-        (Equilibrated { forces, stress, moments, moments_before }, miss)
+        let miss = blocks.into_par_iter().map_init(StarFields::default, solve).reduce(|| 0.0, worse);
+        let before: Vec<_> = forces.iter().map(|forces| self.stars_before_jump(forces)).collect();
+        let miss_before = forces.iter().zip(&before).zip(force_scale.0).map(|((forces, before), scale)| {
+            let Some((_, stars)) = before else { return 0.0 };
+            let residual = |&(node, star): &(NodeId, Compatibility<f64>)| self.star_residual(star, forces, scale, node);
+            stars.iter().map(residual).fold(0.0, worse)
+        });
+        let miss = miss_before.fold(miss, worse);
+        levels.moments_before = before.into_iter().map(|before| before.map(|(moments, _)| moments)).collect();
+        levels.forces = forces;
+        miss
+    }
+
+    /// Largest nodal force of any element at each level (N).
+    fn force_scale(&self, forces: &[ForcesKnown<D>]) -> Lanes {
+        let blocks = (0..self.elements.len().div_ceil(BLOCK)).into_par_iter();
+        let largest =
+            |fields: &mut StarFields<D>, block: usize| dispatch(|| self.force_scale_of(forces, block, fields));
+        blocks.map_init(StarFields::default, largest).reduce(|| Lanes::ZERO, Value::max)
+    }
+
+    #[inline(always)]
+    fn force_scale_of(&self, forces: &[ForcesKnown<D>], block: usize, fields: &mut StarFields<D>) -> Lanes {
+        let (range, block) = (self.blocks.elements(block), self.blocks.block(block));
+        fields.displacement.gather(block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        fields.acceleration.gather(block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
+        let mut largest = Lanes::ZERO;
+        for (e, local) in range.zip(block.local) {
+            let (element, law) = (&self.elements[e], self.problem.material(ElementId::new(e)));
+            let stress = hooke(law, &element.gradient(&fields.displacement.of(local)));
+            largest = largest.max(largest_force(element, &stress, &fields.acceleration.of(local)));
+        }
+        largest
+    }
+
+    /// Solves the stars of a block. Returns the largest residual.
+    #[inline(always)]
+    fn solve_block(
+        &self,
+        forces: &[ForcesKnown<D>],
+        force_scale: &Lanes,
+        block: usize,
+        fields: &mut StarFields<D>,
+        mut moments: &mut [[Lanes; D]],
+    ) -> f64 {
+        let (centres, place) = (self.star_blocks.centres(block), self.star_blocks.block(block));
+        let mixed = fields.gather(self, forces, &place);
+        let mut worst: f64 = 0.0;
+        for node in centres.map(NodeId::new) {
+            let star = self.problem.mesh().stars().star(node);
+            let (own, others) = std::mem::take(&mut moments).split_at_mut(star.links.len());
+            moments = others;
+            let acceleration = fields.acceleration.values();
+            let local = self.star_blocks.around(node);
+            let mass_term = if mixed {
+                let lumping_difference = fields.lumping_difference.values();
+                MassTerm::Mixed { acceleration, lumping_difference, nodes: place.local }
+            } else {
+                let own = self.position(star.elements[0], node);
+                MassTerm::Lumped(acceleration[place.local[local[0] as usize][own] as usize])
+            };
+            let ends = self.ends(&star, |facet| self.known_moments(forces, facet, node));
+            let solver = StarSolver {
+                all: self,
+                node,
+                elements: star.elements,
+                local,
+                stress: &fields.stress,
+                body_force: &fields.body_force,
+                mass_term,
+                ends: &ends,
+            };
+            let found = solver.solve(own);
+            let scale = found.scale.max(*force_scale * 1e-12);
+            let relative = found.miss / scale.max(Lanes::constant(f64::MIN_POSITIVE));
+            let largest = relative.0.into_iter().fold(0.0, worse);
+            if largest <= EXPLAINED {
+                worst = worse(worst, largest);
+                continue;
+            }
+            for (lane, forces) in forces.iter().enumerate() {
+                let star = Compatibility { miss: found.miss.0[lane], scale: found.scale.0[lane] };
+                worst = worse(worst, self.star_residual(star, forces, force_scale.0[lane], node));
+            }
+        }
+        worst
+    }
+
+    /// The known moments on a facet at a node, at each level.
+    #[inline(always)]
+    fn known_moments(&self, forces: &[ForcesKnown<D>], facet: FacetId, node: NodeId) -> [Lanes; D] {
+        if !self.is_known(facet) {
+            return [Lanes::ZERO; D];
+        }
+        let mut moments = [Lanes::ZERO; D];
+        for (lane, forces) in forces.iter().enumerate() {
+            let moment = self.known_moment(&forces.level, &forces.density, facet, node);
+            (0..D).for_each(|c| moments[c].0[lane] = moment[c]);
+        }
+        moments
     }
 
     /// The stars of contact nodes once more, with the values before a jump.
-    fn stars_before_jump(&self, forces: &ForcesKnown<D>, stress: &FemStress<D>) -> Option<(Vec<[f64; D]>, f64)> {
+    fn stars_before_jump(&self, forces: &ForcesKnown<D>) -> Option<(Vec<[f64; D]>, Vec<(NodeId, Compatibility<f64>)>)> {
         let before = forces.before.as_ref()?;
         let mut moments = vec![[0.0; D]; self.contact_links.last().copied().unwrap_or(0)];
-        let mut worst: f64 = 0.0;
+        let mut stars = Vec::new();
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
+            let node = contact.node;
             let links = &mut moments[self.contact_links[at]..self.contact_links[at + 1]];
-            let mass_term = MassTerm::Lumped(&before.acceleration[at]);
-            let star = self.solve_star(&forces.level, stress, contact.node, mass_term, &before.density, links);
-            worst = worse(worst, self.star_residual(star, &forces.level, stress, contact.node));
+            let star = self.problem.mesh().stars().star(node);
+            let stress: Vec<_> = star.elements.iter().map(|&e| self.stress_of(forces, e)).collect();
+            let body = &forces.level.body_force;
+            let body_force: Vec<_> = star.elements.iter().filter_map(|e| body.get(e.index()).copied()).collect();
+            let local: Vec<u32> = (0..star.elements.len() as u32).collect();
+            let ends = self.ends(&star, |facet| self.known_moment(&forces.level, &before.density, facet, node));
+            let solver = StarSolver {
+                all: self,
+                node,
+                elements: star.elements,
+                local: &local,
+                stress: &stress,
+                body_force: &body_force,
+                mass_term: MassTerm::Lumped(before.acceleration[at]),
+                ends: &ends,
+            };
+            stars.push((node, solver.solve(links)));
         }
-        Some((moments, worst))
+        Some((moments, stars))
+    }
+
+    /// σ_h of one element (Pa).
+    pub(crate) fn stress_of(&self, forces: &ForcesKnown<D>, element: ElementId) -> [[f64; D]; D] {
+        let data = &self.elements[element.index()];
+        hooke(self.problem.material(element), &data.gradient(&data.gather(&forces.level.displacement)))
     }
 
     /// The moments by which the star of local node `i` enters and leaves an element.
     #[inline]
-    pub(crate) fn moments_around<'l>(
+    pub(crate) fn moments_around(
         &self,
-        level: &'l Equilibrated<D>,
+        level: &EquilibratedLevel<'_, D>,
         data: &Element<D, N>,
         i: usize,
         contact: Option<usize>,
         side: Side,
-    ) -> (&'l [f64; D], &'l [f64; D]) {
+    ) -> [[f64; D]; 2] {
         let link = data.links[i] as usize;
-        match (contact, side, &level.moments_before) {
+        match (contact, side, level.moments_before) {
             (Some(at), Side::Before, Some(moments)) => {
                 let first = self.problem.mesh().stars().link_range(data.nodes[i]).start;
                 let link = self.contact_links[at] + link - first;
-                (&moments[link], &moments[link + 1])
+                [moments[link], moments[link + 1]]
             }
-            _ => (&level.moments[link], &level.moments[link + 1]),
+            _ => [level.moment(link), level.moment(link + 1)],
         }
     }
 }
 
+impl<const D: usize> StarFields<D> {
+    /// Takes the fields of a block. Returns whether there is a lumping difference.
+    #[inline(always)]
+    fn gather<const N: usize>(
+        &mut self,
+        all: &Equilibration<'_, D, N>,
+        forces: &[ForcesKnown<D>],
+        block: &StarBlock<'_, N>,
+    ) -> bool {
+        self.displacement.gather(block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        self.acceleration.gather(block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
+        let mixed = forces.iter().any(|f| f.level.lumping_difference.is_some());
+        if mixed {
+            self.lumping_difference.gather(block.nodes, forces.iter().map(|f| f.level.lumping_difference.as_deref()));
+        }
+        self.stress.clear();
+        self.stress.extend(block.cells().map(|(id, local)| {
+            let element = &all.elements[id.index()];
+            hooke(all.problem.material(id), &element.gradient(&self.displacement.of(local)))
+        }));
+        self.body_force.clear();
+        if forces.iter().any(|f| !f.level.body_force.is_empty()) {
+            let of = |e: usize, c: usize| {
+                Lanes::at_levels(|k| forces.get(k).and_then(|f| f.level.body_force.get(e)).map_or(0.0, |f| f[c]))
+            };
+            let vector = |&e: &u32| std::array::from_fn(|c| of(e as usize, c));
+            self.body_force.extend(block.elements.iter().map(vector));
+        }
+        mixed
+    }
+}
+
 /// Largest |Vσ∇φ_i| and lumped inertia force of an element (N).
+#[inline(always)]
 fn largest_force<const D: usize, const N: usize>(
     element: &Element<D, N>,
-    stress: &[[f64; D]; D],
-    acceleration: &[[f64; D]],
-) -> f64 {
-    let mut largest: f64 = 0.0;
+    stress: &[[Lanes; D]; D],
+    acceleration: &[[Lanes; D]; N],
+) -> Lanes {
+    let mut largest = Lanes::ZERO;
     for i in 0..N {
         let internal = element.internal_force(i, stress);
-        let a = &acceleration[element.nodes[i].index()];
         for c in 0..D {
-            largest = largest.max(internal[c].abs()).max((element.nodal_mass * a[c]).abs());
+            largest = largest.max(internal[c].abs()).max((acceleration[i][c] * element.nodal_mass).abs());
         }
     }
     largest

@@ -1,38 +1,28 @@
 //! The mass term of the star problems.
 
-use crate::element::Element;
-use crate::time_level::ForcesKnown;
-use percute_core::ids::NodeId;
+use crate::lanes::Value;
 
 /// The nodal inertia forces of the elements around a node. Their sum over the star is M ã at the node.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum MassTerm<'a, const D: usize> {
+pub(super) enum MassTerm<'a, const D: usize, const N: usize, T> {
     /// ρV/(D+1) ã_i, with ã of the node.
-    Lumped(&'a [f64; D]),
-    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at all nodes.
-    Mixed { acceleration: &'a [[f64; D]], lumping_difference: &'a [[f64; D]] },
+    Lumped([T; D]),
+    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at nodes, and the places of the nodes of each element.
+    Mixed { acceleration: &'a [[T; D]], lumping_difference: &'a [[T; D]], nodes: &'a [[u32; N]] },
 }
 
-impl<'a, const D: usize> MassTerm<'a, D> {
-    /// That of one node at a level.
-    #[inline]
-    pub(super) fn new(forces: &'a ForcesKnown<D>, node: NodeId) -> Self {
-        match &forces.level.lumping_difference {
-            None => Self::Lumped(&forces.acceleration[node.index()]),
-            Some(lumping_difference) => Self::Mixed { acceleration: &forces.acceleration, lumping_difference },
-        }
-    }
-
+impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
     /// Component `c` at local node `i` of an element, and the size of its parts before they cancel; both over the lumped mass
     /// of the element there (m/s²).
-    #[inline]
-    pub(super) fn at<const N: usize>(&self, element: &Element<D, N>, i: usize, c: usize) -> [f64; 2] {
+    #[inline(always)]
+    pub(super) fn at(&self, element: usize, i: usize, c: usize) -> [T; 2] {
         match *self {
             Self::Lumped(acceleration) => [acceleration[c], acceleration[c].abs()],
-            Self::Mixed { acceleration, lumping_difference } => {
-                let nodal = element.nodes.map(|n| acceleration[n.index()][c]);
-                let lumping = lumping_difference[element.nodes[i].index()][c];
-                let consistent = nodal.iter().fold(nodal[i], |sum, a| sum + a) / (D + 2) as f64;
+            Self::Mixed { acceleration, lumping_difference, nodes } => {
+                let nodes = &nodes[element];
+                let nodal = nodes.map(|n| acceleration[n as usize][c]);
+                let lumping = lumping_difference[nodes[i] as usize][c];
+                let consistent = nodal.iter().fold(nodal[i], |sum, a| sum + *a) * (1.0 / (D + 2) as f64);
                 [consistent + lumping, nodal.iter().fold(lumping.abs(), |size, a| size.max(a.abs()))]
             }
         }
@@ -73,11 +63,13 @@ mod tests {
         let held = |n: usize, c: usize| problem.prescribed().iter().any(|p| (p.node.index(), p.component) == (n, c));
         let free = |n, c| if held(n, c) { 0.0 } else { (lumped(n, c) - consistent[n][c]) / problem.mass()[n] };
         let lumping_difference: Vec<_> = (0..nodes).map(|n| [0, 1].map(|c| free(n, c))).collect();
-        let term = MassTerm::Mixed { acceleration: &acceleration, lumping_difference: &lumping_difference };
+        let cells: Vec<_> = elements.iter().map(|e| e.nodes.map(|n| n.index() as u32)).collect();
+        let term =
+            MassTerm::Mixed { acceleration: &acceleration, lumping_difference: &lumping_difference, nodes: &cells };
         let mut sums = vec![[0.0; 2]; nodes];
-        for element in &elements {
+        for (e, element) in elements.iter().enumerate() {
             for (i, c) in (0..3).flat_map(|i| [(i, 0), (i, 1)]) {
-                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(element, i, c)[0];
+                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(e, i, c)[0];
             }
         }
         assert!(problem.prescribed().len() > 3);

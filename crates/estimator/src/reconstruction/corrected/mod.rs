@@ -19,7 +19,7 @@ use crate::kinematic::ContactTrack;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
 use crate::time_level::SurfaceStep;
-use crate::traction::{Equilibrated, Equilibration};
+use crate::traction::{EquilibratedLevels, Equilibration};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
@@ -248,7 +248,12 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
     }
 
-    fn improve(&self, equilibration: &Equilibration<'_, D, N>, choice: Acceleration, levels: &mut [Equilibrated<D>]) {
+    fn improve(
+        &self,
+        equilibration: &Equilibration<'_, D, N>,
+        choice: Acceleration,
+        levels: &mut EquilibratedLevels<D>,
+    ) {
         if let Some(minimisation) = &self.minimisation {
             minimisation.improve(self.problem, equilibration, choice, levels, self.concentration.as_ref());
         }

@@ -282,10 +282,10 @@ impl<const D: usize> Basis<D> {
     }
 
     /// Adds the change of one lane to the moments on the links of all stars.
-    pub(super) fn add(&self, change: &[FacetMoments<D>], lane: usize, moments: &mut [[f64; D]]) {
+    pub(super) fn add(&self, change: &[FacetMoments<D>], lane: usize, moments: &mut [[crate::lanes::Lanes; D]]) {
         for (moments, link) in moments.iter_mut().zip(&self.links) {
             if let Some(Link { facet, position, sign }) = link {
-                (0..D).for_each(|c| moments[c] += sign * change[*facet as usize][*position][c][lane]);
+                (0..D).for_each(|c| moments[c].0[lane] += sign * change[*facet as usize][*position][c][lane]);
             }
         }
     }

@@ -1,9 +1,8 @@
 //! The energy of an element as a function of the moments on its edges.
 
-use crate::measure::ElementMeasure;
-use crate::stress::{LOADS, Loading};
-use crate::time_level::Side;
-use crate::traction::{Equilibrated, Equilibration};
+use crate::lanes::Value;
+use crate::measure::{ElementMeasure, NodalBalance};
+use crate::stress::{EnergyForm, LOADS, Loading};
 
 /// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
 pub(super) const MOMENTS: usize = 12;
@@ -13,33 +12,29 @@ pub(super) type Form = [[f64; MOMENTS]; MOMENTS];
 
 /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
 /// the stress of the displacement that is equilibrated.
-#[inline]
-pub(super) fn moment_slope<const D: usize, const N: usize>(
+#[inline(always)]
+pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
     measure: &ElementMeasure<'_, D, N>,
-    stress: &[[f64; D]; D],
-    equilibration: &Equilibration<'_, D, N>,
-    level: &Equilibrated<D>,
-) -> [f64; MOMENTS] {
-    let mut loading = measure.balanced(equilibration, level, &[None; N], Side::After).loading;
+    form: &EnergyForm<'_>,
+    fields: &NodalBalance<D, N, T>,
+    stress: &[[T; D]; D],
+) -> [T; MOMENTS] {
+    let mut loading = measure.balanced(fields).loading;
     measure.subtract_tractions(stress, &mut loading);
-    slope_of(measure, &loading)
+    moment_gradient(&form.traction_slope(&loading))
 }
 
 /// Its derivative.
-pub(super) fn moment_form<const D: usize, const N: usize>(measure: &ElementMeasure<'_, D, N>) -> Form {
+pub(super) fn moment_form<const D: usize, const N: usize>(
+    measure: &ElementMeasure<'_, D, N>,
+    form: &EnergyForm<'_>,
+) -> Form {
     std::array::from_fn(|i| {
         let mut moments = [[[0.0; D]; D]; N];
         moments[i / 4][i / 2 % 2][i % 2] = 1.0;
-        slope_of(measure, &Loading { traction: measure.tractions(&moments), volume: [[0.0; D]; N] })
+        let loading = Loading { traction: measure.tractions(&moments), volume: [[0.0; D]; N] };
+        moment_gradient(&form.traction_slope(&loading))
     })
-}
-
-#[inline]
-fn slope_of<const D: usize, const N: usize>(
-    measure: &ElementMeasure<'_, D, N>,
-    loading: &Loading<D, N>,
-) -> [f64; MOMENTS] {
-    moment_gradient(&measure.traction_slope(loading))
 }
 
 /// The slope of a product of stresses, linear in the loads of the element, tractions first.
@@ -51,14 +46,15 @@ pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOA
 
 /// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions are
 /// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
-#[inline]
-fn moment_gradient<const D: usize, const N: usize>(gradient: &[[[f64; D]; D]; N]) -> [f64; MOMENTS] {
-    let mut moments = [0.0; MOMENTS];
+#[inline(always)]
+fn moment_gradient<T: Value, const D: usize, const N: usize>(gradient: &[[[T; D]; D]; N]) -> [T; MOMENTS] {
+    let mut moments = [T::ZERO; MOMENTS];
     for (k, slope) in gradient.iter().enumerate() {
         for c in 0..D {
-            let sum: f64 = slope.iter().map(|s| s[c]).sum();
+            let mut sum = T::ZERO;
+            slope.iter().for_each(|s| sum += s[c]);
             for p in 0..D {
-                moments[4 * k + 2 * p + c] = D as f64 * ((D + 1) as f64 * slope[p][c] - sum);
+                moments[4 * k + 2 * p + c] = (slope[p][c] * (D + 1) as f64 - sum) * D as f64;
             }
         }
     }

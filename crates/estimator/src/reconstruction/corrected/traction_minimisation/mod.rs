@@ -13,10 +13,13 @@ mod descent;
 mod energy;
 
 use super::concentration::Concentration;
+use crate::blocks::BLOCK;
 use crate::element::Element;
-use crate::measure::ElementMeasure;
+use crate::measure::{BalanceFields, ElementMeasure};
 use crate::options::Acceleration;
-use crate::traction::{Equilibrated, Equilibration};
+use crate::simd::dispatch;
+use crate::stress::{EnergyForms, hooke};
+use crate::traction::{EquilibratedLevels, Equilibration};
 use basis::Basis;
 use energy::{Form, MOMENTS, moment_form, moment_slope, product_slope};
 use percute_core::ids::ElementId;
@@ -53,7 +56,11 @@ impl<const D: usize> TractionMinimisation<D> {
         }
         let form = |(e, element): (usize, &Element<D, N>)| {
             // Energy does not depend on Γ_DA here: any choice will do.
-            moment_form(&ElementMeasure::new(problem, element, ElementId::new(e), Acceleration::Closest))
+            let id = ElementId::new(e);
+            let measure = ElementMeasure::new(problem, element, id, Acceleration::Closest);
+            let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+            let [lane, ..] = forms.prepare(problem, std::iter::once(id));
+            moment_form(&measure, &forms.of(problem, id, lane))
         };
         let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
         Some(Self { basis: Basis::new(problem, &forms), forms })
@@ -79,38 +86,61 @@ impl<const D: usize> TractionMinimisation<D> {
         problem: &Problem<D, N>,
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
-        levels: &mut [Equilibrated<D>],
+        levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
     ) {
-        let count = levels.len();
-        let mut slopes = vec![[0.0; MOMENTS]; count * equilibration.elements.len()];
-        slopes.par_chunks_mut(count).zip(&equilibration.elements).enumerate().for_each(|(e, (slopes, element))| {
-            let measure = ElementMeasure::new(problem, element, ElementId::new(e), choice);
-            for (slope, level) in slopes.iter_mut().zip(levels.iter()) {
-                *slope = moment_slope(&measure, &level.stress()[e], equilibration, level);
-            }
-        });
+        let mut slopes = slopes(problem, equilibration, choice, levels);
         if let Some(concentration) = concentration {
-            for (at, level) in levels.iter().enumerate() {
-                concentration.each_element(problem, level.forces().density.hats(), |element, stress| {
+            for (lane, forces) in levels.forces().iter().enumerate() {
+                concentration.each_element(problem, forces.density.hats(), |element, stress| {
                     let slope = product_slope::<D, N>(&stress.products());
-                    let to = &mut slopes[element.index() * count + at];
-                    to.iter_mut().zip(slope).for_each(|(to, slope)| *to += slope);
+                    let to = &mut slopes[element.index()];
+                    to.iter_mut().zip(slope).for_each(|(to, slope)| to[lane] += slope);
                 });
             }
         }
-        levels.par_chunks_mut(LANES).enumerate().for_each(|(chunk, levels)| {
-            let first = chunk * LANES;
-            let slope = |e: usize| -> [Lanes; MOMENTS] {
-                let of = |lane: usize| levels.get(lane).map(|_| &slopes[e * count + first + lane]);
-                std::array::from_fn(|m| std::array::from_fn(|lane| of(lane).map_or(0.0, |slope| slope[m])))
-            };
-            let change = descent::descend(&self.basis, &self.forms, slope, STEPS);
-            for (lane, level) in levels.iter_mut().enumerate() {
-                self.basis.add(&change, lane, level.moments_mut());
-            }
-        });
+        let change = descent::descend(&self.basis, &self.forms, |e| slopes[e], STEPS);
+        for lane in 0..levels.len() {
+            self.basis.add(&change, lane, levels.moments_mut());
+        }
     }
+}
+
+/// The slopes of the energy of all elements in the moments on their edges.
+fn slopes<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    equilibration: &Equilibration<'_, D, N>,
+    choice: Acceleration,
+    levels: &EquilibratedLevels<D>,
+) -> Vec<[Lanes; MOMENTS]> {
+    let mut slopes = vec![[[0.0; LANES]; MOMENTS]; equilibration.elements.len()];
+    let block = |fields: &mut BalanceFields<D>, (block, slopes): (usize, &mut [[Lanes; MOMENTS]])| {
+        dispatch(
+            #[inline(always)]
+            || {
+                let range = equilibration.blocks.elements(block);
+                fields.gather(equilibration.blocks.block(block).nodes, levels);
+                fields.gather_displacement(equilibration.blocks.block(block).nodes, levels);
+                let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+                for start in range.clone().step_by(LANES) {
+                    let group = start..(start + LANES).min(range.end);
+                    let lanes = forms.prepare(problem, group.clone().map(ElementId::new));
+                    for (e, lane) in group.zip(lanes) {
+                        let (id, local) =
+                            (ElementId::new(e), &equilibration.blocks.block(block).local[e - range.start]);
+                        let element = &equilibration.elements[e];
+                        let measure = ElementMeasure::new(problem, element, id, choice);
+                        let balance = fields.nodal_balance(equilibration, levels, id, local);
+                        let stress = hooke(problem.material(id), &element.gradient(&fields.displacement(local)));
+                        let slope = moment_slope(&measure, &forms.of(problem, id, lane), &balance, &stress);
+                        slopes[e - range.start] = slope.map(|s| s.0);
+                    }
+                }
+            },
+        );
+    };
+    slopes.par_chunks_mut(BLOCK).enumerate().for_each_init(BalanceFields::default, block);
+    slopes
 }
 
 #[cfg(test)]
