@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
+
+WALL = False
+"""Whether times are those on the wall, not processor times."""
 
 YOUNG, POISSON, DENSITY = 70e9, 0.3, 2700.0
 FRICTION, SPEED = 0.2, 400.0
 ELASTICITY = YOUNG / (1 - POISSON**2) * np.array([[1, POISSON, 0], [POISSON, 1, 0], [0, 0, (1 - POISSON) / 2]])
 """Plane stress (Pa): σx, σy, τ from εx, εy, γ."""
+
+
+def clock() -> float:
+    """The clock of all programs (s)."""
+    return time.perf_counter() if WALL else time.process_time()
 
 
 @dataclass(frozen=True)

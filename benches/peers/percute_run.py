@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import block as common
 import numpy as np
 from block import Block
 
@@ -31,7 +32,7 @@ class Percute:
     def __init__(self, probe: Path, cells: tuple[int, int], *options: str) -> None:
         self.name = " ".join(["percute", *options])
         self.contact = "--free" not in options
-        command = [str(probe), *map(str, cells), *options]
+        command = [str(probe), *map(str, cells), *options, *(["--wall"] if common.WALL else [])]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         elements, step, gap = self._answer().split()
         self.elements, self.step, self.gap = int(elements), float(step), float(gap)

@@ -1,7 +1,7 @@
 """The same block in other programs and in percute, interleaved: `python benches/peers/run.py`.
 
 Makes an environment of its own in the target folder, builds percute's probe, checks that all programs compute the same, and prints
-nanoseconds per element and step, with ratios to percute in the same round. docs/speed.md describes it.
+nanoseconds per element and step, with ratios to a product K·u and to percute in the same round. docs/speed.md describes it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,12 @@ LARGEST_BATCH = 40960
 TOLERANCE = 1e-10
 """Of displacements and of the parts of η, relative to the largest. Rounding of sums in another order reaches 1e-12 in a
 hundred steps; a node that touches one step earlier or later changes them by more than 1e-6."""
+KEPT = {"MALLOC_MMAP_MAX_": "0", "MALLOC_TRIM_THRESHOLD_": str(10**12)}
+"""The allocator keeps freed memory: arrays of each batch would otherwise cost page faults, as buffers that are reused do not."""
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+PRODUCT = "product K·u in Rust, sparse rows"
+"""The measure of all ratios."""
 
 Measure = Callable[[], float]
 """Nanoseconds per element and step."""
@@ -37,9 +42,12 @@ Measure = Callable[[], float]
 
 def environment() -> None:
     """Go on in an environment that has the other programs, with one thread for each."""
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    if all(importlib.util.find_spec(name) for name in ("numba", "scipy", "akantu")):
+    complete = all(importlib.util.find_spec(name) for name in ("numba", "scipy", "akantu"))
+    if complete and os.environ.items() >= KEPT.items():
         return
+    os.environ.update(dict.fromkeys(THREADS, "1") | KEPT)
+    if complete:
+        os.execv(sys.executable, [sys.executable, __file__, *sys.argv[1:]])
     folder = Path(os.environ.get("CARGO_TARGET_DIR", HERE.parents[1] / "target")) / "peers"
     python = folder / "bin" / "python"
     if Path(sys.executable) == python:
@@ -59,6 +67,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--order", nargs="*", choices=("shuffled", "delaunay"), default=["shuffled", "delaunay"])
     parser.add_argument("--estimate", nargs="*", choices=("consistent", "corrected"), default=["consistent"])
+    parser.add_argument("--wall", action="store_true", help="times on the wall, not processor times")
     parser.add_argument("--json", type=Path, metavar="FILE", help="all rounds")
     parser.add_argument("--markdown", action="store_true", help="print tables of docs/speed.md")
     return parser.parse_args()
@@ -106,8 +115,8 @@ def programs(probe: Path, size: int) -> dict[str, Measure]:
     free.close()
     found = {peer.name: difference(peer.run, size, LENGTHS[size], REPEATS[size]) for peer in (percute, scipy, numba)}
     products = REPEATS[size] * 20
-    found["product K·u in Rust"] = lambda: percute.product(products) * 1e9 / (products * size)
-    found[akantu.name] = difference(akantu.run, size, LENGTHS[size], 1)
+    found[PRODUCT] = lambda: percute.product(products) * 1e9 / (products * size)
+    found[akantu.name] = difference(akantu.run, size, LENGTHS[size], max(1, REPEATS[size] // 10))
     return found
 
 
@@ -121,14 +130,14 @@ def orders(probe: Path, size: int, names: list[str]) -> dict[str, Measure]:
 
 def estimates(probe: Path, size: int, names: list[str], integrator: Measure) -> dict[str, Measure]:
     """Estimates at every step less the integrator, and the batched one beside them."""
-    from time import perf_counter
-
+    from block import clock
     from numpy_equilibration import LEVELS, Equilibration, steps_of
     from percute_run import Percute
 
     found: dict[str, Measure] = {}
-    for name in names:
-        run = Percute(probe, CELLS[size], "--estimate", name)
+    # Of a thousand steps only the first and the last are sampled, in both lengths of run.
+    for name, every in [(name, every) for every in ((), ("--every", "1000")) for name in names]:
+        run = Percute(probe, CELLS[size], "--estimate", name, *every)
         both = difference(run.run, size, ESTIMATED, 1)
         found[f"{run.name}, less integrator"] = lambda both=both: both() - integrator()
     if "consistent" in names and size <= LARGEST_BATCH:
@@ -142,35 +151,42 @@ def estimates(probe: Path, size: int, names: list[str], integrator: Measure) -> 
         free.close()
 
         def measure() -> float:
-            start = perf_counter()
+            start = clock()
             batch.parts(steps)
-            return (perf_counter() - start) * 1e9 / (LEVELS * size)
+            return (clock() - start) * 1e9 / (LEVELS * size)
 
         found[batch.name] = measure
     return found
 
 
-def row(name: str, times: list[float], reference: list[float], markdown: bool) -> str:
-    """One line: time, its range, ratio to the reference in the same rounds, its range."""
-    ratios = [time / other for time, other in zip(times, reference, strict=True)]
-    numbers = [
-        f"{median(times):.1f}", f"{min(times):.1f}–{max(times):.1f}",
-        f"{median(ratios):.2f}", f"{min(ratios):.2f}–{max(ratios):.2f}",
-    ]  # fmt: skip
-    if markdown:
-        return f"| {name} | {' | '.join(numbers)} |"
-    return f"{name:<46}{numbers[0]:>9}{numbers[1]:>16}{numbers[2]:>9}{numbers[3]:>16}"
+def ratios(times: list[float], reference: list[float]) -> list[float]:
+    """Ratios of times to those of another program in the same rounds."""
+    return [time / other for time, other in zip(times, reference, strict=True)]
 
 
-def table(title: str, times: dict[str, list[float]], reference: str, markdown: bool) -> None:
-    """Print the rows of one comparison."""
-    head = ["ns", "range", f"ratio to {reference}", "range"]
-    if markdown:
-        print(f"\n| {title} | {' | '.join(head)} |\n|---|---|---|---|---|")
-    else:
-        print(f"\n{title:<46}{head[0]:>9}{head[1]:>16}    {head[2]}")
+def table(size: int, times: dict[str, list[float]], markdown: bool) -> None:
+    """Print all programs at one size: times, and ratios to the product K·u and to percute's integrator."""
+    head = [f"{size} elements", "ns", "range", "over K·u", "range", "over percute"]
+    rows = []
     for name, values in times.items():
-        print(row(name, values, times[reference], markdown))
+        to_product, to_percute = ratios(values, times[PRODUCT]), ratios(values, times["percute"])
+        rows.append(
+            [
+                name,
+                f"{median(values):.1f}",
+                f"{min(values):.1f}–{max(values):.1f}",
+                f"{median(to_product):.2f}",
+                f"{min(to_product):.2f}–{max(to_product):.2f}",
+                f"{median(to_percute):.2f}",
+            ]
+        )
+    if markdown:
+        rows = [head, ["---"] * len(head), *rows]
+        print("\n" + "\n".join(f"| {' | '.join(cells)} |" for cells in rows))
+        return
+    print()
+    for name, *cells in [head, *rows]:
+        print(f"{name:<48}" + "".join(f"{cell:>15}" for cell in cells))
 
 
 def main() -> None:
@@ -178,27 +194,22 @@ def main() -> None:
     wanted = arguments()
     environment()
     sys.path.insert(0, str(HERE))
+    import block
     from percute_run import build
 
+    block.WALL = wanted.wall
     probe, results = build(), {}
     for size in wanted.sizes:
         print(f"{size} elements", file=sys.stderr)
         integrators = programs(probe, size)
-        integrator = integrators["percute"]
-        groups = {
-            "integrator": integrators,
-            "mesh": {"percute": integrator, **orders(probe, size, wanted.order)},
-            "estimate": estimates(probe, size, wanted.estimate, integrator),
-        }
-        times = {group: {name: [] for name in measures} for group, measures in groups.items()}
+        measures = integrators | orders(probe, size, wanted.order)
+        measures |= estimates(probe, size, wanted.estimate, integrators["percute"])
+        times: dict[str, list[float]] = {name: [] for name in measures}
         for _ in range(wanted.rounds):
-            for group, measures in groups.items():
-                for name, measure in measures.items():
-                    times[group][name].append(measure())
+            for name, measure in measures.items():
+                times[name].append(measure())
         results[size] = times
-        for group, values in times.items():
-            if values:
-                table(f"{group}, {size} elements", values, next(iter(values)), wanted.markdown)
+        table(size, times, wanted.markdown)
         sys.stdout.flush()
     if wanted.json:
         wanted.json.write_text(json.dumps(results, indent=1, ensure_ascii=False))

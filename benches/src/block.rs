@@ -28,7 +28,7 @@ pub enum Motion {
 /// A problem and its time step.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// The problem.
+    /// The problem, numbered for locality as every run numbers it.
     pub problem: TriangleProblem,
     /// The step (s).
     pub step: f64,
@@ -51,11 +51,13 @@ impl Block {
     /// No cells.
     pub fn new(cells: [usize; 2], order: Order, motion: Motion) -> Result<Self, Failure> {
         let mesh = order.mesh(cells)?;
+        let numbering = mesh.local_numbering();
         // The step of a block without a plane: the critical step does not depend on it.
         let free = problem(mesh, Motion::Free, 0.0)?;
         let step = COURANT * critical_time_step(&free);
         let gap = 1.5 * SPEED * step;
-        let problem = if motion == Motion::Free { free } else { problem(free.mesh().clone(), motion, gap)? };
+        let given = if motion == Motion::Free { free } else { problem(free.mesh().clone(), motion, gap)? };
+        let problem = numbering.map_or_else(|| given.clone(), |numbering| given.renumbered(&numbering));
         Ok(Self { problem, step, gap })
     }
 
@@ -66,7 +68,11 @@ impl Block {
     }
 }
 
-fn problem(mesh: TriangleMesh, motion: Motion, gap: f64) -> Result<TriangleProblem, Failure> {
+/// The block on a mesh of it, this far (m) from its plane.
+///
+/// # Errors
+/// A mesh of another body.
+pub fn problem(mesh: TriangleMesh, motion: Motion, gap: f64) -> Result<TriangleProblem, Failure> {
     // ±SPEED at the sides, so that strain starts at once.
     let spread = |p: &[f64; 2]| [SPEED * (p[0] / 0.025 - 1.0), SPEED * (1.0 - p[1] / 0.02)];
     let velocity = match motion {
@@ -83,14 +89,14 @@ fn problem(mesh: TriangleMesh, motion: Motion, gap: f64) -> Result<TriangleProbl
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulated;
+    use crate::{simulated, wall};
 
     /// Nothing touches before the second step, and the bottom does in it: contact is part of every measurement.
     #[test]
     fn the_block_touches_in_the_second_step() {
         let block = Block::new([5, 4], Order::Structured, Motion::Impact).unwrap();
         let lowest = |steps| {
-            let (_, displacement) = simulated(&block, steps).unwrap();
+            let (_, displacement) = simulated(&block, steps, wall).unwrap();
             displacement.iter().map(|u| u[1]).fold(f64::INFINITY, f64::min)
         };
         // Rounding of the step in the sum of instants.

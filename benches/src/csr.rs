@@ -38,11 +38,16 @@ impl Csr {
         csr
     }
 
-    /// y = K x.
+    /// y = K x. Never inlined: every ratio refers to it, so its code must not depend on the caller.
+    #[inline(never)]
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         for (row, y) in self.starts.windows(2).zip(y) {
-            let entries = self.columns[row[0]..row[1]].iter().zip(&self.values[row[0]..row[1]]);
-            *y = entries.map(|(&column, value)| value * x[column as usize]).sum();
+            let mut sum = 0.0;
+            // An iterator's `sum` takes half as long again as this loop, which is as fast as SciPy's.
+            for (&column, value) in self.columns[row[0]..row[1]].iter().zip(&self.values[row[0]..row[1]]) {
+                sum += value * x[column as usize];
+            }
+            *y = sum;
         }
     }
 }

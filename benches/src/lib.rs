@@ -5,10 +5,10 @@ mod csr;
 mod order;
 mod run;
 
-pub use block::{Block, Motion, SIZES, material};
+pub use block::{Block, Motion, SIZES, material, problem};
 pub use csr::Csr;
 pub use order::Order;
-pub use run::{Last, Timed, estimated, simulated, steps};
+pub use run::{Clock, estimated, processor, simulated, steps, wall};
 
 /// Any failure of a measurement.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

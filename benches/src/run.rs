@@ -6,40 +6,53 @@ use percute_core::history::{SinkError, State, StateSink};
 use percute_core::observer::Unobserved;
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::{Estimate, Estimator, Options};
+use rustix::time::{ClockId, clock_gettime};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
+
+/// A clock: the time since a fixed instant.
+pub type Clock = fn() -> Duration;
+
+/// Time on the wall.
+#[must_use]
+pub fn wall() -> Duration {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
+}
+
+/// Processor time of all threads. On one thread of a quiet machine it is the time on the wall; on a busy one it does not contain
+/// the time of others.
+#[must_use]
+pub fn processor() -> Duration {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
+}
 
 /// Hands states on, and notes when the first came.
 #[derive(Clone, Debug)]
-pub struct Timed<S> {
+struct Timed<S> {
     /// The sink that takes the states.
-    pub inner: S,
-    first: Option<Instant>,
+    inner: S,
+    clock: Clock,
+    first: Option<Duration>,
 }
 
 impl<S> Timed<S> {
-    /// Before the first state.
-    #[must_use]
-    pub fn new(inner: S) -> Self {
-        Self { inner, first: None }
-    }
-
-    /// Time since the first state.
-    #[must_use]
-    pub fn elapsed(&self) -> Duration {
-        self.first.map_or(Duration::ZERO, |first| first.elapsed())
+    fn new(inner: S, clock: Clock) -> Self {
+        Self { inner, clock, first: None }
     }
 }
 
 impl<S: StateSink<2>> StateSink<2> for Timed<S> {
     fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
-        self.first.get_or_insert_with(Instant::now);
+        self.first.get_or_insert_with(self.clock);
         self.inner.accept(state)
     }
 }
 
 /// Keeps the displacement of the last step only.
 #[derive(Clone, Debug)]
-pub struct Last {
+struct Last {
     step: usize,
     displacement: Vec<[f64; 2]>,
 }
@@ -65,22 +78,29 @@ pub fn steps(step: f64, count: usize) -> Result<TimeGrid, TimeError> {
 ///
 /// # Errors
 /// A simulation that fails.
-pub fn simulated(block: &Block, count: usize) -> Result<(Duration, Vec<[f64; 2]>), Failure> {
-    let mut sink = Timed::new(Last { step: count, displacement: Vec::new() });
+pub fn simulated(block: &Block, count: usize, clock: Clock) -> Result<(Duration, Vec<[f64; 2]>), Failure> {
+    let mut sink = Timed::new(Last { step: count, displacement: Vec::new() }, clock);
     simulate(&block.problem, &steps(block.step, count)?, &mut sink, &mut Unobserved)?;
-    Ok((sink.elapsed(), sink.inner.displacement))
+    let end = clock();
+    Ok((end - sink.first.unwrap_or(end), sink.inner.displacement))
 }
 
 /// The time of a simulation of so many steps with its estimate, and the estimate.
 ///
 /// # Errors
 /// A simulation or an estimate that fails.
-pub fn estimated(block: &Block, count: usize, options: Options) -> Result<(Duration, Estimate<2>), Failure> {
+pub fn estimated(
+    block: &Block,
+    count: usize,
+    options: Options,
+    clock: Clock,
+) -> Result<(Duration, Estimate<2>), Failure> {
     let times = steps(block.step, count)?;
     let estimator = Estimator::new(&block.problem, &times, options)?;
-    let mut sink = Timed::new(estimator);
+    let mut sink = Timed::new(estimator, clock);
     simulate(&block.problem, &times, &mut sink, &mut Unobserved)?;
     let start = sink.first;
     let estimate = sink.inner.finish()?;
-    Ok((start.map_or(Duration::ZERO, |first| first.elapsed()), estimate))
+    let end = clock();
+    Ok((end - start.unwrap_or(end), estimate))
 }

@@ -14,7 +14,7 @@ use pulp::{Arch, NullaryFnOnce};
 /// ```
 #[inline]
 pub(crate) fn dispatch<R>(task: impl FnOnce() -> R) -> R {
-    Arch::new().dispatch(Task(task))
+    if cfg!(feature = "portable") { task() } else { Arch::new().dispatch(Task(task)) }
 }
 
 /// A task that is compiled anew for each instruction set.

@@ -47,7 +47,7 @@ fn pages() -> Vec<PathBuf> {
 /// Every path that the documents name, in quotes or as a link, is there.
 #[test]
 fn documents_name_what_exists() {
-    let starts = ["crates/", "python/", "examples/", "docs/", "tests/", ".ci/", ".cargo/", "tools/"];
+    let starts = ["benches/", "crates/", "python/", "examples/", "docs/", "tests/", ".ci/", ".cargo/", "tools/"];
     let mut seen = BTreeMap::new();
     for page in pages() {
         let (name, text) = (page.file_name().unwrap().to_str().unwrap().to_string(), read(&page));
