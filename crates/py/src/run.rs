@@ -2,8 +2,8 @@
 
 use crate::bridge::Watch;
 use percute_core::contact::{ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, replay};
-use percute_core::history::{History, SinkError, State, StateSink, Step, StepSource};
+use percute_core::dynamics::Balance;
+use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -122,9 +122,8 @@ impl<const D: usize, const N: usize> Run<D, N> {
         if let Some(balance) = self.balance.get() {
             return Ok(balance);
         }
-        let mut balancing = Balancing::new(&self.problem, self.times());
-        replay(&self.problem, &self.stoppable(watch), &mut balancing)?;
-        Ok(self.balance.get_or_init(|| balancing.finish()))
+        let balance = percute_workflow::run::balance(&self.problem, &self.stoppable(watch))?;
+        Ok(self.balance.get_or_init(|| balance))
     }
 
     /// What contact did, with all nodes at all instants, computed once.
@@ -140,16 +139,11 @@ impl<const D: usize, const N: usize> Run<D, N> {
     /// v_n and a_n by the scheme, or as the history brings them.
     pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
         let mut motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
-        replay(&self.problem, &self.stoppable(watch), &mut motion)?;
+        percute_workflow::run::motion(&self.problem, &self.stoppable(watch), |velocity, acceleration| {
+            motion.velocity.extend(velocity);
+            motion.acceleration.extend(acceleration);
+        })?;
         Ok(motion)
-    }
-}
-
-impl<const D: usize> StateSink<D> for Motion<D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.velocity.extend(state.velocity());
-        self.acceleration.extend(state.acceleration());
-        Ok(())
     }
 }
 
@@ -188,17 +182,16 @@ impl<const D: usize> Growing<D> {
         Self(Arc::new(Mutex::new(Some(History::new(times)))))
     }
 
+    /// Appends a step.
+    pub(crate) fn push(&self, step: &Step<'_, D>) -> Result<(), SinkError> {
+        match self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+            Some(history) => history.push(step),
+            None => Err(Left.into()),
+        }
+    }
+
     /// Takes what is there; whoever fills it is refused from then on.
     pub(crate) fn take(&self) -> Option<History<D>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take().filter(|history| !history.is_empty())
-    }
-}
-
-impl<const D: usize> StateSink<D> for Growing<D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        match self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            Some(history) => history.accept(state),
-            None => Err(Left.into()),
-        }
     }
 }

@@ -9,7 +9,7 @@ use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{bridge, errors, time};
 use percute_core::dynamics::Balance;
-use percute_core::history::StateSink;
+use percute_core::history::Step;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -21,7 +21,7 @@ use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants, Source};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
-use percute_workflow::run::{self, Analysis, Storage};
+use percute_workflow::run::{self, Analysis, Storage, TakeStep};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -215,10 +215,11 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         let Self { problem, times, options, store } = self;
         let growing = store.is_none().then(|| Growing::new(&times));
         let task = {
-            let (problem, store, mut growing) = (problem.clone(), store.clone(), growing.clone());
+            let (problem, store, growing) = (problem.clone(), store.clone(), growing.clone());
             move |mut watch: Watch| {
                 let file = store.as_ref().map(|store| store.begin(&problem, &times)).transpose()?;
-                let memory = growing.as_mut().map(|growing| growing as &mut dyn StateSink<D>);
+                let mut keep = growing.as_ref().map(|growing| |step: &Step<'_, D>| growing.push(step));
+                let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
                 let done = work(Storage { file, memory }, &mut watch);
                 if let (Err(failure), Some(store)) = (&done, &store)
                     && failure.is_refused_start()

@@ -7,6 +7,7 @@ mod failure;
 pub mod history;
 pub mod info;
 pub mod message;
+mod numbering;
 pub mod outputs;
 pub mod report;
 pub mod run;

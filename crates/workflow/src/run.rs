@@ -1,11 +1,14 @@
 //! Runs: the simulation of a problem, with its estimate beside it or without, and the estimate of a history. The command
-//! and Python use the same functions. If the observer breaks, the results are those of the steps done.
+//! and Python use the same functions. If the observer breaks, the results are those of the steps done. The problem is solved in
+//! a local order of its own; all results have the numbers of the problem that was stated.
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
+use crate::numbering::Ordered;
+pub use crate::numbering::TakeStep;
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
-use percute_core::dynamics::{Simulation, SimulationError, replay};
-use percute_core::history::{Discard, StateSink, StepSource};
+use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay};
+use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -40,7 +43,7 @@ pub struct Storage<'s, const D: usize> {
     /// A file.
     pub file: Option<Writer<D>>,
     /// Memory.
-    pub memory: Option<&'s mut dyn StateSink<D>>,
+    pub memory: Option<&'s mut TakeStep<'s, D>>,
 }
 
 impl Analysis {
@@ -65,7 +68,7 @@ pub fn simulate<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
-    drive(problem, times, storage, &mut Discard, observer)
+    drive(&Ordered::new(problem), times, storage, &mut Discard, observer)
 }
 
 /// Simulates a problem and analyses the steps beside the run.
@@ -79,12 +82,14 @@ pub fn run<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
 ) -> Result<Results<D>, Failure> {
-    let mut contact = analysis.recorder(problem, times)?;
-    let estimator = Estimator::new(problem, times, analysis.options).and_then(|e| e.keeping(&analysis.request));
+    let ordered = Ordered::new(problem);
+    let mut contact = analysis.recorder(ordered.problem(), times)?;
+    let estimator =
+        Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?;
-    let simulation = drive(problem, times, storage, &mut (&mut estimator, &mut contact), observer)?;
-    let estimate = estimator.finish().map_err(RunError::from)?;
-    Ok(Results { simulation, estimate, contact: contact.finish() })
+    let simulation = drive(&ordered, times, storage, &mut (&mut estimator, &mut contact), observer)?;
+    let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
+    Ok(Results { simulation, estimate, contact: ordered.contact(contact.finish()) })
 }
 
 /// Analyses the steps of a history; with the same options, the results are those of its run, bit by bit.
@@ -98,13 +103,15 @@ pub fn estimate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Results<D>, Failure> {
     let Analysis { options, request, .. } = analysis;
-    let mut contact = analysis.recorder(problem, source.times())?;
-    let done = percute_estimator::estimate(problem, source, *options, request, &mut contact, observer);
+    let ordered = Ordered::new(problem);
+    let mut contact = analysis.recorder(ordered.problem(), source.times())?;
+    let source = ordered.source(source);
+    let done = percute_estimator::estimate(ordered.problem(), &source, *options, request, &mut contact, observer);
     let (simulation, estimate) = done.map_err(|error| match error {
-        RunError::Source(cause) => Failure::from_sink(cause, RunError::Source),
-        error => error.into(),
+        RunError::Source(cause) => ordered.failure(Failure::from_sink(cause, RunError::Source)),
+        error => ordered.failure(error.into()),
     })?;
-    Ok(Results { simulation, estimate, contact: contact.finish() })
+    Ok(Results { simulation, estimate: ordered.estimate(estimate), contact: ordered.contact(contact.finish()) })
 }
 
 /// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the
@@ -119,21 +126,71 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Vec<TrueError>, Failure> {
     let unread = |cause| Failure::from_sink(cause, RunError::Source);
+    let ordered: Vec<_> = runs.iter().map(|(problem, _)| Ordered::new(*problem)).collect();
     let mut motions = Vec::new();
-    for (problem, steps) in runs {
+    for (ordered, (_, steps)) in ordered.iter().zip(runs) {
         let mut motion = Motion::default();
-        replay(problem, *steps, &mut motion).map_err(unread)?;
+        let replayed = replay(ordered.problem(), &ordered.source(*steps), &mut motion);
+        replayed.map_err(|cause| ordered.failure(unread(cause)))?;
         motions.push(motion);
     }
-    let mut comparison = Comparison::new(fine);
-    for ((problem, _), motion) in runs.iter().zip(&motions) {
-        comparison.add(problem, motion)?;
+    let fine = Ordered::new(fine);
+    let mut comparison = Comparison::new(fine.problem());
+    for (run, motion) in ordered.iter().zip(&motions) {
+        comparison.add(run.problem(), motion).map_err(|error| fine.failure(error.into()))?;
     }
-    match steps {
-        Some(steps) => replay(fine, steps, &mut comparison).map_err(unread)?,
-        None => _ = percute_core::dynamics::simulate(fine, times, &mut comparison, observer)?,
-    }
+    let done = match steps {
+        Some(steps) => replay(fine.problem(), &fine.source(steps), &mut comparison).map_err(unread),
+        None => percute_core::dynamics::simulate(fine.problem(), times, &mut comparison, observer)
+            .map(|_| ())
+            .map_err(Failure::from),
+    };
+    done.map_err(|failure| fine.failure(failure))?;
     Ok(comparison.finish()?)
+}
+
+/// Energies and works at each step of a history: those of its run, bit by bit.
+///
+/// # Errors
+/// A step that cannot be read or does not fit.
+pub fn balance<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+) -> Result<Vec<Balance>, SinkError> {
+    let ordered = Ordered::new(problem);
+    let mut balancing = Balancing::new(ordered.problem(), source.times());
+    replay(ordered.problem(), &ordered.source(source), &mut balancing).map_err(|cause| ordered.refused(cause))?;
+    Ok(balancing.finish())
+}
+
+/// v_n (m/s) and a_n (m/s²) of all nodes at each step of a history, by the scheme or as the history brings them, each handed
+/// to `take`.
+///
+/// # Errors
+/// A step that cannot be read or does not fit.
+pub fn motion<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    take: impl FnMut(Vec<[f64; D]>, Vec<[f64; D]>),
+) -> Result<(), SinkError> {
+    let ordered = Ordered::new(problem);
+    let mut motion = NodalMotion { ordered: &ordered, take };
+    replay(ordered.problem(), &ordered.source(source), &mut motion).map_err(|cause| ordered.refused(cause))
+}
+
+/// Hands velocities and accelerations on.
+struct NodalMotion<'o, 'p, F, const D: usize, const N: usize> {
+    ordered: &'o Ordered<'p, D, N>,
+    take: F,
+}
+
+impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>), const D: usize, const N: usize> StateSink<D>
+    for NodalMotion<'_, '_, F, D, N>
+{
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        (self.take)(self.ordered.nodal(state.velocity()), self.ordered.nodal(state.acceleration()));
+        Ok(())
+    }
 }
 
 /// The failure of the run of a case: a refused start is a mistake in the case, with its line.
@@ -150,16 +207,22 @@ pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Fai
 /// Hands every step to the history and then to `beside`. A run that was stopped is finished like a complete one; a
 /// refused start leaves no file; after any other error the file remains.
 fn drive<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    ordered: &Ordered<'_, D, N>,
     times: &TimeGrid,
     storage: Storage<'_, D>,
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
+    let Storage { mut file, mut memory } = storage;
+    let stored = file.is_some() || memory.is_some();
+    let mut store = |step: &Step<'_, D>| {
+        file.as_mut().map_or(Ok(()), |file| file.push(step))?;
+        memory.as_mut().map_or(Ok(()), |keep| keep(step))
+    };
     // The history first: a step that cannot be estimated is still stored.
-    let mut sinks = (storage.file, (storage.memory, beside));
-    let simulation = percute_core::dynamics::simulate(problem, times, &mut sinks, observer);
-    match (simulation, sinks.0) {
+    let mut sinks = (stored.then(|| ordered.sink(&mut store)), beside);
+    let simulation = percute_core::dynamics::simulate(ordered.problem(), times, &mut sinks, observer);
+    match (simulation, file) {
         (Ok(simulation), Some(history)) => {
             history.finish()?;
             Ok(simulation)
@@ -169,8 +232,8 @@ fn drive<const D: usize, const N: usize>(
             drop(history);
             // A file that cannot be removed does no harm: it holds no step.
             let _ = std::fs::remove_file(file);
-            Err(error.into())
+            Err(ordered.failure(error.into()))
         }
-        (simulation, _) => Ok(simulation?),
+        (simulation, _) => simulation.map_err(|error| ordered.failure(error.into())),
     }
 }

@@ -50,15 +50,16 @@ impl Numbering {
     }
 
     /// A nodal field in the old order, from that in the new one.
-    pub fn restore_nodal<T: Copy + Default>(&self, new: &[T], old: &mut Vec<T>) {
-        old.resize(new.len(), T::default());
+    pub fn restore_nodal<T: Copy>(&self, new: &[T], old: &mut Vec<T>) {
+        old.clear();
+        old.extend_from_slice(new);
         self.nodes.iter().zip(new).for_each(|(node, value)| old[node.index()] = *value);
     }
 
-    /// Numbers of the elements in the old order, from those in the new one.
+    /// Values of the elements in the old order, from those in the new one.
     #[must_use]
-    pub fn restore_elemental<T: Copy + Default>(&self, new: &[T]) -> Vec<T> {
-        let mut old = vec![T::default(); new.len()];
+    pub fn restore_elemental<T: Copy>(&self, new: &[T]) -> Vec<T> {
+        let mut old = new.to_vec();
         self.elements.iter().zip(new).for_each(|(element, value)| old[element.index()] = *value);
         old
     }
@@ -85,7 +86,8 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
 
     /// Whether the nodes of each element are close together, and elements that follow each other too: no element has a node
     /// further than a front behind its highest, or behind the lowest node of an element before.
-    fn is_local(&self) -> bool {
+    #[must_use]
+    pub fn is_local(&self) -> bool {
         let front = SMALL.max((FRONT * (self.node_count() as f64).sqrt()) as usize);
         let mut reached = 0;
         self.cells.iter().all(|cell| {

@@ -70,7 +70,16 @@ pub fn of_run<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
         + size_of::<Balance>()
         + size_of::<f64>()
         + (1 + problem.obstacles().len()) * size_of::<Resultant<D>>();
+    // The problem in a local order, beside that of the user: all but the vectors of the integrator, and old numbers.
+    let ordered = if mesh.is_local() {
+        [0; 3]
+    } else {
+        [node - 5 * vector + size_of::<NodeId>(), element - D * vector + size_of::<ElementId>(), facet]
+    };
     let total = [
+        (mesh.node_count(), ordered[0]),
+        (mesh.element_count(), ordered[1]),
+        (mesh.facets().len(), ordered[2]),
         (mesh.node_count(), node),
         (mesh.element_count(), element),
         (mesh.facets().len(), facet),

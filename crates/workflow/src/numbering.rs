@@ -1,0 +1,219 @@
+//! The numbers of the solver and those of the user.
+//!
+//! Simulation and estimate work on the problem in a local order ([`Mesh::local_numbering`](percute_core::mesh::Mesh::local_numbering)).
+//! Histories, estimates, contact results and messages have the numbers of the problem that was stated. Nothing is copied if its
+//! order is local already.
+
+use crate::failure::Failure;
+use percute_core::contact::ContactResults;
+use percute_core::dynamics::SimulationError;
+use percute_core::history::{SinkError, State, StateSink, Step, StepError, StepSource};
+use percute_core::ids::NodeId;
+use percute_core::mesh::Numbering;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::reference::ReferenceError;
+use percute_estimator::{Estimate, EstimateError, RunError};
+
+/// Takes steps in the numbers of the problem that was stated.
+pub type TakeStep<'s, const D: usize> = dyn FnMut(&Step<'_, D>) -> Result<(), SinkError> + 's;
+
+/// A problem in the order in which it is solved.
+pub(crate) struct Ordered<'p, const D: usize, const N: usize> {
+    stated: &'p Problem<D, N>,
+    local: Option<(Problem<D, N>, Numbering)>,
+}
+
+impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
+    /// Orders a problem, unless its order is local.
+    pub(crate) fn new(stated: &'p Problem<D, N>) -> Self {
+        let local = stated.mesh().local_numbering().map(|numbering| (stated.renumbered(&numbering), numbering));
+        Self { stated, local }
+    }
+
+    /// The problem to be solved.
+    pub(crate) fn problem(&self) -> &Problem<D, N> {
+        self.local.as_ref().map_or(self.stated, |(problem, _)| problem)
+    }
+
+    fn numbering(&self) -> Option<&Numbering> {
+        self.local.as_ref().map(|(_, numbering)| numbering)
+    }
+
+    /// The steps of a history in the order of the problem to be solved.
+    pub(crate) fn source<'s>(&'s self, source: &'s dyn StepSource<D>) -> OrderedSource<'s, D> {
+        OrderedSource { source, numbering: self.numbering() }
+    }
+
+    /// A sink that hands the steps on in the numbers of the user.
+    pub(crate) fn sink<'s>(&'s self, take: &'s mut TakeStep<'s, D>) -> RestoringSink<'s, D> {
+        RestoringSink { take, numbering: self.numbering(), fields: Fields::default() }
+    }
+
+    /// A nodal field in the numbers of the user.
+    pub(crate) fn nodal<T: Copy>(&self, field: Vec<T>) -> Vec<T> {
+        let Some(numbering) = self.numbering() else { return field };
+        let mut restored = Vec::new();
+        numbering.restore_nodal(&field, &mut restored);
+        restored
+    }
+
+    /// An estimate in the numbers of the user.
+    pub(crate) fn estimate(&self, mut estimate: Estimate<D>) -> Estimate<D> {
+        let Some(numbering) = self.numbering() else { return estimate };
+        estimate.by_element = numbering.restore_elemental(&estimate.by_element);
+        for map in &mut estimate.maps {
+            for part in [&mut map.kinetic, &mut map.elastic, &mut map.contact, &mut map.accumulated] {
+                *part = numbering.restore_elemental(part);
+            }
+            let Some(fields) = &mut map.fields else { continue };
+            for field in [&mut fields.displacement, &mut fields.velocity] {
+                let mut restored = Vec::new();
+                numbering.restore_nodal(field, &mut restored);
+                *field = restored;
+            }
+            for stress in [&mut fields.stress, &mut fields.compatible_stress] {
+                *stress = numbering.restore_elemental(stress);
+            }
+            fields.acceleration = numbering.restore_elemental(&fields.acceleration);
+        }
+        estimate
+    }
+
+    /// Contact results with the numbers of the user; their order is that of the contact surface, the same for both.
+    pub(crate) fn contact(&self, mut results: ContactResults<D>) -> ContactResults<D> {
+        results.nodes.iter_mut().for_each(|point| point.node = NodeId::new(self.node(point.node.index())));
+        results
+    }
+
+    /// A failure that names the nodes and elements of the user.
+    pub(crate) fn failure(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Run(RunError::Simulation(error)) => Failure::Run(RunError::Simulation(self.simulation(error))),
+            Failure::Run(RunError::Estimate(error)) => Failure::Run(RunError::Estimate(self.estimation(error))),
+            Failure::Run(RunError::Source(cause)) => Failure::Run(RunError::Source(self.refused(cause))),
+            Failure::Reference(ReferenceError::NotNested { fine }) => {
+                let fine = self.numbering().map_or(fine, |numbering| numbering.elements()[fine].index());
+                Failure::Reference(ReferenceError::NotNested { fine })
+            }
+            other => other,
+        }
+    }
+
+    /// What a sink refused, with the nodes of the user.
+    pub(crate) fn refused(&self, mut cause: SinkError) -> SinkError {
+        if let Some(error) = cause.downcast_mut::<StepError>() {
+            self.step(error);
+        }
+        cause
+    }
+
+    fn simulation(&self, mut error: SimulationError) -> SimulationError {
+        if let SimulationError::Unstable { node, .. } | SimulationError::StartsTooNear { node, .. } = &mut error {
+            *node = self.node(*node);
+        }
+        error
+    }
+
+    fn estimation(&self, mut error: EstimateError) -> EstimateError {
+        match &mut error {
+            EstimateError::Start { node }
+            | EstimateError::StartVelocity { node }
+            | EstimateError::StartsTouching { node, .. }
+            | EstimateError::StartsTooNear { node, .. } => *node = self.node(*node),
+            EstimateError::Step(error) => self.step(error),
+            _ => {}
+        }
+        error
+    }
+
+    /// Reactions are in the order of the contact surface, the other fields in that of the nodes.
+    fn step(&self, error: &mut StepError) {
+        if let StepError::NotFinite { field, position, .. } = error
+            && *field != "reaction"
+        {
+            *position = self.node(*position);
+        }
+    }
+
+    fn node(&self, new: usize) -> usize {
+        self.numbering().map_or(new, |numbering| numbering.nodes()[new].index())
+    }
+}
+
+/// The nodal fields of a step in another order; their memory is used again.
+#[derive(Debug, Default)]
+struct Fields<const D: usize> {
+    displacement: Vec<[f64; D]>,
+    velocity: Vec<[f64; D]>,
+    acceleration: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Fields<D> {
+    /// A step whose fields `order` has reordered.
+    fn reordered<'s>(&'s mut self, step: &Step<'s, D>, order: impl Fn(&[[f64; D]], &mut Vec<[f64; D]>)) -> Step<'s, D> {
+        let Self { displacement, velocity, acceleration } = self;
+        order(step.displacement, displacement);
+        let given = |field: Option<&[[f64; D]]>, to: &'s mut Vec<[f64; D]>| {
+            field.map(|field| {
+                order(field, to);
+                &to[..]
+            })
+        };
+        Step {
+            displacement,
+            velocity: given(step.velocity, velocity),
+            acceleration: given(step.acceleration, acceleration),
+            ..*step
+        }
+    }
+}
+
+/// A history in the order of the problem that is solved.
+pub(crate) struct OrderedSource<'s, const D: usize> {
+    source: &'s dyn StepSource<D>,
+    numbering: Option<&'s Numbering>,
+}
+
+impl<const D: usize> StepSource<D> for OrderedSource<'_, D> {
+    fn times(&self) -> &TimeGrid {
+        self.source.times()
+    }
+
+    fn count(&self) -> usize {
+        self.source.count()
+    }
+
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        let Some(numbering) = self.numbering else { return self.source.replay(take) };
+        let mut fields = Fields::default();
+        let fits = |field: &[[f64; D]]| field.len() == numbering.nodes().len();
+        self.source.replay(&mut |step| {
+            if fits(step.displacement) && step.velocity.is_none_or(fits) && step.acceleration.is_none_or(fits) {
+                take(&fields.reordered(step, |old, new| numbering.order_nodal(old, new)))
+            } else {
+                // It is refused for its length.
+                take(step)
+            }
+        })
+    }
+}
+
+/// Hands steps on in the numbers of the user.
+pub(crate) struct RestoringSink<'s, const D: usize> {
+    take: &'s mut TakeStep<'s, D>,
+    numbering: Option<&'s Numbering>,
+    fields: Fields<D>,
+}
+
+impl<const D: usize> StateSink<D> for RestoringSink<'_, D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        match self.numbering {
+            None => (self.take)(state.step()),
+            Some(numbering) => {
+                let restored = self.fields.reordered(state.step(), |new, old| numbering.restore_nodal(new, old));
+                (self.take)(&restored)
+            }
+        }
+    }
+}
