@@ -7,12 +7,12 @@ use std::ops::ControlFlow;
 /// Shows progress on a terminal and asks whether to stop.
 pub(crate) struct Watch<'a> {
     bar: ProgressBar,
-    interrupted: &'a dyn Fn() -> bool,
+    interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl<'a> Watch<'a> {
     /// Watches, with a bar on standard error if `visible`.
-    pub(crate) fn new(visible: bool, interrupted: &'a dyn Fn() -> bool) -> Self {
+    pub(crate) fn new(visible: bool, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
         if let Ok(style) = ProgressStyle::with_template("{msg} {bar:32} step {pos} of {len}, {eta} left") {

@@ -14,8 +14,8 @@ pub struct Progress {
 }
 
 /// Receives the progress at every step; a break stops the computation cleanly.
-pub trait Observer {
-    /// Called between steps, from the thread that computes.
+pub trait Observer: Send {
+    /// Called between steps, from a thread that computes.
     fn observe(&mut self, progress: Progress) -> ControlFlow<()>;
 }
 
@@ -29,7 +29,7 @@ impl Observer for Unobserved {
     }
 }
 
-impl<F: FnMut(Progress) -> ControlFlow<()>> Observer for F {
+impl<F: FnMut(Progress) -> ControlFlow<()> + Send> Observer for F {
     fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
         self(progress)
     }

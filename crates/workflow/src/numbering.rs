@@ -16,7 +16,7 @@ use percute_estimator::reference::ReferenceError;
 use percute_estimator::{Estimate, EstimateError, RunError};
 
 /// Takes steps in the numbers of the problem that was stated.
-pub type TakeStep<'s, const D: usize> = dyn FnMut(&Step<'_, D>) -> Result<(), SinkError> + 's;
+pub type TakeStep<'s, const D: usize> = dyn FnMut(&Step<'_, D>) -> Result<(), SinkError> + Send + 's;
 
 /// A problem in the order in which it is solved.
 pub(crate) struct Ordered<'p, const D: usize, const N: usize> {

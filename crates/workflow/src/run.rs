@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay};
+use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
@@ -68,7 +68,7 @@ pub fn simulate<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
-    drive(&Ordered::new(problem), times, storage, &mut Discard, observer)
+    drive(&Ordered::new(problem), times, None, storage, &mut Discard, observer)
 }
 
 /// Simulates a problem and analyses the steps beside the run.
@@ -87,7 +87,8 @@ pub fn run<const D: usize, const N: usize>(
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?;
-    let simulation = drive(&ordered, times, storage, &mut (&mut estimator, &mut contact), observer)?;
+    let simulation =
+        drive(&ordered, times, analysis.options.threads, storage, &mut (&mut estimator, &mut contact), observer)?;
     let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
     Ok(Results { simulation, estimate, contact: ordered.contact(contact.finish()) })
 }
@@ -141,9 +142,9 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
     }
     let done = match steps {
         Some(steps) => replay(fine.problem(), &fine.source(steps), &mut comparison).map_err(unread),
-        None => percute_core::dynamics::simulate(fine.problem(), times, &mut comparison, observer)
-            .map(|_| ())
-            .map_err(Failure::from),
+        None => {
+            simulate_threaded(fine.problem(), times, None, &mut comparison, observer).map(|_| ()).map_err(Failure::from)
+        }
     };
     done.map_err(|failure| fine.failure(failure))?;
     Ok(comparison.finish()?)
@@ -171,7 +172,7 @@ pub fn balance<const D: usize, const N: usize>(
 pub fn motion<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
-    take: impl FnMut(Vec<[f64; D]>, Vec<[f64; D]>),
+    take: impl FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send,
 ) -> Result<(), SinkError> {
     let ordered = Ordered::new(problem);
     let mut motion = NodalMotion { ordered: &ordered, take };
@@ -184,7 +185,7 @@ struct NodalMotion<'o, 'p, F, const D: usize, const N: usize> {
     take: F,
 }
 
-impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>), const D: usize, const N: usize> StateSink<D>
+impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send, const D: usize, const N: usize> StateSink<D>
     for NodalMotion<'_, '_, F, D, N>
 {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
@@ -209,6 +210,7 @@ pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Fai
 fn drive<const D: usize, const N: usize>(
     ordered: &Ordered<'_, D, N>,
     times: &TimeGrid,
+    threads: Option<usize>,
     storage: Storage<'_, D>,
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
@@ -221,7 +223,7 @@ fn drive<const D: usize, const N: usize>(
     };
     // The history first: a step that cannot be estimated is still stored.
     let mut sinks = (stored.then(|| ordered.sink(&mut store)), beside);
-    let simulation = percute_core::dynamics::simulate(ordered.problem(), times, &mut sinks, observer);
+    let simulation = simulate_threaded(ordered.problem(), times, threads, &mut sinks, observer);
     match (simulation, file) {
         (Ok(simulation), Some(history)) => {
             history.finish()?;

@@ -35,7 +35,7 @@ pub struct Console<'a> {
     /// Whether to show progress on the process's standard error.
     pub progress: bool,
     /// Asked at each step; the run stops cleanly when it says yes.
-    pub interrupted: &'a dyn Fn() -> bool,
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code.

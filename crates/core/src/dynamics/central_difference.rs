@@ -12,6 +12,11 @@ use crate::time::TimeGrid;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
+/// Threads pay from so many elements on: a step then takes as long as some ten starts of a task.
+const FEWEST_ELEMENTS: usize = 20_000;
+/// Strips of each parity share two threads.
+const FEWEST_STRIPS: usize = 4;
+
 /// Why a simulation stopped before its end.
 #[derive(Debug, Error)]
 pub enum SimulationError {
@@ -92,8 +97,43 @@ pub fn simulate<const D: usize, const N: usize>(
     sink: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
-    let dynamics = Dynamics::new(problem, times);
-    let mut body = MovingBody::new(&dynamics);
+    run(&Dynamics::new(problem, times), sink, observer)
+}
+
+/// The same on so many threads, by default one for each core. The result does not depend on their number. A mesh that is
+/// too small for threads to pay runs on one, and so does one whose order has no strips.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_threaded<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    threads: Option<usize>,
+    sink: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, SimulationError> {
+    let mut dynamics = Dynamics::new(problem, times);
+    let threads = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
+    let strips = dynamics.stiffness.strips.count();
+    if threads > 1 && strips >= FEWEST_STRIPS && problem.mesh().element_count() >= FEWEST_ELEMENTS {
+        // The steps run inside the pool: a step of 50 µs leaves no time to wake a thread. A pool of its own: a process
+        // forked later must not wait for threads it does not have.
+        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads.min(strips / 2)).build() {
+            dynamics.parallel = true;
+            return pool.install(|| run(&dynamics, sink, observer));
+        }
+    }
+    run(&dynamics, sink, observer)
+}
+
+/// The loop over the steps.
+fn run<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    sink: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, SimulationError> {
+    let Dynamics { problem, times, .. } = *dynamics;
+    let mut body = MovingBody::new(dynamics);
     let mut contact = Contact::new(problem.surface().nodes().len());
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
@@ -104,13 +144,13 @@ pub fn simulate<const D: usize, const N: usize>(
             Some(last) => Motion::Advance { h: times.velocity_step(last), dt: times.step(last) },
             None => Motion::Start,
         };
-        body.step(&dynamics, n, motion);
-        contact.react(&dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
+        body.step(dynamics, n, motion);
+        contact.react(dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
         if n == 0 {
-            contact.settle_start(&dynamics);
-            refuse_a_start_too_near(&dynamics, &contact)?;
+            contact.settle_start(dynamics);
+            refuse_a_start_too_near(dynamics, &contact)?;
         }
-        body.sum_up(&dynamics, n);
+        body.sum_up(dynamics, n);
         let step = Step {
             index: n,
             time: times.instants()[n],
@@ -122,7 +162,7 @@ pub fn simulate<const D: usize, const N: usize>(
         };
         let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
         if !balance.record(problem, times, &state) {
-            return Err(unstable(&dynamics, n, &body.velocity));
+            return Err(unstable(dynamics, n, &body.velocity));
         }
         sink.accept(&state).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());

@@ -1,11 +1,11 @@
 //! The critical time step Δt_c = 2/ω_max, eq. \[34\].
 
 use super::Stiffness;
+use super::pass::{Fields, Motion, Pass, Sums};
 use crate::ids::ElementId;
 use crate::material::{Law, LinearLaw};
 use crate::problem::Problem;
 use crate::simplex::Shape;
-use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Lanczos stops when the residual bounds ω²_max to this relative precision …
 const PRECISION: f64 = 1e-9;
@@ -26,9 +26,7 @@ pub fn element_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>
 /// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller.
 #[must_use]
 pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    let stiffness = Stiffness::new(problem);
-    let bound = element_bound(problem);
-    2.0 / largest_eigenvalue(problem, &stiffness).min(bound).sqrt()
+    2.0 / largest_eigenvalue(problem).min(element_bound(problem)).sqrt()
 }
 
 /// Largest ω² of any element alone with its lumped mass (1/s²): a bound on that of the mesh.
@@ -57,58 +55,59 @@ fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64
 }
 
 /// The largest Ritz value plus its residual.
-fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>, stiffness: &Stiffness<D, N>) -> f64 {
+///
+/// The vectors y_j = β_j q_j obey y_{j+1} = (M⁻¹K y_j − α_j y_j)/β_j − (β_j/β_{j−1}) y_{j−1}, with the products
+/// α_j = y_j·K y_j/β_j² and β_j² = y_j·M y_j: one pass over the mesh for each.
+fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     let count = D * problem.mesh().node_count() - problem.prescribed().len();
-    let root: Vec<f64> = problem.mass().iter().map(|m| 1.0 / m.sqrt()).collect();
     let fewest = (10.0 * (count as f64).ln()).ceil() as usize;
+    let stiffness = Stiffness::new(problem);
+    let inverse_mass: Vec<f64> = problem.mass().iter().map(|m| 1.0 / m).collect();
+    let mut sums = vec![Sums::ZERO; stiffness.strips.count()];
 
-    let mut previous = vec![[0.0; D]; problem.mesh().node_count()];
-    let mut current = random_start(problem);
+    let (mut current, mut previous) = (vec![[0.0; D]; problem.mesh().node_count()], random_start(problem));
+    let mut force = vec![[0.0; D]; current.len()];
     let (mut alphas, mut betas): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut check = 8;
+    // The first pass keeps the start.
+    let (mut factors, mut check, mut norm) = ([0.0, 0.0, 1.0], 8, 1.0);
     loop {
-        let mut next = apply(problem, stiffness, &root, &current);
-        let alpha = inner(&next, &current);
-        let beta_before = betas.last().copied().unwrap_or(0.0);
-        for ((next, current), previous) in next.iter_mut().zip(&current).zip(&previous) {
-            (0..D).for_each(|c| next[c] -= alpha * current[c] + beta_before * previous[c]);
-        }
-        let beta = inner(&next, &next).sqrt();
-        alphas.push(alpha);
-        betas.push(beta);
-
-        let k = alphas.len();
-        let last = k >= MOST_VECTORS || k >= count || beta <= 1e-14 * alpha.abs();
-        if last || k >= check {
-            let (value, residual) = largest_ritz_value(&alphas, &betas);
-            if last || (residual <= PRECISION * value && k >= fewest) {
-                return value + residual;
+        let pass = Pass {
+            stiffness: &stiffness,
+            mass: problem.mass(),
+            inverse_mass: &inverse_mass,
+            apart: &[],
+            external: &[],
+            motion: Motion::Combine(factors),
+            back: 0.0,
+            parallel: false,
+        };
+        let (displacement, velocity) = (&mut previous[..], &mut current[..]);
+        let total = pass.run(Fields { start: 0, displacement, velocity, force: &mut force, sums: &mut sums });
+        problem.prescribed().iter().for_each(|p| force[p.node.index()][p.component] = 0.0);
+        std::mem::swap(&mut current, &mut previous);
+        let beta = (2.0 * total.kinetic()).sqrt();
+        if !alphas.is_empty() {
+            betas.push(beta);
+            let k = alphas.len();
+            let last = k >= MOST_VECTORS || k >= count || beta <= 1e-14 * alphas[k - 1].abs();
+            if last || k >= check {
+                let (value, part) = largest_ritz_value(&alphas, &betas[..k - 1]);
+                let residual = beta * part;
+                if last || (residual <= PRECISION * value && k >= fewest) {
+                    return value + residual;
+                }
+                check = k + (k / 2).max(8);
             }
-            check = k + (k / 2).max(8);
         }
-        next.iter_mut().flatten().for_each(|x| *x /= beta);
-        previous = std::mem::replace(&mut current, next);
+        let alpha = 2.0 * total.strain() / (beta * beta);
+        alphas.push(alpha);
+        // The force is −K y.
+        factors = [-1.0 / beta, -alpha / beta, if alphas.len() > 1 { -beta / norm } else { 0.0 }];
+        norm = beta;
     }
 }
 
-/// M^−½ K M^−½ x on the free components.
-fn apply<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    stiffness: &Stiffness<D, N>,
-    root: &[f64],
-    x: &[[f64; D]],
-) -> Vec<[f64; D]> {
-    let scaled: Vec<[f64; D]> = x.iter().zip(root).map(|(x, r)| x.map(|v| v * r)).collect();
-    let mut y = vec![[0.0; D]; x.len()];
-    stiffness.subtract_internal_forces(&scaled, &mut y);
-    for (y, r) in y.iter_mut().zip(root) {
-        (0..D).for_each(|c| y[c] *= -r);
-    }
-    problem.prescribed().iter().for_each(|p| y[p.node.index()][p.component] = 0.0);
-    y
-}
-
-/// A unit vector without structure that is the same in every run (Knuth's MMIX generator).
+/// A vector without structure, of the norm 1 with the mass, that is the same in every run (Knuth's MMIX generator).
 fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
     let mut state = 1_u64;
     let mut draw = || {
@@ -117,24 +116,60 @@ fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<
     };
     let mut x: Vec<[f64; D]> = (0..problem.mesh().node_count()).map(|_| std::array::from_fn(|_| draw())).collect();
     problem.prescribed().iter().for_each(|p| x[p.node.index()][p.component] = 0.0);
-    let norm = inner(&x, &x).sqrt();
-    x.iter_mut().flatten().for_each(|x| *x /= norm);
+    let norm = x.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+    for (x, mass) in x.iter_mut().zip(problem.mass()) {
+        *x = x.map(|x| x / (norm * mass.sqrt()));
+    }
     x
 }
 
-fn inner<const D: usize>(x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
-    x.iter().flatten().zip(y.iter().flatten()).map(|(a, b)| a * b).sum()
+/// Largest eigenvalue of a tridiagonal matrix with this diagonal and the entries `beside` it, and the size of the last
+/// component of its unit eigenvector.
+fn largest_ritz_value(diagonal: &[f64], beside: &[f64]) -> (f64, f64) {
+    // Gershgorin's bounds; a value is above all eigenvalues if all pivots of the elimination are negative.
+    let off = |i: usize| if i < beside.len() { beside[i] } else { 0.0 };
+    let radius = |i: usize| off(i) + if i > 0 { off(i - 1) } else { 0.0 };
+    let above = |value: f64| {
+        let mut pivot = diagonal[0] - value;
+        (1..diagonal.len()).all(|i| {
+            let negative = pivot < 0.0;
+            pivot = diagonal[i] - value - off(i - 1) * off(i - 1) / pivot;
+            negative
+        }) && pivot < 0.0
+    };
+    let mut low = diagonal.iter().fold(f64::NEG_INFINITY, |m, &a| m.max(a));
+    let mut high = (0..diagonal.len()).map(|i| diagonal[i] + radius(i)).fold(low, f64::max) * (1.0 + 1e-15);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if above(middle) { high = middle } else { low = middle }
+    }
+    (high, last_component(diagonal, beside, high))
 }
 
-/// Largest eigenvalue of the tridiagonal matrix, and the residual β_k|s_k| of its Ritz vector.
-fn largest_ritz_value(alphas: &[f64], betas: &[f64]) -> (f64, f64) {
-    let k = alphas.len();
-    let entry = |i: usize, j: usize| match i.abs_diff(j) {
-        0 => alphas[i],
-        1 => betas[i.min(j)],
-        _ => 0.0,
-    };
-    let eigen = SymmetricEigen::new(DMatrix::from_fn(k, k, entry));
-    let (largest, value) = eigen.eigenvalues.argmax();
-    (value, betas[k - 1] * eigen.eigenvectors[(k - 1, largest)].abs())
+/// Size of the last component of the unit eigenvector of an eigenvalue, from just above it: three steps of inverse
+/// iteration with the elimination whose pivots are all negative.
+fn last_component(diagonal: &[f64], beside: &[f64], value: f64) -> f64 {
+    let count = diagonal.len();
+    let mut pivots = Vec::with_capacity(count);
+    for i in 0..count {
+        let eliminated = if i == 0 { 0.0 } else { beside[i - 1] * beside[i - 1] / pivots[i - 1] };
+        // Zero only by rounding.
+        pivots.push((diagonal[i] - value - eliminated).min(-1e-16 * value));
+    }
+    let mut x = vec![1.0 / (count as f64).sqrt(); count];
+    for _ in 0..3 {
+        for i in 1..count {
+            x[i] -= beside[i - 1] / pivots[i - 1] * x[i - 1];
+        }
+        for i in (0..count).rev() {
+            let after = if i + 1 < count { beside[i] * x[i + 1] } else { 0.0 };
+            x[i] = (x[i] - after) / pivots[i];
+        }
+        let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        x.iter_mut().for_each(|x| *x /= norm);
+    }
+    x[count - 1].abs()
 }

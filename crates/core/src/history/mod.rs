@@ -35,8 +35,8 @@ pub struct Step<'a, const D: usize> {
 /// Why a sink could not take a step.
 pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Takes the states of steps in order, from 0 on.
-pub trait StateSink<const D: usize> {
+/// Takes the states of steps in order, from 0 on; with several threads, in one of them.
+pub trait StateSink<const D: usize>: Send {
     /// Takes one state.
     ///
     /// # Errors

@@ -23,6 +23,10 @@ pub(crate) trait Lanes: Copy {
     fn quad(self, parts: [Half; 4]) -> Self::Wide;
     /// Each of two vectors twice.
     fn twice(self, parts: [Half; 2]) -> Self::Wide;
+    /// A number eight times.
+    fn splat(self, number: f64) -> Self::Wide;
+    /// Each of four numbers twice.
+    fn repeat(self, numbers: &[f64; 4]) -> Self::Wide;
     /// From memory.
     fn load(self, from: &Wide) -> Self::Wide;
     /// To memory.
@@ -114,6 +118,16 @@ impl Lanes for Portable {
     #[inline(always)]
     fn twice(self, [a, b]: [Half; 2]) -> Wide {
         self.quad([a, a, b, b])
+    }
+
+    #[inline(always)]
+    fn splat(self, number: f64) -> Wide {
+        [number; 8]
+    }
+
+    #[inline(always)]
+    fn repeat(self, [a, b, c, d]: &[f64; 4]) -> Wide {
+        [*a, *a, *b, *b, *c, *c, *d, *d]
     }
 
     #[inline(always)]

@@ -28,6 +28,17 @@ impl Lanes for V3 {
     }
 
     #[inline(always)]
+    fn splat(self, number: f64) -> Self::Wide {
+        [self.avx._mm256_set1_pd(number); 2]
+    }
+
+    #[inline(always)]
+    fn repeat(self, numbers: &[f64; 4]) -> Self::Wide {
+        let v = cast(*numbers);
+        [self.avx2._mm256_permute4x64_pd::<0b01_01_00_00>(v), self.avx2._mm256_permute4x64_pd::<0b11_11_10_10>(v)]
+    }
+
+    #[inline(always)]
     fn load(self, from: &Wide) -> Self::Wide {
         cast(*from)
     }
@@ -121,6 +132,17 @@ impl Lanes for V4 {
     fn twice(self, [a, b]: [Half; 2]) -> Self::Wide {
         let v = self.avx512dq._mm512_broadcast_f64x2(cast(a));
         self.avx512dq._mm512_mask_broadcast_f64x2(v, 0b1111_0000, cast(b))
+    }
+
+    #[inline(always)]
+    fn splat(self, number: f64) -> Self::Wide {
+        self.avx512f._mm512_set1_pd(number)
+    }
+
+    #[inline(always)]
+    fn repeat(self, numbers: &[f64; 4]) -> Self::Wide {
+        let order = cast([0_u64, 0, 1, 1, 2, 2, 3, 3]);
+        self.avx512f._mm512_permutexvar_pd(order, self.avx512f._mm512_castpd256_pd512(cast(*numbers)))
     }
 
     #[inline(always)]

@@ -17,4 +17,5 @@ mod numbering;
 mod run;
 mod supports;
 mod symmetry_plane;
+mod threads;
 mod variable_steps;

@@ -141,10 +141,12 @@ fn a_guided_node_keeps_its_tangential_motion() {
         let node = problem.surface().nodes()[at].node.index();
         let pulled = |d: &Densities<2>| {
             let force = crate::contact_density::nodal_forces(&problem, d)[at];
-            usize::from(force[0] != 0.0 && force[1] > 0.0)
+            // More than rounding.
+            usize::from(force[0].abs() > 1e-9 * force[1] && force[1] > 0.0)
         };
         let count: usize = preparation.ready.iter().map(|level| pulled(before(level)) + pulled(&level.density)).sum();
-        assert!(count > 3, "{choice}: {count}");
+        // `consistent` pulls at the node on the last interval only, before and after which it is counted.
+        assert!(count >= 2, "{choice}: {count}");
         for level in &preparation.ready {
             assert_eq!(level.acceleration[node][0], 0.0, "{choice}");
             assert!(level.before.iter().all(|before| before.acceleration[at][0] == 0.0), "{choice}");
