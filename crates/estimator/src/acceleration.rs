@@ -2,18 +2,17 @@
 
 use percute_core::problem::Problem;
 
-/// M⁻¹ of nodal forces and of the contact forces on the nodes of the contact surface (m/s²).
+/// Turns nodal forces (N) into M⁻¹ of them and of the contact forces on the nodes of the contact surface (m/s²).
 pub(crate) fn accelerate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     inverse_mass: &[f64],
-    mut force: Vec<[f64; D]>,
+    force: &mut [[f64; D]],
     contact: &[[f64; D]],
-) -> Vec<[f64; D]> {
+) {
     for (node, contact) in problem.surface().nodes().iter().zip(contact) {
         (0..D).for_each(|c| force[node.node.index()][c] += contact[c]);
     }
     for (f, inverse) in force.iter_mut().zip(inverse_mass) {
         (0..D).for_each(|c| f[c] *= inverse);
     }
-    force
 }

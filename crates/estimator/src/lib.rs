@@ -22,6 +22,7 @@ mod lanes;
 mod loaded;
 mod map;
 mod measure;
+mod nodal_field;
 mod options;
 mod pipeline;
 mod reconstruction;

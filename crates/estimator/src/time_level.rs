@@ -7,6 +7,7 @@
 use crate::contact_density::{Densities, LevelDensities, OffContact};
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
+use crate::nodal_field::NodalField;
 
 /// Which value at an instant where contact changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,14 +36,14 @@ pub(crate) struct TimeLevel<const D: usize> {
     /// n.
     pub(crate) index: usize,
     /// The displacement whose stress is equilibrated (m).
-    pub(crate) displacement: Vec<[f64; D]>,
+    pub(crate) displacement: NodalField<D>,
     /// f_d on each element (N/m³), empty if there is none.
     pub(crate) body_force: Vec<[f64; D]>,
     /// Prescribed moments on the loaded facets (N).
     pub(crate) load_moments: Vec<[[f64; D]; D]>,
     pub(crate) surface: SurfaceStep<D>,
     /// M⁻¹(M − M_c)ã (m/s²), which `mixed` needs.
-    pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
+    pub(crate) lumping_difference: Option<NodalField<D>>,
 }
 
 /// A level of which the motion is known.
@@ -54,7 +55,7 @@ pub(crate) struct MotionKnown<const D: usize> {
     /// At t_{n−½}.
     pub(crate) mid: Option<NodalMotion<D>>,
     /// All nodal forces but those of contact (N): external, internal, of supports.
-    pub(crate) force: Vec<[f64; D]>,
+    pub(crate) force: NodalField<D>,
 }
 
 /// Motion and ∫ã dt at one half-step instant.
@@ -82,7 +83,7 @@ pub(crate) struct ForcesKnown<const D: usize> {
     pub(crate) now: Velocities<D>,
     pub(crate) mid: Option<Velocities<D>>,
     /// ã after t_n (m/s²).
-    pub(crate) acceleration: Vec<[f64; D]>,
+    pub(crate) acceleration: NodalField<D>,
     /// The contact density after t_n.
     pub(crate) density: Densities<D>,
     /// The values before t_n, where the contact force jumps there.

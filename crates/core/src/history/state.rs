@@ -106,6 +106,27 @@ impl<'a, const D: usize> State<'a, D> {
         (0..self.forces.total.len()).map(|node| self.acceleration_of(node)).collect()
     }
 
+    /// v_n of a node (m/s).
+    #[inline]
+    #[must_use]
+    pub fn velocity_of(&self, node: usize) -> [f64; D] {
+        match self.step.velocity {
+            Some(given) => given[node],
+            None => {
+                let acceleration = self.acceleration_of(node);
+                std::array::from_fn(|c| self.half_step[node][c] + self.back * acceleration[c])
+            }
+        }
+    }
+
+    /// M a_n by the scheme but for contact, of all nodes (N), as `force`.
+    pub fn write_force_without_contact(&self, surface: &ContactSurface<D>, force: &mut [[f64; D]]) {
+        force.copy_from_slice(&self.forces.total);
+        for (contact, before) in surface.nodes().iter().zip(&self.forces.before_contact) {
+            force[contact.node.index()] = *before;
+        }
+    }
+
     /// M a_n by the scheme but for contact (N).
     #[must_use]
     pub fn force_without_contact(&self, surface: &ContactSurface<D>) -> Vec<[f64; D]> {
@@ -119,14 +140,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// v_n = v_{n−½} + ½Δt_{n−1} a_n (m/s), at the start v₀.
     #[must_use]
     pub fn velocity(&self) -> Vec<[f64; D]> {
-        if let Some(given) = self.step.velocity {
-            return given.to_vec();
-        }
-        let one = |node: usize| {
-            let acceleration = self.acceleration_of(node);
-            std::array::from_fn(|c| self.half_step[node][c] + self.back * acceleration[c])
-        };
-        (0..self.forces.total.len()).map(one).collect()
+        (0..self.forces.total.len()).map(|node| self.velocity_of(node)).collect()
     }
 
     /// Kinetic energy (J) and momentum (kg m/s), with these masses of the nodes (kg).

@@ -1,15 +1,17 @@
 //! Nodal motion between contacts: velocity continuous and linear between the half-step instants,
 //! displacement its exact integral.
 
+use crate::nodal_field::{FieldPool, NodalField};
 use percute_core::history::State;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::sync::Arc;
 
 /// u_CA and u̇_CA at all nodes at one half-step instant; the normal components at contact nodes are those of the simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct NodalMotion<const D: usize> {
-    displacement: Vec<[f64; D]>,
-    velocity: Vec<[f64; D]>,
+    displacement: Arc<NodalField<D>>,
+    velocity: Arc<NodalField<D>>,
 }
 
 impl<const D: usize> NodalMotion<D> {
@@ -27,21 +29,23 @@ impl<const D: usize> NodalMotion<D> {
 
     /// Both, for tests that change them.
     #[cfg(test)]
-    pub(crate) fn parts_mut(&mut self) -> [&mut Vec<[f64; D]>; 2] {
-        [&mut self.displacement, &mut self.velocity]
+    pub(crate) fn parts_mut(&mut self) -> [&mut NodalField<D>; 2] {
+        [&mut self.displacement, &mut self.velocity].map(Arc::make_mut)
     }
 }
 
 /// The motion of all nodes, advanced step by step.
 #[derive(Clone, Debug)]
 pub(crate) struct FreeMotion<const D: usize> {
-    displacement: Vec<[f64; D]>,
-    velocity: Vec<[f64; D]>,
+    now: NodalMotion<D>,
+    pool: FieldPool<D>,
 }
 
 impl<const D: usize> FreeMotion<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        Self { displacement: problem.initial_displacement().to_vec(), velocity: problem.initial_velocity().to_vec() }
+    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, pool: &FieldPool<D>) -> Self {
+        let copy = |field: &[[f64; D]]| Arc::new(pool.copy(field));
+        let (displacement, velocity) = (copy(problem.initial_displacement()), copy(problem.initial_velocity()));
+        Self { now: NodalMotion { displacement, velocity }, pool: pool.clone() }
     }
 
     /// Advances over the half steps to t_{n−½} and t_n, and returns the motion at both; at n = 0 there is no half step and
@@ -53,43 +57,35 @@ impl<const D: usize> FreeMotion<D> {
         state: &State<'_, D>,
     ) -> (Option<NodalMotion<D>>, NodalMotion<D>) {
         let n = state.step().index;
-        let mut mid = None;
-        if n > 0 {
-            let half = 0.5 * times.step(n - 1);
-            let mut velocity = state.half_step().to_vec();
-            prescribe(problem, &mut velocity, |p| {
-                let v = |k: usize| problem.prescribed_velocity(p, times.instants()[k]);
-                0.5 * (v(n - 1) + v(n))
-            });
-            self.integrate(half, &velocity);
-            mid = Some(NodalMotion { displacement: self.displacement.clone(), velocity });
-
-            let mut velocity = state.velocity();
-            prescribe(problem, &mut velocity, |p| problem.prescribed_velocity(p, times.instants()[n]));
-            self.integrate(half, &velocity);
+        if n == 0 {
+            return (None, self.now.clone());
         }
-        (mid, NodalMotion { displacement: self.displacement.clone(), velocity: self.velocity.clone() })
-    }
-
-    /// Exact integral of a velocity that is linear over a length of time.
-    fn integrate(&mut self, length: f64, velocity: &[[f64; D]]) {
-        let states = self.displacement.iter_mut().zip(&mut self.velocity).zip(velocity);
-        for ((u, before), after) in states {
+        let (u, v) = (self.now.displacement(), self.now.velocity());
+        let quarter = 0.25 * times.step(n - 1);
+        let [mut u_mid, mut v_mid, mut u_now, mut v_now] = [(); 4].map(|()| self.pool.take());
+        // Velocity is linear over each half step, displacement its exact integral.
+        let mut node = |i: usize, mid: [f64; D], now: [f64; D]| {
             for c in 0..D {
-                u[c] += 0.5 * length * (before[c] + after[c]);
+                u_mid[i][c] = u[i][c] + quarter * (v[i][c] + mid[c]);
+                u_now[i][c] = u_mid[i][c] + quarter * (mid[c] + now[c]);
             }
-            *before = *after;
+            (v_mid[i], v_now[i]) = (mid, now);
+        };
+        for (i, mid) in state.half_step().iter().enumerate() {
+            node(i, *mid, state.velocity_of(i));
         }
-    }
-}
-
-/// Prescribed components take v_d.
-fn prescribe<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    velocity: &mut [[f64; D]],
-    value: impl Fn(&percute_core::problem::PrescribedComponent) -> f64,
-) {
-    for p in problem.prescribed() {
-        velocity[p.node.index()][p.component] = value(p);
+        for nodes in problem.prescribed().chunk_by(|a, b| a.node == b.node) {
+            let i = nodes[0].node.index();
+            let (mut mid, mut now) = (state.half_step()[i], state.velocity_of(i));
+            for p in nodes {
+                let [before, after] = [n - 1, n].map(|k| problem.prescribed_velocity(p, times.instants()[k]));
+                (mid[p.component], now[p.component]) = (0.5 * (before + after), after);
+            }
+            node(i, mid, now);
+        }
+        let motion =
+            |displacement, velocity| NodalMotion { displacement: Arc::new(displacement), velocity: Arc::new(velocity) };
+        self.now = motion(u_now, v_now);
+        (Some(motion(u_mid, v_mid)), self.now.clone())
     }
 }

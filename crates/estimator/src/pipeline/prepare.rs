@@ -10,6 +10,7 @@ use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTrack, FreeMotion, NodalMotion, NormalStep};
 use crate::loaded::LoadedFacets;
+use crate::nodal_field::FieldPool;
 use crate::options::Options;
 use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, SimulatedStep};
 use crate::residual::{Residuals, worse};
@@ -32,6 +33,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
     every: usize,
     motion: FreeMotion<D>,
+    pool: FieldPool<D>,
     tracks: Vec<ContactTrack>,
     supports: SupportCheck,
     /// The step before `current`.
@@ -55,6 +57,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+        let pool = FieldPool::new(problem.mesh().node_count());
         Self {
             problem,
             times,
@@ -62,7 +65,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             loaded: LoadedFacets::new(problem),
             reconstruction: reconstruction::new(problem, times, options),
             every: options.every,
-            motion: FreeMotion::new(problem),
+            motion: FreeMotion::new(problem, &pool),
+            pool,
             tracks: Vec::new(),
             supports: SupportCheck::default(),
             before: None,
@@ -166,7 +170,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.residuals.supports = worse(self.residuals.supports, miss);
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
-        let balanced = self.reconstruction.advance(&self.dynamics, &simulated);
+        let balanced = self.reconstruction.advance(&self.dynamics, &simulated, &self.pool);
         self.unmeasured.clear();
         if n.is_multiple_of(self.every) || n == self.times.step_count() {
             self.reconstruction.differ([step.displacement, now.velocity()]);

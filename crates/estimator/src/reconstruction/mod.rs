@@ -14,6 +14,7 @@ use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
+use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
 use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration};
@@ -60,15 +61,15 @@ pub(crate) struct SimulatedStep<'a, const D: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct BalancedFields<const D: usize> {
     /// The displacement whose stress is equilibrated (m).
-    pub(crate) displacement: Vec<[f64; D]>,
+    pub(crate) displacement: NodalField<D>,
     /// Its forces but those of contact (N).
-    pub(crate) force: Vec<[f64; D]>,
+    pub(crate) force: NodalField<D>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
     /// Their densities, where they depend on no other instant.
     pub(crate) densities: Option<LevelDensities<D>>,
     /// M⁻¹(M − M_c)ã (m/s²), for `mixed` alone.
-    pub(crate) lumping_difference: Option<Vec<[f64; D]>>,
+    pub(crate) lumping_difference: Option<NodalField<D>>,
 }
 
 /// A way to build dynamically admissible fields.
@@ -91,10 +92,15 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
 
     /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the reconstruction
     /// has its own.
-    fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
+    fn advance(
+        &mut self,
+        dynamics: &Dynamics<'_, D, N>,
+        simulated: &SimulatedStep<'_, D>,
+        pool: &FieldPool<D>,
+    ) -> BalancedFields<D> {
         let (state, step) = (simulated.state, simulated.state.step());
-        let force = state.force_without_contact(dynamics.problem().surface());
-        let (displacement, contact) = (step.displacement.to_vec(), step.reaction.to_vec());
+        let (displacement, contact, mut force) = (pool.copy(step.displacement), step.reaction.to_vec(), pool.take());
+        state.write_force_without_contact(dynamics.problem().surface(), &mut force);
         BalancedFields { displacement, force, contact, densities: None, lumping_difference: None }
     }
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::increment::Increment;
 use crate::kinematic::{FreeMotion, NormalStep};
+use crate::nodal_field::FieldPool;
 use crate::options::{Acceleration, Options};
 use crate::pipeline::fixture::{SHOWS, impact};
 use crate::pipeline::maps::Maps;
@@ -40,9 +41,9 @@ fn checked(track: &ContactTrack) -> Residuals {
         acceleration: None,
     };
     let mut evaluation = Evaluation::new(&problem, &times);
-    let (_, motion) = FreeMotion::new(&problem).advance(&problem, &times, &evaluation.advance(&step).unwrap());
-    let velocities =
-        Velocities { motion, increment: Increment::zero(problem.mesh().node_count()), lumping_increment: None };
+    let pool = FieldPool::new(problem.mesh().node_count());
+    let (_, motion) = FreeMotion::new(&problem, &pool).advance(&problem, &times, &evaluation.advance(&step).unwrap());
+    let velocities = Velocities { motion, increment: Increment::zero(&pool), lumping_increment: None };
     let mut stop = near.at(&sampler, &velocities, 2, 0.0);
     near.settle(&context, &mut stop);
     let touching = near.contact.map(|at| at.is_some());

@@ -29,15 +29,16 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
 
     /// The first level, before which there is no contact force.
     pub(super) fn first(&self, first: MotionKnown<D>) -> ForcesBefore<D> {
-        let MotionKnown { level, now: motion, force, .. } = first;
-        let increment = Increment::zero(force.len());
+        let MotionKnown { level, now: motion, mut force, .. } = first;
+        let increment = Increment::zero(&self.pool);
         let lumping_increment = level.lumping_difference.as_ref().map(|_| increment.clone());
         let surface_force = self.on_surface(&force);
+        accelerate(self.problem, self.dynamics.inverse_mass(), &mut force, &[]);
         let forces = ForcesKnown {
             level,
             now: Velocities { motion, increment, lumping_increment },
             mid: None,
-            acceleration: accelerate(self.problem, self.dynamics.inverse_mass(), force, &[]),
+            acceleration: force,
             density: Densities::none(self.problem),
             before: None,
             off_contact: Vec::new(),
@@ -72,12 +73,12 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     ) -> ForcesBefore<D> {
         let length = self.times.step(now.level.index);
         let friction = self.reconstruction.friction(self.problem, length, now, &next, &density);
-        let MotionKnown { level, now: motion, mid, force } = next;
-        let surface_force = self.on_surface(&force);
+        let MotionKnown { level, now: motion, mid, force: mut acceleration } = next;
+        let surface_force = self.on_surface(&acceleration);
         let pull = driving_forces(self.problem, &density);
-        let acceleration = accelerate(self.problem, self.dynamics.inverse_mass(), force, &pull);
+        accelerate(self.problem, self.dynamics.inverse_mass(), &mut acceleration, &pull);
         let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
-        let lumping_difference = now.level.lumping_difference.as_deref().zip(level.lumping_difference.as_deref());
+        let lumping_difference = now.level.lumping_difference.as_ref().zip(level.lumping_difference.as_ref());
         let lumping = now.now.lumping_increment.as_ref().zip(lumping_difference);
         let lumping = lumping.map(|(so_far, (start, end))| <(_, _)>::from(so_far.advance(length, start, end)));
         let (lumping_middle, lumping_increment) = lumping.unzip();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::contact_density::Densities;
+use crate::nodal_field::FieldPool;
 use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, driven, guided, impact, prepared, prepared_until, sticking};
 use crate::time_level::BeforeJump;
@@ -35,7 +36,7 @@ fn wrong_initial_conditions_show() {
     };
     for (other, shows) in [(&problem, false), (&faster, true), (&moved, true)] {
         let mut preparation = Preparation::new(&problem, &times, &Options::default());
-        preparation.motion = FreeMotion::new(other);
+        preparation.motion = FreeMotion::new(other, &FieldPool::new(other.mesh().node_count()));
         let mut evaluation = Evaluation::new(&problem, &times);
         preparation.push(&evaluation.advance(&step).unwrap());
         let found = preparation.residuals;

@@ -81,8 +81,8 @@ fn stars_out_of_balance_show() {
         let (level, [_, far]) = run.places();
         let node = run.window.equilibration.elements[far].nodes[0].index();
         let forces = &mut run.levels[level];
-        let field = [&mut forces.level.displacement, &mut forces.acceleration][change].as_mut_slice();
-        field[node].iter_mut().for_each(|value| *value *= 1.01);
+        let field = [&mut forces.level.displacement, &mut forces.acceleration];
+        field[change][node].iter_mut().for_each(|value| *value *= 1.01);
         run.solve();
         assert!(run.window.residuals.star_compatibility > SHOWS, "{:?}", run.window.residuals);
     }

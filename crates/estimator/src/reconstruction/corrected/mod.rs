@@ -16,6 +16,7 @@ use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
+use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
 use crate::time_level::SurfaceStep;
@@ -93,13 +94,17 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         state: &State<'_, D>,
         contact: Vec<[f64; D]>,
         gap: &[f64],
+        pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
-        let (displacement, force) = (step.displacement.to_vec(), state.force_without_contact(problem.surface()));
+        let (displacement, mut force) = (pool.copy(step.displacement), pool.take());
+        state.write_force_without_contact(problem.surface(), &mut force);
         let densities = self.level([&contact, step.reaction], gap);
         let pull = driving_forces(problem, &densities.acting);
         let lumping_difference = self.mixed.then(|| {
-            lumping_difference(problem, inverse_mass, &accelerate(problem, inverse_mass, force.clone(), &pull))
+            let mut acceleration = force.clone();
+            accelerate(problem, inverse_mass, &mut acceleration, &pull);
+            pool.copy(&lumping_difference(problem, inverse_mass, &acceleration))
         });
         BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }
@@ -180,7 +185,12 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
-    fn advance(&mut self, dynamics: &Dynamics<'_, D, N>, simulated: &SimulatedStep<'_, D>) -> BalancedFields<D> {
+    fn advance(
+        &mut self,
+        dynamics: &Dynamics<'_, D, N>,
+        simulated: &SimulatedStep<'_, D>,
+        pool: &FieldPool<D>,
+    ) -> BalancedFields<D> {
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
         let mut contact = match &mut self.impulse_smoothing {
             Some(smoothing) => {
@@ -190,7 +200,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         };
         let gap = problem.surface().gaps(step.displacement);
         let Some(mut motions) = self.motions.take() else {
-            return self.balance_simulation(dynamics, state, contact, &gap);
+            return self.balance_simulation(dynamics, state, contact, &gap, pool);
         };
         motions.begin(dynamics, step.index);
         let mut arresting = step.reaction.to_vec();
@@ -201,8 +211,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let densities = self.level([&contact, &arresting], &gap);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
-        let nodal = || vec![[0.0; D]; problem.mesh().node_count()];
-        let (mut displacement, mut force, mut lumping_difference) = (nodal(), nodal(), self.mixed.then(nodal));
+        let (mut displacement, mut force) = (pool.take(), pool.take());
+        let mut lumping_difference = self.mixed.then(|| pool.take());
         let mut level = AuxiliaryLevel {
             displacement: &mut displacement,
             force: &mut force,

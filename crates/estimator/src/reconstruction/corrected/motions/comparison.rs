@@ -58,7 +58,8 @@ impl<const D: usize> Plain<D> {
         } else {
             dynamics.forces_without_contact(n, &self.displacement, &mut force);
         }
-        let mut plain = crate::acceleration::accelerate(problem, inverse, force.clone(), contact);
+        let mut plain = force.clone();
+        crate::acceleration::accelerate(problem, inverse, &mut plain, contact);
         if self.from_rest {
             problem.prescribed().iter().for_each(|p| plain[p.node.index()][p.component] = 0.0);
         }
