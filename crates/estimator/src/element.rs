@@ -49,7 +49,7 @@ pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) 
 
 impl<const D: usize, const N: usize> Element<D, N> {
     /// ∂u_a/∂x_b of a linear field, from differences with its value at the first node.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn gradient<T: Value>(&self, u: &[[T; D]; N]) -> [[T; D]; D] {
         let inverse = 1.0 / self.volume;
         let mut gradient = [[T::ZERO; D]; D];
@@ -65,13 +65,13 @@ impl<const D: usize, const N: usize> Element<D, N> {
     }
 
     /// The values of a nodal field at the nodes.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn gather(&self, field: &[[f64; D]]) -> [[f64; D]; N] {
         self.nodes.map(|n| field[n.index()])
     }
 
     /// Vσ∇φ_i of node `i`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn internal_force<T: Value>(&self, i: usize, stress: &[[T; D]; D]) -> [T; D] {
         let mut force = [T::ZERO; D];
         for a in 0..D {

@@ -67,13 +67,25 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
             Acceleration::Rigid => self.turned([mean; N], (D + 2) as f64, acceleration),
             // M_consistent Γ/ρ = M_lumped ã.
             Acceleration::Weak => {
-                acceleration.map(|a| std::array::from_fn(|c| a[c] * (D + 2) as f64 - mean[c] * N as f64))
+                let mut field = *acceleration;
+                for value in &mut field {
+                    for c in 0..D {
+                        value[c] = value[c] * (D + 2) as f64 - mean[c] * N as f64;
+                    }
+                }
+                field
             }
-            Acceleration::Mixed => lumping_difference.map_or(*acceleration, |difference| {
+            Acceleration::Mixed => {
+                let Some(difference) = lumping_difference else { return *acceleration };
                 let mean = self::mean(difference);
-                let shifted = acceleration.map(|a| std::array::from_fn(|c| a[c] + mean[c]));
+                let mut shifted = *acceleration;
+                for value in &mut shifted {
+                    for c in 0..D {
+                        value[c] += mean[c];
+                    }
+                }
                 self.turned(shifted, (D + 2) as f64, difference)
-            }),
+            }
         }
     }
 
@@ -83,7 +95,9 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         for rotation in &self.rotations[..rotation_count(D)] {
             let turning = rotation.work_on(nodal) * rotation.inverse * factor;
             for i in 0..N {
-                (0..D).for_each(|c| field[i][c] += turning * rotation.field[i][c]);
+                for c in 0..D {
+                    field[i][c] += turning * rotation.field[i][c];
+                }
             }
         }
         field
@@ -95,7 +109,9 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 fn mean<T: Value, const D: usize, const N: usize>(nodal: &[[T; D]; N]) -> [T; D] {
     let mut mean = [T::ZERO; D];
     for value in nodal {
-        (0..D).for_each(|c| mean[c] += value[c] * (1.0 / N as f64));
+        for c in 0..D {
+            mean[c] += value[c] * (1.0 / N as f64);
+        }
     }
     mean
 }
@@ -106,7 +122,9 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
     fn work_on<T: Value>(&self, nodal: &[[T; D]; N]) -> T {
         let mut work = T::ZERO;
         for i in 0..N {
-            (0..D).for_each(|c| work += nodal[i][c] * self.field[i][c]);
+            for c in 0..D {
+                work += nodal[i][c] * self.field[i][c];
+            }
         }
         work
     }

@@ -268,11 +268,18 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn balanced<T: Value>(&self, fields: &NodalBalance<D, N, T>) -> Balanced<D, N, T> {
         let NodalBalance { moments, acceleration, lumping_difference, body_force } = fields;
         let density = self.law.density();
-        let terms = acceleration.iter().flatten().fold(T::ZERO, |m, a| m.max(a.abs() * density));
-        let terms = body_force.iter().fold(terms, |m, f| m.max(f.abs()));
+        let mut terms = T::ZERO;
+        for a in acceleration.as_flattened() {
+            terms = terms.max(a.abs() * density);
+        }
+        for f in body_force {
+            terms = terms.max(f.abs());
+        }
         let mut volume = self.inertia.apply(acceleration, lumping_difference.as_ref());
         for value in &mut volume {
-            (0..D).for_each(|c| value[c] = value[c] * density - body_force[c]);
+            for c in 0..D {
+                value[c] = value[c] * density - body_force[c];
+            }
         }
         let loading = Loading { traction: self.tractions(moments), volume };
         Balanced { forces: self.nodal_forces(&loading), terms, loading }
@@ -351,7 +358,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         for k in 0..N {
             for c in 0..D {
                 let mut sum = T::ZERO;
-                moments[k].iter().for_each(|b| sum += b[c]);
+                for b in &moments[k] {
+                    sum += b[c];
+                }
                 for p in 0..D {
                     traction[k][p][c] = (moments[k][p][c] * (D + 1) as f64 - sum) * (D as f64 / self.law.extent());
                 }
@@ -368,7 +377,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             for c in 0..D {
                 // Outward tractions are −D times it.
                 let traction = pull[c] * (D as f64 / self.law.extent());
-                (0..D).for_each(|p| loading.traction[k][p][c] += traction);
+                for p in 0..D {
+                    loading.traction[k][p][c] += traction;
+                }
             }
         }
     }
@@ -421,7 +432,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let floor = self.floor(balanced, scale);
         let (mut resultant, mut moments) = ([T::ZERO; D], [[T::ZERO; D]; D]);
         // Tractions one by one: at a node between a fixed edge and elements at rest two of them cancel.
-        let mut scale = balanced.loading.traction.iter().flatten().flatten().fold(T::ZERO, |m, t| m.max(t.abs()));
+        let mut scale = T::ZERO;
+        for t in balanced.loading.traction.as_flattened().as_flattened() {
+            scale = scale.max(t.abs());
+        }
         scale = floor.max(scale * (1.0 / (D * (D + 1)) as f64));
         for (force, arm) in balanced.forces.iter().zip(&self.arms) {
             for c in 0..D {
@@ -430,11 +444,18 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             }
             let net = |c: usize| force.outer[c] - force.inner[c];
             for b in 1..D {
-                (0..b).for_each(|a| moments[a][b] += net(b) * arm[a] - net(a) * arm[b]);
+                for a in 0..b {
+                    moments[a][b] += net(b) * arm[a] - net(a) * arm[b];
+                }
             }
         }
-        let moment = moments.iter().flatten().fold(T::ZERO, |m, x| m.worse(x.abs()));
-        let miss = resultant.iter().fold(moment * self.inverse_reach, |m, f| m.worse(f.abs()));
+        let mut miss = T::ZERO;
+        for moment in moments.as_flattened() {
+            miss = miss.worse((*moment * self.inverse_reach).abs());
+        }
+        for force in &resultant {
+            miss = miss.worse(force.abs());
+        }
         miss / scale.max(T::constant(f64::MIN_POSITIVE))
     }
 
@@ -446,11 +467,15 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let mut forces = [NodalForce { outer: [T::ZERO; D], inner: [T::ZERO; D] }; N];
         for c in 0..D {
             let mut total = T::ZERO;
-            load.iter().for_each(|g| total += g[c]);
+            for g in load {
+                total += g[c];
+            }
             for k in 0..N {
                 forces[k].inner[c] = (load[k][c] + total) * volume;
                 let mut sum = T::ZERO;
-                traction[k].iter().for_each(|t| sum += t[c]);
+                for t in &traction[k] {
+                    sum += t[c];
+                }
                 for p in 0..D {
                     forces[facet_node::<N>(k, p)].outer[c] += (traction[k][p][c] + sum) * (1.0 / (D * (D + 1)) as f64);
                 }

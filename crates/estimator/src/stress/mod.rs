@@ -37,7 +37,9 @@ pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
 pub(crate) fn hooke<T: Value, const D: usize>(law: &impl LinearLaw, gradient: &[[T; D]; D]) -> [[T; D]; D] {
     let (lambda, shear) = law.moduli();
     let mut trace = T::ZERO;
-    (0..D).for_each(|a| trace += gradient[a][a]);
+    for a in 0..D {
+        trace += gradient[a][a];
+    }
     let mut stress = [[T::ZERO; D]; D];
     for a in 0..D {
         for b in 0..D {

@@ -359,10 +359,10 @@ impl<const D: usize> StarFields<D> {
             self.lumping_difference.gather(block.nodes, forces.iter().map(|f| f.level.lumping_difference.as_deref()));
         }
         self.stress.clear();
-        self.stress.extend(block.cells().map(|(id, local)| {
+        for (id, local) in block.cells() {
             let element = &all.elements[id.index()];
-            hooke(all.problem.material(id), &element.gradient(&self.displacement.of(local)))
-        }));
+            self.stress.push(hooke(all.problem.material(id), &element.gradient(&self.displacement.of(local))));
+        }
         self.body_force.clear();
         if forces.iter().any(|f| !f.level.body_force.is_empty()) {
             let of = |e: usize, c: usize| {

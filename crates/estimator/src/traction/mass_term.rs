@@ -20,10 +20,13 @@ impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
             Self::Lumped(acceleration) => [acceleration[c], acceleration[c].abs()],
             Self::Mixed { acceleration, lumping_difference, nodes } => {
                 let nodes = &nodes[element];
-                let nodal = nodes.map(|n| acceleration[n as usize][c]);
                 let lumping = lumping_difference[nodes[i] as usize][c];
-                let consistent = nodal.iter().fold(nodal[i], |sum, a| sum + *a) * (1.0 / (D + 2) as f64);
-                [consistent + lumping, nodal.iter().fold(lumping.abs(), |size, a| size.max(a.abs()))]
+                let (mut sum, mut size) = (acceleration[nodes[i] as usize][c], lumping.abs());
+                for n in nodes {
+                    let a = acceleration[*n as usize][c];
+                    (sum, size) = (sum + a, size.max(a.abs()));
+                }
+                [sum * (1.0 / (D + 2) as f64) + lumping, size]
             }
         }
     }

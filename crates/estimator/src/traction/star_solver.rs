@@ -41,7 +41,9 @@ impl<const D: usize, T: Value> Ends<D, T> {
                 miss = miss.worse((moments[last][c] - self.moments[1][c]).abs());
             }
             if let Some(shift) = shift {
-                moments.iter_mut().for_each(|f| f[c] += shift);
+                for f in moments.iter_mut() {
+                    f[c] += shift;
+                }
             }
         }
         miss
@@ -92,7 +94,9 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
     fn along(&self, moments: &mut [[T; D]], scale: &mut T) -> [T; D] {
         let (last, ends) = (self.elements.len(), self.ends);
         let (mut target_sum, mut sum) = ([T::ZERO; D], [T::ZERO; D]);
-        moments[0] = ends.moments[0].map(|b| -b);
+        for c in 0..D {
+            moments[0][c] = -ends.moments[0][c];
+        }
         for c in 0..D {
             // In a closed chain the first link is the last and counts once.
             if ends.supported[0][c] {
@@ -127,9 +131,9 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
         let (data, place) = (&self.all.elements[self.elements[m].index()], self.local[m] as usize);
         let mut r = data.internal_force(i, &self.stress[place]);
         for c in 0..D {
-            let [inertia, size] = self.mass_term.at(place, i, c).map(|a| a * data.nodal_mass);
-            *scale = scale.max(r[c].abs()).max(size);
-            r[c] += inertia;
+            let [inertia, size] = self.mass_term.at(place, i, c);
+            *scale = scale.max(r[c].abs()).max(size * data.nodal_mass);
+            r[c] += inertia * data.nodal_mass;
             if let Some(force) = self.body_force.get(place) {
                 r[c] -= force[c] * (data.volume / N as f64);
             }
@@ -142,8 +146,12 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
     #[inline(always)]
     fn moment(&self, m: usize, i: usize, exit: usize, stress: &[[T; D]; D]) -> [T; D] {
         let data = &self.all.elements[self.elements[m].index()];
-        let facet = self.all.crossing[i][exit];
-        facet.map_or([T::ZERO; D], |k| data.internal_force(k, stress).map(|f| -f))
+        let Some(k) = self.all.crossing[i][exit] else { return [T::ZERO; D] };
+        let mut moment = data.internal_force(k, stress);
+        for f in &mut moment {
+            *f = -*f;
+        }
+        moment
     }
 
     /// Moment of the finite-element traction σ_h·n that enters the first element, from the boundary.
