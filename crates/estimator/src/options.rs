@@ -112,8 +112,7 @@ pub struct Options {
     pub every: usize,
     /// How many threads, at most [`MOST_THREADS`]; by default one for each core. The result does not depend on it.
     pub threads: Option<usize>,
-    /// How many steps are worked on at once; by default as many as fit into a modest memory. The
-    /// result does not depend on it.
+    /// How many sampled steps are worked on at once; by default, and at most, 8. The result does not depend on it.
     pub window: Option<usize>,
 }
 

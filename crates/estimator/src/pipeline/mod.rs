@@ -34,10 +34,9 @@ pub use window::memory;
 /// of contact, which wait until their nodes' next contact is known, and for the maps that were
 /// requested.
 ///
-/// A state that fills a window makes [`accept`](StateSink::accept) work on all of it before it returns, and so does
-/// [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: with
-/// the default window about a second on one core for up to 250 000 elements, and in proportion to them
-/// beyond, because a window has 8 steps at least. [`Options::window`] makes it shorter.
+/// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it returns, and so
+/// does [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: about a second on one core for a
+/// million elements. [`Options::window`] makes it shorter.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

@@ -12,7 +12,7 @@ use super::sampling::{Course, Sampling};
 use super::totals::{self, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, Lanes};
 use crate::measure::ElementError;
 use crate::options::{Acceleration, Options};
 use crate::reconstruction;
@@ -24,11 +24,13 @@ use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+/// Levels in preparation and the one that is kept for the next window.
+const OTHER_LEVELS: usize = 4;
+
 /// Memory of one level (bytes).
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
-    let mesh = problem.mesh();
     let fields = if options.acceleration(D) == Acceleration::Mixed { 11 } else { 8 };
-    8 * D * (fields * mesh.node_count() + mesh.stars().link_count() + D * mesh.element_count())
+    size_of::<[f64; D]>() * fields * problem.mesh().node_count()
 }
 
 /// Number of levels worked on at once.
@@ -40,9 +42,11 @@ fn size(options: &Options) -> usize {
 /// each element and sample. The queues of elements around contact nodes are not foreseen.
 #[must_use]
 pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
-    let levels = size(options).min(times.step_count()).saturating_add(1);
-    // Elements are prepared twice, for the forces of the levels and for the stars.
-    let element = 2 * size_of::<Element<D, N>>() + 8 * N * (D + 1) + size_of::<ElementError>();
+    let levels = size(options).min(times.step_count()).saturating_add(OTHER_LEVELS);
+    // Its places in the blocks of elements and stars are three for each node of it.
+    let element = size_of::<Element<D, N>>() + 3 * N * size_of::<u32>() + size_of::<Course>();
+    // Moments of a window and of the level that is kept.
+    let link = size_of::<[Lanes; D]>() + size_of::<[f64; D]>();
     // At the level and half way to the next.
     let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
     let steps = times.step_count() / options.every.max(1) + 1;
@@ -51,6 +55,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
         .saturating_mul(bytes_of_level(problem, options))
         .saturating_add(reconstruction::new(problem, times, options).memory(levels, threads))
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
+        .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))
 }
 

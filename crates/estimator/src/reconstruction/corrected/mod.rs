@@ -211,8 +211,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let densities = self.level([&contact, &arresting], &gap);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
-        let (mut displacement, mut force) = (pool.take(), pool.take());
-        let mut lumping_difference = self.mixed.then(|| pool.take());
+        let (mut displacement, mut force) = (pool.take(), pool.zeros());
+        let mut lumping_difference = self.mixed.then(|| pool.zeros());
         let mut level = AuxiliaryLevel {
             displacement: &mut displacement,
             force: &mut force,
