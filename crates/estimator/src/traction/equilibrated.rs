@@ -185,16 +185,15 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             )
         };
         let miss = blocks.into_par_iter().map_init(StarFields::default, solve).reduce(|| 0.0, worse);
-        let before: Vec<_> = forces.iter().map(|forces| self.stars_before_jump(forces)).collect();
-        let miss_before = forces.iter().zip(&before).zip(force_scale.0).map(|((forces, before), scale)| {
-            let Some((_, stars)) = before else { return 0.0 };
-            let residual = |&(node, star): &(NodeId, Compatibility<f64>)| self.star_residual(star, forces, scale, node);
-            stars.iter().map(residual).fold(0.0, worse)
-        });
-        let miss = miss_before.fold(miss, worse);
-        levels.moments_before = before.into_iter().map(|before| before.map(|(moments, _)| moments)).collect();
+        levels.moments_before.clear();
+        let mut worst = miss;
+        for (forces, force_scale) in forces.iter().zip(force_scale.0) {
+            let (moments, miss) = self.stars_before_jump(forces, force_scale).unzip();
+            worst = worse(worst, miss.unwrap_or(0.0));
+            levels.moments_before.push(moments);
+        }
         levels.forces = forces;
-        miss
+        worst
     }
 
     /// Largest nodal force of any element at each level (N).
@@ -286,11 +285,11 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         moments
     }
 
-    /// The stars of contact nodes once more, with the values before a jump.
-    fn stars_before_jump(&self, forces: &ForcesKnown<D>) -> Option<(Vec<[f64; D]>, Vec<(NodeId, Compatibility<f64>)>)> {
+    /// The stars of contact nodes once more, with the values before a jump, and the largest relative miss of their equations.
+    fn stars_before_jump(&self, forces: &ForcesKnown<D>, force_scale: f64) -> Option<(Vec<[f64; D]>, f64)> {
         let before = forces.before.as_ref()?;
         let mut moments = vec![[0.0; D]; self.contact_links.last().copied().unwrap_or(0)];
-        let mut stars = Vec::new();
+        let mut worst: f64 = 0.0;
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
             let node = contact.node;
             let links = &mut moments[self.contact_links[at]..self.contact_links[at + 1]];
@@ -310,9 +309,9 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
                 mass_term: MassTerm::Lumped(before.acceleration[at]),
                 ends: &ends,
             };
-            stars.push((node, solver.solve(links)));
+            worst = worse(worst, self.star_residual(solver.solve(links), forces, force_scale, node));
         }
-        Some((moments, stars))
+        Some((moments, worst))
     }
 
     /// σ_h of one element (Pa).
