@@ -54,15 +54,18 @@ impl<const D: usize> TractionMinimisation<D> {
             Shape::Bar => return None,
             Shape::Triangle => {}
         }
-        let form = |(e, element): (usize, &Element<D, N>)| {
-            // Energy does not depend on Γ_DA here: any choice will do.
-            let id = ElementId::new(e);
-            let measure = ElementMeasure::new(problem, element, id, Acceleration::Closest);
-            let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-            let [lane, ..] = forms.prepare(problem, std::iter::once(id));
-            moment_form(&measure, &forms.of(problem, id, lane))
-        };
-        let forms: Vec<Form> = elements.iter().enumerate().map(form).collect();
+        let mut energies = EnergyForms::new(problem.mesh().simplex().shape());
+        let mut forms: Vec<Form> = Vec::with_capacity(elements.len());
+        for start in (0..elements.len()).step_by(LANES) {
+            let group = start..(start + LANES).min(elements.len());
+            let lanes = energies.prepare(problem, group.clone().map(ElementId::new));
+            for (e, lane) in group.zip(lanes) {
+                let id = ElementId::new(e);
+                // Energy does not depend on Γ_DA here: any choice will do.
+                let measure = ElementMeasure::new(problem, &elements[e], id, Acceleration::Closest);
+                forms.push(moment_form(&measure, &energies.of(problem, id, lane)));
+            }
+        }
         Some(Self { basis: Basis::new(problem, &forms), forms })
     }
 
