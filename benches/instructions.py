@@ -66,7 +66,10 @@ def counts() -> dict[str, float]:
 
 def compare(found: dict[str, float], baseline: dict[str, float]) -> bool:
     """Print all stages; give whether none takes more than the margin."""
-    good = True
+    good = set(found) == set(baseline)
+    if not good:
+        print(f"the baseline has other stages: {', '.join(sorted(set(found) ^ set(baseline)))}")
+        return False
     for stage, count in found.items():
         change = count / baseline[stage] - 1.0
         remark = ""

@@ -101,7 +101,7 @@ pub fn simulate<const D: usize, const N: usize>(
 }
 
 /// The same on so many threads, by default one for each core. The result does not depend on their number. A mesh that is
-/// too small for threads to pay runs on one, and so does one whose order has no strips.
+/// too small for threads to pay runs on one, and so does one whose order has no strips, or if threads cannot be started.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -168,7 +168,8 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
                 }
             }
         }
-        let worst = worst.0.into_iter().fold(0.0, worse);
+        // A lane without a level holds no state.
+        let worst = worst.0[..self.levels.levels.len()].iter().copied().fold(0.0, worse);
         found.residuals.element_resultants = worse(found.residuals.element_resultants, worst);
         found
     }
@@ -246,7 +247,7 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
     #[inline(always)]
     fn check(&self, balanced: &Balanced<D, N, Lanes>, residuals: &mut Residuals) {
         let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;
-        if let Some(lane) = self.all.turn.iter().position(|&level| level == turn) {
+        for (lane, _) in self.all.turn.iter().enumerate().filter(|&(_, &level)| level == turn) {
             let one = Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.0[lane]);
             self.measure.check_stress(&one, self.all.levels.levels.force_scale().0[lane], residuals);
         }

@@ -17,7 +17,7 @@ use percute_core::simplex::Shape;
 /// Loads whose products with all others are summed side by side, so that no sum waits for another.
 const ROWS: usize = 6;
 
-/// Edges that differ by less, relative to their size, belong to triangles of the same shape: rounding of coordinates.
+/// Edges that differ by less, relative to the smallest height, belong to triangles of the same shape: rounding of coordinates.
 const SAME: f64 = 1e-13;
 
 /// The forms of triangles side by side.
@@ -117,8 +117,8 @@ struct TriangleShape {
 
 impl TriangleShape {
     fn is_like(&self, other: &Self) -> bool {
-        let size = self.map.amax();
-        self.compliance == other.compliance && (self.map - other.map).amax() <= SAME * size
+        let height = self.map.determinant().abs() / self.map.amax();
+        self.compliance == other.compliance && (self.map - other.map).amax() <= SAME * height
     }
 }
 

@@ -98,11 +98,14 @@ impl<const D: usize> EquilibratedLevels<D> {
         &mut self.forces
     }
 
-    /// The last level, and all the others' fields, which are no longer needed.
+    /// Takes the last level out and frees the fields of the others.
     pub(crate) fn keep_last(&mut self) -> Option<KeptLevel<D>> {
-        let lane = self.forces.len().checked_sub(1)?;
+        let forces = self.forces.pop()?;
+        let lane = self.forces.len();
+        self.forces.clear();
+        self.moments_before.clear();
         Some(KeptLevel {
-            forces: self.forces.swap_remove(lane),
+            forces,
             force_scale: self.force_scale.0[lane],
             moments: self.moments.iter().map(|moment| moment.map(|m| m.0[lane])).collect(),
         })
@@ -258,7 +261,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             let found = solver.solve(own);
             let scale = found.scale.max(*force_scale * 1e-12);
             let relative = found.miss / scale.max(Lanes::constant(f64::MIN_POSITIVE));
-            let largest = relative.0.into_iter().fold(0.0, worse);
+            let largest = relative.0[..forces.len()].iter().copied().fold(0.0, worse);
             if largest <= EXPLAINED {
                 worst = worse(worst, largest);
                 continue;

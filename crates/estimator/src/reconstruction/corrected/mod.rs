@@ -170,6 +170,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let mesh = self.problem.mesh();
         let concentration = self.concentration.as_ref().map_or(0, |concentration| concentration.memory(self.problem));
         TractionMinimisation::<D>::memory(mesh.simplex().shape(), mesh.element_count(), levels, threads)
+            .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }
 

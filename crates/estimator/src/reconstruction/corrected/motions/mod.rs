@@ -32,7 +32,7 @@ mod weights;
 use crate::difference::Difference;
 use crate::element::Element;
 use blocks::Blocks;
-use cells::{Cells, NodalLumping};
+use cells::{Cell, Cells, NodalLumping};
 use energies::Energies;
 use pass::Pass;
 use percute_core::dynamics::Dynamics;
@@ -123,6 +123,12 @@ pub(super) struct AuxiliaryLevel<'a, const D: usize> {
 }
 
 impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
+    /// About how much memory it takes (bytes).
+    pub(super) fn memory(nodes: usize, elements: usize) -> usize {
+        let node = 4 * size_of::<NodalLanes<D>>() + 2 * size_of::<NodalLumping<D>>() + size_of::<[f64; D]>();
+        nodes.saturating_mul(node).saturating_add(elements.saturating_mul(size_of::<Cell<D, N>>()))
+    }
+
     /// Before the first level, with these shares of the corrections of the auxiliary solution.
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, shares: Shares) -> Self {
         let cells = Cells::new(problem);
