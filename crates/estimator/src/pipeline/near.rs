@@ -111,15 +111,14 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     /// Takes in the intervals between consecutive levels, then samples those whose motion is known.
     pub(super) fn advance(&mut self, context: &ContactSampling<'_, '_, D, N>, levels: &SampledLevels<'_, D>) {
         let sampler = ElementSampler::new(context.shared, self.element);
-        let begins = self.start.is_none();
-        if begins {
+        if self.start.is_none() {
             let mut first = self.at(&sampler, &levels.levels.forces()[0].now, 0, 0.0);
             self.settle(context, &mut first);
             self.check_start(context, sampler.element, &first.velocities);
             self.start = Some(first);
         }
-        for (k, [from, to]) in levels.intervals().enumerate() {
-            self.queue_interval(&sampler, begins && k == 0, &from, &to);
+        for [from, to] in levels.intervals() {
+            self.queue_interval(&sampler, &from, &to);
         }
         self.sample_known(context, &sampler);
     }
@@ -127,12 +126,12 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     fn queue_interval(
         &mut self,
         sampler: &ElementSampler<'_, '_, D, N>,
-        first: bool,
         from: &EquilibratedLevel<'_, D>,
         to: &EquilibratedLevel<'_, D>,
     ) {
         let start = sampler.balanced(from, &self.contact, Side::After);
         let end = sampler.balanced(to, &self.contact, Side::Before);
+        let first = self.samples.is_empty() && self.queue.is_empty();
         let begins = first || from.forces().before.is_some();
         if begins {
             sampler.check(&start, from, CHECK, &mut self.residuals);
