@@ -53,7 +53,7 @@ impl<const D: usize> WorkMeter<D> {
         Self { force: vec![[0.0; D]; nodes.len()], displacement: vec![[0.0; D]; nodes.len()], nodes }
     }
 
-    /// Work since the last call, node by node; `force` gives F_n of the i-th node.
+    /// Work since the last call, node by node where a force acts; `force` gives F_n of the i-th node.
     fn advance(
         &mut self,
         u: &[[f64; D]],
@@ -67,7 +67,9 @@ impl<const D: usize> WorkMeter<D> {
                 mean[c] = 0.5 * (self.force[i][c] + now[c]);
                 path[c] = at[c] - self.displacement[i][c];
             }
-            each(i, mean, path);
+            if mean != [0.0; D] {
+                each(i, mean, path);
+            }
             self.force[i] = now;
             self.displacement[i] = at;
         }

@@ -3,7 +3,7 @@
 use super::balance::BalanceKeeper;
 use super::contact::Contact;
 use super::moving::MovingBody;
-use super::pass::Motion;
+use super::node_update::Motion;
 use super::{Balance, Dynamics};
 use crate::history::{SinkError, State, StateSink, Step};
 use crate::observer::{Observer, Progress};

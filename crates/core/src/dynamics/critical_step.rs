@@ -1,7 +1,8 @@
 //! The critical time step Δt_c = 2/ω_max, eq. \[34\].
 
 use super::Stiffness;
-use super::pass::{Fields, Motion, Pass, Sums};
+use super::node_update::{Motion, Sums};
+use super::pass::{Fields, Pass};
 use crate::ids::ElementId;
 use crate::material::{Law, LinearLaw};
 use crate::problem::Problem;

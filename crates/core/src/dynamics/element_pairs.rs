@@ -6,8 +6,12 @@ use crate::mesh::Strips;
 use crate::problem::Problem;
 use std::ops::Range;
 
-/// A sweep goes over so many pairs at a time: some 30 kB with their nodes, which the first cache holds.
-const CHUNK: usize = 128;
+/// A sweep goes over so many pairs at a time. Few of them let the elements of a chunk hide the time in which the nodes of
+/// the next come from memory; fewer have more work at their ends.
+const CHUNK: usize = 32;
+
+/// Nodes are handled so many at a time, the numbers of a cache line.
+const GRAIN: u32 = 8;
 
 /// Numbers of the four nodes of a pair in its strip: A has nodes 0 to D, B has node 0 and nodes 2 to D + 1.
 pub(super) type PairNodes = [u32; 4];
@@ -135,7 +139,7 @@ impl ElementPairs {
     fn close(&mut self, first_chunk: usize, nodes: usize) {
         let mut reached = 0;
         for chunk in &mut self.chunks[first_chunk..] {
-            reached = chunk.reached.max(reached);
+            reached = chunk.reached.next_multiple_of(GRAIN).min(nodes as u32).max(reached);
             chunk.reached = reached;
         }
         // The last chunk is followed by no other: all nodes have been reached, and all are left.
@@ -144,7 +148,7 @@ impl ElementPairs {
         }
         let mut left = nodes as u32;
         for k in (first_chunk..self.chunks.len()).rev() {
-            self.chunks[k].left = left;
+            self.chunks[k].left = if left < nodes as u32 { left - left % GRAIN } else { left };
             let start = if k == 0 { 0 } else { self.chunks[k - 1].end as usize };
             let quads = &self.nodes[start..self.chunks[k].end as usize];
             left = quads.as_flattened().as_flattened().iter().fold(left, |least, &node| least.min(node));

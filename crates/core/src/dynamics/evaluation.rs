@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use super::moving::MovingBody;
-use super::pass::Motion;
+use super::node_update::Motion;
 use super::update::advance_velocity;
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepError, StepSource, half_of_last};
 use crate::problem::Problem;

@@ -9,6 +9,7 @@ mod element_pairs;
 mod evaluation;
 mod internal_force;
 mod moving;
+mod node_update;
 mod pass;
 mod update;
 

@@ -1,7 +1,8 @@
 //! The body as it moves from step to step.
 
 use super::Dynamics;
-use super::pass::{Fields, Motion, Pass, Sums};
+use super::node_update::{Motion, Sums};
+use super::pass::{Fields, Pass};
 use crate::history::{StepForces, half_of_last};
 use crate::problem::Problem;
 

@@ -97,15 +97,20 @@ impl Stars {
         facets: &[Facet<D>],
         cell_facets: &[[FacetId; N]],
     ) -> Result<Self, MeshError> {
-        let (facets_around, incident) = (simplex.facets_around(), incident_elements(node_count, cells));
-        let mut stars = Self { offsets: vec![0], ..Self::default() };
+        let (facets_around, (starts, incident)) = (simplex.facets_around(), incident_elements(node_count, cells));
+        let mut stars = Self {
+            offsets: Vec::with_capacity(node_count + 1),
+            elements: Vec::with_capacity(N * cells.len()),
+            links: Vec::with_capacity(N * cells.len() + node_count),
+        };
+        stars.offsets.push(0);
         let sides = |element: ElementId, node: NodeId| {
             let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
             facets_around[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
         };
         let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets[f.index()].neighbour.is_none());
-        for (i, around) in incident.iter().enumerate() {
-            let node = NodeId::new(i);
+        for i in 0..node_count {
+            let (node, around) = (NodeId::new(i), &incident[starts[i] as usize..starts[i + 1] as usize]);
             let first = around.iter().copied().find(|&e| is_end(sides(e, node)[0])).unwrap_or(around[0]);
             let start = sides(first, node)[0];
             let mut element = first;
@@ -130,15 +135,24 @@ impl Stars {
     }
 }
 
-/// Elements that hold each node, ascending.
-fn incident_elements<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> Vec<Vec<ElementId>> {
-    let mut incident = vec![Vec::new(); node_count];
+/// Elements that hold each node, ascending, and where those of each node begin.
+fn incident_elements<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -> (Vec<u32>, Vec<ElementId>) {
+    let mut starts = vec![0_u32; node_count + 2];
+    for node in cells.iter().flatten() {
+        starts[node.index() + 2] += 1;
+    }
+    for i in 2..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut incident = vec![ElementId::new(0); N * cells.len()];
     for (e, cell) in cells.iter().enumerate() {
         for node in cell {
-            incident[node.index()].push(ElementId::new(e));
+            let slot = &mut starts[node.index() + 1];
+            incident[*slot as usize] = ElementId::new(e);
+            *slot += 1;
         }
     }
-    incident
+    (starts, incident)
 }
 
 #[cfg(test)]

@@ -84,5 +84,6 @@ pub(super) fn facets<const D: usize, const N: usize>(
             cell_facets[side.1.index()][usize::from(side.2)] = id;
         }
     }
+    facets.shrink_to_fit();
     Ok((facets, cell_facets))
 }

@@ -205,3 +205,56 @@ impl Lanes for Portable {
         *from = [from[0] - v[0], from[1] - v[1]];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation on numbers without a pattern.
+    #[derive(Clone, Copy)]
+    struct All([Wide; 2]);
+
+    impl Task for All {
+        type Output = (Vec<Wide>, Vec<Half>);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Self::Output {
+            let halves = |v: &Wide| [0, 2, 4, 6].map(|i| [v[i], v[i + 1]]);
+            let ([p, q, r, s], numbers) = (halves(&self.0[0]), &[0.1, 0.2, 0.3, 0.7]);
+            let (a, b) = (l.load(&self.0[0]), l.load(&self.0[1]));
+            let wide = [
+                l.quad([s, p, r, q]),
+                l.twice([q, p]),
+                l.splat(self.0[0][3]),
+                l.repeat(numbers),
+                l.first(a),
+                l.second(a),
+                l.swap(a),
+                l.cross(a),
+                l.add(a, b),
+                l.sub(a, b),
+                l.mul(a, b),
+            ];
+            let [first, last] = l.ends(a);
+            let (mut more, mut less) = (r, s);
+            l.add_to(&mut more, first);
+            l.take_from(&mut less, last);
+            (wide.map(|v| l.store(v)).to_vec(), vec![more, less])
+        }
+    }
+
+    /// Every instruction set of this processor does what plain arrays do.
+    #[test]
+    fn the_operations_are_those_of_plain_arrays() {
+        let all = All([0, 8].map(|start| std::array::from_fn(|i| ((start + i + 1) as f64).sqrt())));
+        let plain = all.run(Portable);
+        assert_eq!(plain, dispatch(all));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(set) = pulp::x86::V3::try_new() {
+            assert_eq!(plain, set.vectorize(|| all.run(set)));
+        }
+        let a = all.0[0];
+        assert_eq!(plain.0[7], [2, 3, 0, 1, 6, 7, 4, 5].map(|i| a[i]));
+        assert_eq!(plain.1[1], [a[6] - a[4], a[7] - a[5]]);
+    }
+}
