@@ -22,7 +22,7 @@ use percute_workflow::Failure;
 use percute_workflow::history::{open, plan};
 use percute_workflow::run::{Analysis, Results, Storage, balance, estimate, motion, run, simulate, true_errors};
 
-/// 1353 nodes: with fewer, a shuffled mesh is solved in its own order.
+/// 1353 nodes: with up to 256, a shuffled mesh is solved in its own order.
 fn block() -> TriangleMesh {
     TriangleMesh::rectangle(0.05, 0.04, 40, 32).unwrap()
 }
