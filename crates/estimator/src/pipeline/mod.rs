@@ -27,6 +27,9 @@ use rayon::ThreadPool;
 use window::LevelWindow;
 pub use window::memory;
 
+/// From so many elements on, a step takes much longer than to hand it to the threads, some 10 µs.
+const THREADED: usize = 20_000;
+
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
@@ -106,7 +109,12 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
 impl<const D: usize, const N: usize> StateSink<D> for Estimator<'_, D, N> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         self.preparation.check(state.step())?;
-        self.preparation.push(state);
+        let preparation = &mut self.preparation;
+        if self.pool.current_num_threads() > 1 && self.problem.mesh().element_count() >= THREADED {
+            self.pool.install(|| preparation.push(state));
+        } else {
+            preparation.push(state);
+        }
         self.pass_on(false);
         Ok(())
     }

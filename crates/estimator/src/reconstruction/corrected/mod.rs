@@ -212,16 +212,17 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let densities = self.level([&contact, &arresting], &gap);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
-        let (mut displacement, mut force) = (pool.take(), pool.zeros());
-        let mut lumping_difference = self.mixed.then(|| pool.zeros());
-        let mut level = AuxiliaryLevel {
+        // The pass fills all of them.
+        let (mut displacement, mut force, mut lumping_difference) =
+            (pool.take(), pool.take(), self.mixed.then(|| pool.take()));
+        let level = AuxiliaryLevel {
             displacement: &mut displacement,
             force: &mut force,
             lumping_difference: lumping_difference.as_deref_mut(),
         };
         let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction);
         let simulated = SimulatedLevel { velocity, strain, reaction };
-        motions.advance(dynamics, step.index, &simulated, &pull, &mut level);
+        motions.advance(dynamics, step.index, &simulated, &pull, level);
         self.motions = Some(motions);
         BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }

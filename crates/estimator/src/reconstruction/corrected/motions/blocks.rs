@@ -1,89 +1,84 @@
 //! Consecutive elements in blocks, so that nodes are finished one block after the other.
 
+use percute_core::ids::NodeId;
+use percute_core::mesh::Strips;
 use std::ops::Range;
 
 /// Fewest elements of a block: the nodes of six blocks are in work at a time and should stay in a cache.
 const FEWEST: usize = 512;
 
-/// Blocks of consecutive elements. Block k touches nodes of the ranges k and k + 1 only, so that blocks k and k + 2 share no node.
-/// A mesh in an order that does not allow it is one block.
+/// Strips in the order of a pass: the even ones each before its odd neighbours. A turn is an even strip and the odd one before it.
+/// Elements are thus summed up in the order of all even strips and then all odd ones.
 #[derive(Clone, Debug)]
 pub(super) struct Blocks {
-    /// First element of each block, and the number of elements.
-    elements: Vec<usize>,
-    /// First node of each range, and the number of nodes.
-    nodes: Vec<usize>,
+    strips: Strips,
+    node_count: usize,
 }
 
 impl Blocks {
     /// Those of elements with these nodes, of at least so many elements each.
-    pub(super) fn new<const N: usize>(cells: &[[u32; N]], node_count: usize, fewest: usize) -> Self {
-        // The lowest node from each element on.
-        let mut lowest = vec![node_count as u32; cells.len() + 1];
-        for (e, nodes) in cells.iter().enumerate().rev() {
-            lowest[e] = nodes.iter().fold(lowest[e + 1], |low, n| low.min(*n));
-        }
-        let (mut elements, mut nodes) = (vec![0], vec![0]);
-        // The highest nodes before the next cut, and before the last one.
-        let (mut highest, mut before) = (0, None);
-        for (e, cell) in cells.iter().enumerate() {
-            let start = elements[elements.len() - 1];
-            if e >= start + fewest && before.is_none_or(|before| lowest[e] > before) {
-                elements.push(e);
-                nodes.push(lowest[e] as usize);
-                before = Some(highest);
-            }
-            highest = cell.iter().fold(highest, |high, n| high.max(*n));
-        }
-        elements.push(cells.len());
-        nodes.push(node_count);
-        Self { elements, nodes }
+    pub(super) fn with_fewest<const N: usize>(cells: &[[NodeId; N]], node_count: usize, fewest: usize) -> Self {
+        Self { strips: Strips::with_fewest(cells, fewest), node_count }
     }
 
-    /// Those of blocks of the usual size.
-    pub(super) fn usual<const N: usize>(cells: &[[u32; N]], node_count: usize) -> Self {
-        Self::new(cells, node_count, FEWEST)
+    /// Those of the usual size.
+    pub(super) fn new<const N: usize>(cells: &[[NodeId; N]], node_count: usize) -> Self {
+        Self::with_fewest(cells, node_count, FEWEST)
     }
 
     pub(super) fn count(&self) -> usize {
-        self.elements.len() - 1
+        self.strips.count()
     }
 
-    /// Number of pairs: an even block and the odd one before it. Elements are summed in the order of pairs, the even block of
-    /// each first. After a pair, no later block touches the nodes of its ranges.
-    pub(super) fn pairs(&self) -> usize {
+    /// The elements of a block.
+    pub(super) fn elements(&self, block: usize) -> Range<usize> {
+        self.strips.elements(block)
+    }
+
+    /// Number of turns.
+    pub(super) fn turns(&self) -> usize {
         self.count() / 2 + 1
     }
 
-    /// The elements of a block; none beyond the last.
+    /// The even block of a turn, if there is one of this number.
     #[inline(always)]
-    pub(super) fn elements(&self, block: usize) -> Range<usize> {
-        let end = self.count();
-        self.elements[block.min(end)]..self.elements[(block + 1).min(end)]
+    pub(super) fn even(&self, turn: usize) -> Option<usize> {
+        Some(2 * turn).filter(|block| *block < self.count())
     }
 
-    /// The elements of the two blocks of a pair, in the order of summation.
+    /// The odd block of a turn, if there is one of this number.
     #[inline(always)]
-    pub(super) fn pair(&self, pair: usize) -> [Range<usize>; 2] {
-        [self.elements(2 * pair), if pair == 0 { 0..0 } else { self.elements(2 * pair - 1) }]
+    pub(super) fn odd(&self, turn: usize) -> Option<usize> {
+        (2 * turn).checked_sub(1).filter(|block| *block < self.count())
     }
 
-    /// The nodes that the even block of a pair touches and no block before it but the odd one of the pair before.
+    /// The nodes that the blocks of a turn touch and those of the turns before do not.
     #[inline(always)]
-    pub(super) fn begun(&self, pair: usize) -> Range<usize> {
-        self.first_node(2 * pair)..self.first_node(2 * pair + 2)
+    pub(super) fn begun(&self, turn: usize) -> Range<usize> {
+        self.first_node(2 * turn)..self.first_node(2 * turn + 2)
     }
 
-    /// The nodes that are finished after a pair and were not before it.
+    /// The nodes that no block of a later turn touches.
     #[inline(always)]
-    pub(super) fn finished(&self, pair: usize) -> Range<usize> {
-        let start = if pair == 0 { 0 } else { self.first_node(2 * pair - 1) };
-        start..self.first_node(2 * pair + 1)
+    pub(super) fn finished(&self, turn: usize) -> Range<usize> {
+        let start = if turn == 0 { 0 } else { self.first_node(2 * turn - 1) };
+        start..self.first_node(2 * turn + 1)
     }
 
+    /// The nodes that a block touches, and others up to the next block but one.
     #[inline(always)]
-    fn first_node(&self, range: usize) -> usize {
-        self.nodes[range.min(self.count())]
+    pub(super) fn nodes(&self, block: usize) -> Range<usize> {
+        self.first_node(block)..self.first_node(block + 2)
+    }
+
+    /// The lowest node of a block and all after it.
+    #[inline(always)]
+    fn first_node(&self, block: usize) -> usize {
+        match block {
+            0 => 0,
+            _ if block < self.count() => self.strips.nodes(block).start,
+            _ => self.node_count,
+        }
     }
 }
 
@@ -93,22 +88,20 @@ mod tests {
     use percute_core::mesh::TriangleMesh;
     use percute_testkit::random_rectangle;
 
-    fn cells(mesh: &TriangleMesh) -> Vec<[u32; 3]> {
-        mesh.cells().iter().map(|nodes| nodes.map(|n| n.index() as u32)).collect()
-    }
-
-    /// Pairs begin and finish each node once, before the first and after the last of its elements.
-    fn check(cells: &[[u32; 3]], node_count: usize, blocks: &Blocks) {
+    /// Turns begin and finish each node once, before the first and after the last of its elements.
+    fn check(cells: &[[NodeId; 3]], node_count: usize, blocks: &Blocks) {
         let (mut begun, mut finished, mut done) = (vec![false; node_count], vec![false; node_count], Vec::new());
-        for pair in 0..blocks.pairs() {
-            for n in blocks.begun(pair) {
+        for turn in 0..blocks.turns() {
+            for n in blocks.begun(turn) {
                 assert!(!std::mem::replace(&mut begun[n], true));
             }
-            for e in blocks.pair(pair).into_iter().flatten() {
-                assert!(cells[e].iter().all(|n| begun[*n as usize] && !finished[*n as usize]), "{e}");
-                done.push(e);
+            for block in blocks.even(turn).into_iter().chain(blocks.odd(turn)) {
+                for e in blocks.elements(block) {
+                    assert!(cells[e].iter().all(|n| begun[n.index()] && !finished[n.index()]), "{e}");
+                    done.push(e);
+                }
             }
-            for n in blocks.finished(pair) {
+            for n in blocks.finished(turn) {
                 assert!(!std::mem::replace(&mut finished[n], true));
             }
         }
@@ -118,27 +111,25 @@ mod tests {
     }
 
     #[test]
-    fn pairs_finish_their_nodes() {
+    fn turns_finish_their_nodes() {
         for (nx, ny) in [(4, 30), (5, 31), (3, 1)] {
             let mesh = TriangleMesh::rectangle(1.0, 1.0, nx, ny).unwrap();
-            let cells = cells(&mesh);
             for fewest in [1, 7, 16, 40, 10_000] {
-                let blocks = Blocks::new(&cells, mesh.node_count(), fewest);
-                check(&cells, mesh.node_count(), &blocks);
-                // Rows of nodes: three rows of cells at most between cuts.
-                assert!(blocks.count() + 1 >= cells.len() / (6 * nx).max(fewest + 2 * nx), "{}", blocks.count());
+                let blocks = Blocks::with_fewest(mesh.cells(), mesh.node_count(), fewest);
+                check(mesh.cells(), mesh.node_count(), &blocks);
             }
         }
+        let mesh = TriangleMesh::rectangle(1.0, 1.0, 4, 30).unwrap();
+        assert!(Blocks::with_fewest(mesh.cells(), mesh.node_count(), 8).count() > 5);
     }
 
     /// Without locality there is one block.
     #[test]
     fn any_order_will_do() {
         let mesh = random_rectangle(1.0, 1.0, 8, 3).unwrap();
-        let mut cells = cells(&mesh);
+        let mut cells = mesh.cells().to_vec();
         cells.reverse();
-        let blocks = Blocks::new(&cells, mesh.node_count(), 1);
+        let blocks = Blocks::with_fewest(&cells, mesh.node_count(), 1);
         check(&cells, mesh.node_count(), &blocks);
-        assert!(blocks.count() <= 2, "{}", blocks.count());
     }
 }

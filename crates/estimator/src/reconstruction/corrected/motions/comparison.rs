@@ -1,6 +1,7 @@
 //! The four motions beside their plain formulas, one field and one sweep at a time.
 
 use super::super::lumping_difference::lumping_difference;
+use super::lanes::MOTIONS;
 use super::weights::damping;
 use super::*;
 use crate::element::elements;
@@ -131,10 +132,9 @@ fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; 
 /// Checks fields, forces and energies of all levels, under any contact forces and a random motion in place of the simulation.
 fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, fewest: usize) {
     let dynamics = Dynamics::new(problem, times);
-    let mut motions = Motions::new(problem, times, Shares::ALL);
-    let nodes: Vec<[u32; N]> = motions.cells.cells.iter().map(|cell| cell.nodes).collect();
     let count = problem.mesh().node_count();
-    motions.blocks = Blocks::new(&nodes, count, fewest);
+    let blocks = Blocks::with_fewest(problem.mesh().cells(), count, fewest);
+    let mut motions = Motions::on_blocks(problem, times, Shares::ALL, blocks);
     motions.prepare(&elements(problem));
     let mut plain = plain(problem);
     let (mut random, contacts) = (Random::new(5), problem.surface().nodes().len());
@@ -144,13 +144,13 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         let [mut displacement, mut force, mut lumping] = [0; 3].map(|_| vec![[0.0; D]; count]);
         motions.begin(&dynamics, n);
         let approaches = motions.approaches(&dynamics, n).to_vec();
-        let mut level = AuxiliaryLevel {
+        let level = AuxiliaryLevel {
             displacement: &mut displacement,
             force: &mut force,
             lumping_difference: Some(&mut lumping),
         };
         let given = SimulatedLevel { velocity: &simulated[1], strain: 0.0, reaction: &reaction };
-        motions.advance(&dynamics, n, &given, &pull, &mut level);
+        motions.advance(&dynamics, n, &given, &pull, level);
         motions.differ([&simulated[0], &simulated[1]], [0.0; 2]);
 
         let velocity = plain[0].half_step.clone();
@@ -276,6 +276,8 @@ fn triangles() {
         (random_rectangle(1.0, 0.8, 6, 3).unwrap(), 4),
         (TriangleMesh::rectangle(1.0, 0.8, 3, 40).unwrap(), 1),
         (TriangleMesh::rectangle(1.0, 0.8, 3, 41).unwrap(), 20),
+        // Several chunks.
+        (TriangleMesh::rectangle(1.0, 0.8, 2, 170).unwrap(), 1),
     ] {
         let problem = loaded(&mesh, laws, ["left", "top", "right"]);
         compare(&problem, &uneven(&problem, 30), fewest);
@@ -287,4 +289,46 @@ fn bars() {
     let laws = [Elastic::bar(3.0, 1.0, 0.5).unwrap(), Elastic::bar(1.0, 2.0, 0.7).unwrap()];
     let problem = loaded(&BarMesh::uniform_bar(1.0, 23).unwrap(), laws, ["start", "end", "start"]);
     compare(&problem, &uneven(&problem, 30), 2);
+}
+
+/// Displacements, forces and differences with so many threads.
+fn with_threads(problem: &Problem<2, 3>, threads: usize) -> (Vec<[f64; 2]>, Vec<Difference>) {
+    let times = uneven(problem, 10);
+    let dynamics = Dynamics::new(problem, &times);
+    let blocks = Blocks::with_fewest(problem.mesh().cells(), problem.mesh().node_count(), 1);
+    let mut motions = Motions::on_blocks(problem, &times, Shares::ALL, blocks);
+    assert!(motions.plan.chunks.len() >= 4);
+    motions.prepare(&elements(problem));
+    let (count, contacts) = (problem.mesh().node_count(), problem.surface().nodes().len());
+    let mut random = Random::new(9);
+    let [velocity, pull, reaction] = [count, contacts, contacts].map(|n| random_field::<2>(n, 1.0, &mut random));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let mut fields = Vec::new();
+    pool.install(|| {
+        for n in 0..=10 {
+            let [mut displacement, mut force, mut lumping] = [0; 3].map(|_| vec![[0.0; 2]; count]);
+            motions.begin(&dynamics, n);
+            let level = AuxiliaryLevel {
+                displacement: &mut displacement,
+                force: &mut force,
+                lumping_difference: Some(&mut lumping),
+            };
+            let given = SimulatedLevel { velocity: &velocity, strain: 0.0, reaction: &reaction };
+            motions.advance(&dynamics, n, &given, &pull, level);
+            motions.differ([&velocity, &velocity], [0.0; 2]);
+            fields.extend([displacement, force, lumping].concat());
+        }
+    });
+    (fields, motions.differences().to_vec())
+}
+
+#[test]
+fn threads_do_not_change_bits() {
+    let laws =
+        [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
+    let problem = loaded(&TriangleMesh::rectangle(1.0, 0.8, 2, 170).unwrap(), laws, ["left", "top", "right"]);
+    let one = with_threads(&problem, 1);
+    for threads in [2, 3, 8] {
+        assert_eq!(one, with_threads(&problem, threads), "{threads}");
+    }
 }

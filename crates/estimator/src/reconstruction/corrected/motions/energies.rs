@@ -1,11 +1,15 @@
 //! Energies of the differences of the motions: ½x·Kx + ½y·M_c y of a difference of displacements x and of velocities y.
 
 use super::blocks::Blocks;
-use super::cells::{Cells, LaneTensor};
-use super::{Fields, MOTIONS, NodalLanes};
+use super::lanes::{Nodal, place};
+use super::pairs::{Pair, Pairs};
+use super::parts::{Part, Plan, View, for_all};
+use super::sweeps::{differences, gradient, stress};
+use super::{AuxiliaryLevel, Fields};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::inertia::mass_product;
+use crate::simd::{Registers, Task, run_task};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -18,14 +22,6 @@ pub(super) struct Energies<'p, const D: usize, const N: usize> {
     near: Vec<(ElementId, Element<D, N>)>,
 }
 
-/// Twice the energies of the differences of the simulation, the half-size and the half-step solution from the auxiliary
-/// solution, and of the contact difference; and the product of the first and the last (J).
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    squares: [f64; MOTIONS],
-    product: f64,
-}
-
 impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, elements: &[Element<D, N>]) -> Self {
         let mut touches = vec![false; problem.mesh().node_count()];
@@ -36,46 +32,32 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
 
     /// The energies with these displacements (m) and velocities (m/s) of the simulation. The fields of the motions that the next
     /// pass makes anew are overwritten.
-    #[inline(always)]
     pub(super) fn measure(
         &self,
-        cells: &Cells<D, N>,
-        blocks: &Blocks,
-        mass: &[f64],
-        fields: &mut Fields<D>,
-        [displacement, velocity]: [&[[f64; D]]; 2],
+        (pairs, blocks, plan): (&Pairs, &Blocks, &Plan),
+        fields: &mut Fields,
+        simulated: [&[[f64; D]]; 2],
     ) -> Difference {
-        let mut sums = Sums::default();
-        for k in 0..blocks.pairs() {
-            let range = blocks.begun(k);
-            let nodes = range.clone();
-            for ((x, u), simulated) in fields.internal[nodes.clone()]
-                .iter_mut()
-                .zip(&fields.displacement[nodes.clone()])
-                .zip(&displacement[nodes.clone()])
-            {
-                *x = difference(u, simulated);
-            }
-            for (y, simulated) in fields.rate[nodes.clone()].iter_mut().zip(&velocity[nodes]) {
-                *y = difference(y, simulated);
-            }
-            // An element gives m/((D+1)(D+2)) (Σy_i·z_i + Σy_i·Σz_i); the first sum is of nodes.
-            sums.add_nodes(&fields.rate[range.clone()], &mass[range], 1.0 / (D + 2) as f64);
-            for elements in blocks.pair(k) {
-                sums.add_elements(cells, elements, &fields.internal, &fields.rate);
-            }
+        let measure = Measure { pairs, blocks, mass: self.problem.mass(), simulated };
+        let work = |part: &Part, view: View<'_, D>| run_task(PartMeasure { measure: &measure, part, view });
+        let sums = for_all(plan, View::new(fields, AuxiliaryLevel::none()), &work);
+        let [mut squares, mut products] = [[0.0; 8]; 2];
+        for sum in &sums {
+            (0..8).for_each(|i| squares[i] += sum[0][i]);
+            (0..8).for_each(|i| products[i] += sum[1][i]);
         }
-        let [energy, half_size, half_step, square] = sums.squares.map(|twice| 0.5 * twice);
-        let contact = 0.5 * sums.product;
+        let half = |motion: usize, of: &[f64; 8]| 0.5 * (of[place(motion, 0)] + of[place(motion, 1)]);
+        let [energy, half_size, half_step, square] = [0, 1, 2, 3].map(|motion| half(motion, &squares));
+        let contact = half(0, &products);
         let dispersion = energy - 2.0 * contact + square;
         let near = self.near(&fields.internal, &fields.rate);
         Difference { energy, near, contact, dispersion, half_size, half_step, halvings: [0.0; 2] }
     }
 
     /// The energy of the first difference in the elements with a node that may touch (J).
-    fn near(&self, x: &[NodalLanes<D>], y: &[NodalLanes<D>]) -> f64 {
+    fn near(&self, x: &[Nodal], y: &[Nodal]) -> f64 {
         let energy = |(id, element): &(ElementId, Element<D, N>)| {
-            let gather = |field: &[NodalLanes<D>]| element.nodes.map(|n| field[n.index()].0.map(|lanes| lanes[0]));
+            let gather = |field: &[Nodal]| element.nodes.map(|n| field[n.index()].of::<D>(0));
             let gradient = element.gradient(&gather(x));
             let stress = self.problem.material(*id).stress(&gradient);
             let work: f64 = (0..D).map(|a| (0..D).map(|b| stress[a][b] * gradient[a][b]).sum::<f64>()).sum();
@@ -86,53 +68,121 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     }
 }
 
-/// What is added up, as lanes: the differences from the auxiliary solution, and the contact difference as it is.
-#[inline(always)]
-fn difference<const D: usize>(motions: &NodalLanes<D>, simulated: &[f64; D]) -> NodalLanes<D> {
-    NodalLanes(std::array::from_fn(|c| {
-        let [auxiliary, half_size, half_step, contact] = motions.0[c];
-        [simulated[c] - auxiliary, half_size - auxiliary, half_step - auxiliary, contact]
-    }))
+/// Sums up, number by number, the squares of the differences of the simulation, the half-size and the half-step solution from the
+/// auxiliary solution and of the contact difference: twice their energies (J). The second sum has the products of the first and
+/// the last of these, and others.
+#[derive(Clone, Copy)]
+struct Measure<'a, const D: usize> {
+    pairs: &'a Pairs,
+    blocks: &'a Blocks,
+    mass: &'a [f64],
+    simulated: [&'a [[f64; D]]; 2],
 }
 
-impl Sums {
-    #[inline(always)]
-    fn add(&mut self, weight: f64, a: &[f64; MOTIONS], b: &[f64; MOTIONS]) {
-        (0..MOTIONS).for_each(|l| self.squares[l] += weight * (a[l] * b[l]));
-        self.product += weight * (a[0] * b[MOTIONS - 1]);
-    }
+/// The sums of one part.
+struct PartMeasure<'a, 'v, const D: usize> {
+    measure: &'a Measure<'a, D>,
+    part: &'a Part,
+    view: View<'v, D>,
+}
+
+/// The two sums.
+struct Sums<R: Registers> {
+    squares: R::Eight,
+    products: R::Eight,
+}
+
+impl<const D: usize> Task for PartMeasure<'_, '_, D> {
+    type Output = [[f64; 8]; 2];
 
     #[inline(always)]
-    fn add_nodes<const D: usize>(&mut self, y: &[NodalLanes<D>], mass: &[f64], scale: f64) {
-        let mut sums = *self;
-        for (y, mass) in y.iter().zip(mass) {
-            (0..D).for_each(|c| sums.add(scale * mass, &y.0[c], &y.0[c]));
-        }
-        *self = sums;
-    }
-
-    #[inline(always)]
-    fn add_elements<const D: usize, const N: usize>(
-        &mut self,
-        cells: &Cells<D, N>,
-        elements: Range<usize>,
-        x: &[NodalLanes<D>],
-        y: &[NodalLanes<D>],
-    ) {
-        let mut sums = *self;
-        for cell in &cells.cells[elements] {
-            let gradient: LaneTensor<D> = cells.gradient(cell, &cell.nodes.map(|n| x[n as usize].0));
-            let stress = cells.stress(cell, &gradient);
-            let velocity = cell.nodes.map(|n| y[n as usize].0);
-            for a in 0..D {
-                (0..D).for_each(|b| sums.add(1.0, &stress[a][b], &gradient[a][b]));
-                let mut sum = [0.0; MOTIONS];
-                for value in &velocity {
-                    (0..MOTIONS).for_each(|l| sum[l] += value[a][l]);
-                }
-                sums.add(cell.share * (1.0 / N as f64), &sum, &sum);
+    fn run<R: Registers>(self, r: R) -> Self::Output {
+        let Self { measure, part, mut view } = self;
+        let mut sums = Sums { squares: r.splat(0.0), products: r.splat(0.0) };
+        for turn in part.even.start.min(part.odd.start)..part.odd.end {
+            if part.even.contains(&turn) {
+                measure.add_nodes(r, measure.blocks.begun(turn), &mut view, &mut sums);
+                measure.add_elements(r, measure.blocks.even(turn), &view, &mut sums);
+            }
+            if part.odd.contains(&turn) {
+                measure.add_elements(r, measure.blocks.odd(turn), &view, &mut sums);
             }
         }
-        *self = sums;
+        [r.store(sums.squares), r.store(sums.products)]
     }
+}
+
+impl<const D: usize> Measure<'_, D> {
+    /// The differences at nodes, and their part of y·My.
+    #[inline(always)]
+    fn add_nodes<R: Registers>(&self, r: R, nodes: Range<usize>, view: &mut View<'_, D>, sums: &mut Sums<R>) {
+        let [displacement, velocity] = self.simulated;
+        let range = view.local(&nodes);
+        let x = view.internal[range.clone()].iter_mut().zip(&view.displacement[range.clone()]);
+        for ((x, u), simulated) in x.zip(&displacement[nodes.clone()]) {
+            *x = difference(u, simulated);
+        }
+        let y = view.rate[range].iter_mut().zip(&velocity[nodes.clone()]);
+        for ((y, simulated), mass) in y.zip(&self.mass[nodes]) {
+            *y = difference(y, simulated);
+            let value = r.load(&y.0);
+            let momentum = r.mul(value, r.splat(*mass));
+            sums.squares = r.add(sums.squares, r.mul(momentum, value));
+            sums.products = r.add(sums.products, r.mul(momentum, r.turn(value)));
+        }
+    }
+
+    /// x·Kx − y·(M − M_c)y of a block.
+    #[inline(always)]
+    fn add_elements<R: Registers>(&self, r: R, block: Option<usize>, view: &View<'_, D>, sums: &mut Sums<R>) {
+        if let Some(block) = block {
+            let range = view.local(&self.blocks.nodes(block));
+            let (x, y) = (&view.internal[range.clone()], &view.rate[range]);
+            add_elements(r, self.pairs, self.pairs.block(block), [x, y], sums);
+        }
+    }
+}
+
+/// The differences of the simulation, the half-size and the half-step solution from the auxiliary solution, and the contact
+/// difference.
+#[inline(always)]
+fn difference<const D: usize>(motions: &Nodal, simulated: &[f64; D]) -> Nodal {
+    let mut difference = *motions;
+    for c in 0..D {
+        let auxiliary = motions.0[place(0, c)];
+        difference.0[place(0, c)] = simulated[c] - auxiliary;
+        difference.0[place(1, c)] -= auxiliary;
+        difference.0[place(2, c)] -= auxiliary;
+    }
+    difference
+}
+
+/// x·Kx − y·(M − M_c)y of pairs of elements.
+#[inline(always)]
+fn add_elements<R: Registers>(r: R, all: &Pairs, pairs: &[Pair], [x, y]: [&[Nodal]; 2], sums: &mut Sums<R>) {
+    let y = &y[..x.len()];
+    let (mut squares, mut products) = (sums.squares, sums.products);
+    for pair in pairs {
+        let moduli = &all.laws[pair.law as usize];
+        let ([a, b, c], [d, e, f]) = (differences(r, pair, x), differences(r, pair, y));
+        let [g, h, i, k] = pair.gradients;
+        for (gradients, x, y, share) in
+            [(&[g, h], [a, b], [d, e], pair.shares[0]), (&[i, k], [b, c], [e, f], pair.shares[1])]
+        {
+            let gradient = gradient(r, gradients, x);
+            let stress = stress(r, moduli, &gradient);
+            // Σ|y_i − mean|² = Σ y_i·(y_i − mean), here less the value at node 0.
+            let mean = r.mul(r.add(y[0], y[1]), r.splat(1.0 / 3.0));
+            let lumped = y.map(
+                #[inline(always)]
+                |y| r.mul(r.sub(mean, y), r.splat(share)),
+            );
+            let square = r.add(r.mul(stress[0], gradient[0]), r.mul(stress[1], gradient[1]));
+            squares = r.add(squares, r.add(square, r.add(r.mul(lumped[0], y[0]), r.mul(lumped[1], y[1]))));
+            let product = r.add(r.mul(stress[0], r.turn(gradient[0])), r.mul(stress[1], r.turn(gradient[1])));
+            let lumped = r.add(r.mul(lumped[0], r.turn(y[0])), r.mul(lumped[1], r.turn(y[1])));
+            products = r.add(products, r.add(product, lumped));
+        }
+    }
+    *sums = Sums { squares, products };
 }

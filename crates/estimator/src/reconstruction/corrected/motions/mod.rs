@@ -22,40 +22,38 @@
 //!
 //! The four motions are lanes: they are gathered, multiplied and updated together, in one pass over the mesh for a step.
 
+mod approach;
 mod blocks;
-mod cells;
+#[cfg(test)]
+mod comparison;
 mod energies;
+mod lanes;
+mod pairs;
+mod parts;
 mod pass;
 mod surface;
+mod sweeps;
+#[cfg(test)]
+mod tests;
 mod weights;
 
 use crate::difference::Difference;
 use crate::element::Element;
+use crate::simd::run_task;
+pub(super) use approach::Approach;
+use approach::{BeforePass, NearElements};
 use blocks::Blocks;
-use cells::{Cell, Cells, NodalLumping};
 use energies::Energies;
-use pass::Pass;
+use lanes::{FirstPair, Nodal};
+use pairs::{Pair, Pairs};
+use parts::{Part, Plan, View, for_all};
+use pass::{Kinetic, PartPass, Pass};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-pub(super) use surface::Approach;
 use surface::SurfaceForces;
 pub(super) use weights::Shares;
 use weights::Weights;
-
-/// The auxiliary solution, the half-size solution, the half-step solution and the contact difference, in this order.
-const MOTIONS: usize = 4;
-/// The first of them, whose mass is corrected.
-const LUMPED: usize = 2;
-
-/// A nodal vector of each motion.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct NodalLanes<const D: usize>([[f64; MOTIONS]; D]);
-
-impl<const D: usize> NodalLanes<D> {
-    const ZERO: Self = Self([[0.0; MOTIONS]; D]);
-}
 
 /// An auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error
 /// would be a thousand times the energy.
@@ -66,12 +64,16 @@ const UNSTABLE: f64 = 1e6;
 pub(super) struct Motions<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
-    cells: Cells<D, N>,
     blocks: Blocks,
-    surface: SurfaceForces<D, N>,
+    plan: Plan,
+    pairs: Pairs,
+    surface: SurfaceForces,
+    near: NearElements<D>,
     weights: Weights,
     energies: Option<Energies<'p, D, N>>,
-    fields: Fields<D>,
+    fields: Fields,
+    /// F_n (N); empty without loads.
+    external: Vec<[f64; D]>,
     /// The step that has to be made from `displacement` before it is that of the present level (s).
     due: f64,
     /// Largest kinetic and strain energy of the simulation so far (J).
@@ -83,21 +85,19 @@ pub(super) struct Motions<'p, const D: usize, const N: usize> {
 
 /// Nodal fields of all motions.
 #[derive(Debug)]
-struct Fields<const D: usize> {
+struct Fields {
     /// u_n (m), from the pass of level n to that of the next.
-    displacement: Vec<NodalLanes<D>>,
+    displacement: Vec<Nodal>,
     /// v_{n+½} (m/s).
-    half_step: Vec<NodalLanes<D>>,
+    half_step: Vec<Nodal>,
     /// Forces and ã_n during a pass, v_n after it (m/s).
-    rate: Vec<NodalLanes<D>>,
+    rate: Vec<Nodal>,
     /// −Kã (N).
-    internal: Vec<NodalLanes<D>>,
+    internal: Vec<Nodal>,
     /// M⁻¹(M − M_c)ã (m/s²).
-    once: Vec<NodalLumping<D>>,
+    once: Vec<FirstPair>,
     /// (M − M_c)M⁻¹(M − M_c)ã (N).
-    twice: Vec<NodalLumping<D>>,
-    /// F_n (N); empty without loads.
-    external: Vec<[f64; D]>,
+    twice: Vec<FirstPair>,
 }
 
 /// A level of the simulation.
@@ -122,28 +122,66 @@ pub(super) struct AuxiliaryLevel<'a, const D: usize> {
     pub(super) lumping_difference: Option<&'a mut [[f64; D]]>,
 }
 
+impl<'a, const D: usize> AuxiliaryLevel<'a, D> {
+    /// No fields.
+    fn none() -> Self {
+        Self { displacement: &mut [], force: &mut [], lumping_difference: None }
+    }
+
+    /// The same for a shorter time.
+    fn again(&mut self) -> AuxiliaryLevel<'_, D> {
+        AuxiliaryLevel {
+            displacement: self.displacement,
+            force: self.force,
+            lumping_difference: self.lumping_difference.as_deref_mut(),
+        }
+    }
+
+    /// Cuts before a node.
+    fn split(self, node: usize) -> (Self, Self) {
+        let (displacement, force) = (cut(self.displacement, node), cut(self.force, node));
+        let lumping = self.lumping_difference.map(|field| cut(field, node));
+        let (first, last) = lumping.map_or((None, None), |(first, last)| (Some(first), Some(last)));
+        (
+            Self { displacement: displacement.0, force: force.0, lumping_difference: first },
+            Self { displacement: displacement.1, force: force.1, lumping_difference: last },
+        )
+    }
+}
+
+/// The parts of a field before and after a place; a field that is not wanted is empty.
+fn cut<T>(field: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
+    field.split_at_mut(at.min(field.len()))
+}
+
 impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     /// About how much memory it takes (bytes).
     pub(super) fn memory(nodes: usize, elements: usize) -> usize {
-        let node = 4 * size_of::<NodalLanes<D>>() + 2 * size_of::<NodalLumping<D>>() + size_of::<[f64; D]>();
-        nodes.saturating_mul(node).saturating_add(elements.saturating_mul(size_of::<Cell<D, N>>()))
+        let node = 4 * size_of::<Nodal>() + 2 * size_of::<FirstPair>() + size_of::<[f64; D]>();
+        nodes.saturating_mul(node).saturating_add(elements.div_ceil(2).saturating_mul(size_of::<Pair>()))
     }
 
     /// Before the first level, with these shares of the corrections of the auxiliary solution.
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, shares: Shares) -> Self {
-        let cells = Cells::new(problem);
-        let nodes: Vec<[u32; N]> = cells.cells.iter().map(|cell| cell.nodes).collect();
-        let blocks = Blocks::usual(&nodes, problem.mesh().node_count());
-        let surface = SurfaceForces::new(problem, &cells);
+        let blocks = Blocks::new(problem.mesh().cells(), problem.mesh().node_count());
+        Self::on_blocks(problem, times, shares, blocks)
+    }
+
+    /// The same with blocks of another size.
+    fn on_blocks(problem: &'p Problem<D, N>, times: &'p TimeGrid, shares: Shares, blocks: Blocks) -> Self {
+        let pairs = Pairs::new(problem, &blocks);
         Self {
             problem,
             times,
-            cells,
+            near: NearElements::new(problem, &blocks, &pairs),
+            plan: Plan::new(&blocks),
             blocks,
-            surface,
+            pairs,
+            surface: SurfaceForces::new(problem),
             weights: Weights::new::<D>(shares),
             energies: None,
             fields: Fields::new(problem),
+            external: if problem.is_loaded() { vec![[0.0; D]; problem.mesh().node_count()] } else { Vec::new() },
             due: 0.0,
             peak_energy: 0.0,
             kinetic: 0.0,
@@ -158,17 +196,17 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
 
     /// Takes in the loads and supports of a level. Levels come in order.
     pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) {
-        if !self.fields.external.is_empty() {
-            self.problem.external_forces(self.times.instants()[n], &mut self.fields.external);
+        if !self.external.is_empty() {
+            self.problem.external_forces(self.times.instants()[n], &mut self.external);
         }
         self.surface.hold(dynamics, n);
     }
 
     /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections left out.
     pub(super) fn approaches(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[Approach<D>] {
-        let Self { problem, times, cells, surface, fields, due, .. } = self;
-        surface.approach(problem, cells, fields, *due);
-        surface.approaches(problem, dynamics.inverse_mass(), times, n)
+        let Self { times, pairs, surface, near, fields, external, due, .. } = self;
+        let before = BeforePass { laws: &pairs.laws, surface, fields, external, due: *due };
+        near.approaches(dynamics, (times, n), &before)
     }
 
     /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step and
@@ -179,13 +217,14 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         n: usize,
         simulated: &SimulatedLevel<'_, D>,
         pull: &[[f64; D]],
-        level: &mut AuxiliaryLevel<'_, D>,
+        level: AuxiliaryLevel<'_, D>,
     ) {
         self.surface.contact(pull, simulated.reaction);
         let pass = Pass {
-            cells: &self.cells,
+            pairs: &self.pairs,
             blocks: &self.blocks,
             surface: &self.surface,
+            external: &self.external,
             mass: self.problem.mass(),
             inverse_mass: dynamics.inverse_mass(),
             simulated: simulated.velocity,
@@ -194,26 +233,19 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
             back: if n == 0 { 0.0 } else { 0.5 * self.times.step(n - 1) },
             forward: self.times.velocity_step(n),
         };
-        let fields = &mut self.fields;
-        let kinetic = crate::simd::dispatch(
-            #[inline(always)]
-            || pass.run(fields, level),
-        );
-        self.peak_energy = self.peak_energy.max(simulated.strain + kinetic.simulated);
-        self.kinetic = kinetic.auxiliary;
+        let work = |part: &Part, view: View<'_, D>| run_task(PartPass { pass: &pass, part, view });
+        let kinetic = for_all(&self.plan, View::new(&mut self.fields, level), &work);
+        let sum = |of: fn(&Kinetic) -> f64| 0.5 * kinetic.iter().map(of).sum::<f64>();
+        self.peak_energy = self.peak_energy.max(simulated.strain + sum(|k| k.simulated));
+        self.kinetic = sum(|k| k.auxiliary);
         self.due = self.times.step(n);
         self.differences.resize(n + 1, Difference::default());
     }
 
     /// Measures the difference of the simulation and the auxiliary solution at the last level taken in. Once for a level.
     pub(super) fn differ(&mut self, simulated: [&[[f64; D]]; 2], halvings: [f64; 2]) {
-        let Self { energies, cells, blocks, fields, problem, differences, .. } = self;
-        if let (Some(energies), Some(last)) = (energies, differences.last_mut()) {
-            let mass = problem.mass();
-            let measured = crate::simd::dispatch(
-                #[inline(always)]
-                || energies.measure(cells, blocks, mass, fields, simulated),
-            );
+        if let (Some(energies), Some(last)) = (&self.energies, self.differences.last_mut()) {
+            let measured = energies.measure((&self.pairs, &self.blocks, &self.plan), &mut self.fields, simulated);
             *last = Difference { halvings, ..measured };
         }
     }
@@ -231,24 +263,16 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     }
 }
 
-impl<const D: usize> Fields<D> {
-    fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        // The contact difference starts at rest.
-        let start = |value: &[f64; D]| NodalLanes(value.map(|x| [x, x, x, 0.0]));
+impl Fields {
+    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
         let count = problem.mesh().node_count();
         Self {
-            displacement: problem.initial_displacement().iter().map(start).collect(),
-            half_step: problem.initial_velocity().iter().map(start).collect(),
-            rate: vec![NodalLanes::ZERO; count],
-            internal: vec![NodalLanes::ZERO; count],
-            once: vec![NodalLumping::ZERO; count],
-            twice: vec![NodalLumping::ZERO; count],
-            external: if problem.is_loaded() { vec![[0.0; D]; count] } else { Vec::new() },
+            displacement: problem.initial_displacement().iter().map(Nodal::all_but_contact).collect(),
+            half_step: problem.initial_velocity().iter().map(Nodal::all_but_contact).collect(),
+            rate: vec![Nodal::ZERO; count],
+            internal: vec![Nodal::ZERO; count],
+            once: vec![FirstPair::ZERO; count],
+            twice: vec![FirstPair::ZERO; count],
         }
     }
 }
-
-#[cfg(test)]
-mod comparison;
-#[cfg(test)]
-mod tests;

@@ -1,21 +1,26 @@
 //! One pass over the mesh for a step: blocks of nodes and elements go through all sweeps while they are in a cache.
 //!
-//! A sweep over a pair of blocks needs the nodes that the sweep before it has finished, so each of the three sweeps is one pair of
-//! blocks behind the one before.
+//! A sweep over the blocks of a turn needs the nodes that the sweep before it has finished in this turn and the next one, so each of
+//! the three sweeps is a turn behind the one before.
 
 use super::blocks::Blocks;
-use super::cells::{Cells, NodalLumping};
+use super::lanes::{FirstPair, Nodal};
+use super::pairs::Pairs;
+use super::parts::{Part, View};
 use super::surface::SurfaceForces;
+use super::sweeps::{add_lumping, subtract_both, subtract_stiffness};
 use super::weights::LevelWeights;
-use super::{AuxiliaryLevel, Fields, LUMPED, MOTIONS, NodalLanes};
+use crate::simd::{Registers, Task};
 use std::ops::Range;
 
 /// The data of the pass at t_n.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pass<'a, const D: usize, const N: usize> {
-    pub(super) cells: &'a Cells<D, N>,
+pub(super) struct Pass<'a, const D: usize> {
+    pub(super) pairs: &'a Pairs,
     pub(super) blocks: &'a Blocks,
-    pub(super) surface: &'a SurfaceForces<D, N>,
+    pub(super) surface: &'a SurfaceForces,
+    /// F_n (N); empty without loads.
+    pub(super) external: &'a [[f64; D]],
     pub(super) mass: &'a [f64],
     pub(super) inverse_mass: &'a [f64],
     /// u̇_CA (m/s).
@@ -38,124 +43,160 @@ pub(super) struct Kinetic {
     pub(super) auxiliary: f64,
 }
 
-impl<const D: usize, const N: usize> Pass<'_, D, N> {
-    /// Makes u_n, ã_n, v_n and v_{n+½} of all motions from u_{n−1} and v_{n−½}.
+/// The pass over one part: makes u_n, ã_n, v_n and v_{n+½} of all motions from u_{n−1} and v_{n−½}.
+pub(super) struct PartPass<'a, 'v, const D: usize> {
+    pub(super) pass: &'a Pass<'a, D>,
+    pub(super) part: &'a Part,
+    pub(super) view: View<'v, D>,
+}
+
+impl<const D: usize> Task for PartPass<'_, '_, D> {
+    type Output = Kinetic;
+
     #[inline(always)]
-    pub(super) fn run(&self, fields: &mut Fields<D>, level: &mut AuxiliaryLevel<'_, D>) -> Kinetic {
-        let (pairs, mut kinetic) = (self.blocks.pairs(), Kinetic::default());
-        for k in 0..pairs + 2 {
-            if k < pairs {
-                self.accelerate(k, fields, level);
+    fn run<R: Registers>(self, r: R) -> Kinetic {
+        let Self { pass, part, mut view } = self;
+        let mut kinetic = Kinetic::default();
+        for k in part.even.start.min(part.third.start + 2)..part.third_done.end + 2 {
+            if part.even.contains(&k) {
+                pass.displace(r, k, &mut view);
             }
-            if (1..=pairs).contains(&k) {
-                self.correct_once(k - 1, fields, level);
+            if part.odd.contains(&k) {
+                pass.accelerate(r, k, &mut view);
             }
-            if k >= 2 {
-                self.correct_twice(k - 2, fields);
-                self.advance(self.blocks.finished(k - 2), fields, &mut kinetic);
-            }
+            pass.correct_once(r, k.wrapping_sub(1), part, &mut view);
+            pass.correct_twice(r, k.wrapping_sub(2), part, &mut view, &mut kinetic);
         }
         kinetic
     }
+}
 
-    /// u_n, F_n − Ku_n and ã_n.
+impl<const D: usize> Pass<'_, D> {
+    /// u_n of the nodes of a turn, and the forces of its even block.
     #[inline(always)]
-    fn accelerate(&self, pair: usize, fields: &mut Fields<D>, level: &mut AuxiliaryLevel<'_, D>) {
-        self.displace(self.blocks.begun(pair), fields, level);
-        for elements in self.blocks.pair(pair) {
-            self.cells.subtract_stiffness(elements, &fields.displacement, &mut fields.rate);
+    fn displace<R: Registers>(&self, r: R, turn: usize, view: &mut View<'_, D>) {
+        let nodes = self.blocks.begun(turn);
+        let range = view.local(&nodes);
+        let due = r.splat(self.due);
+        let moving = view.displacement[range.clone()].iter_mut().zip(&view.half_step[range.clone()]);
+        for ((u, v), out) in moving.zip(&mut view.level.displacement[range.clone()]) {
+            u.0 = r.store(r.add(r.load(&u.0), r.mul(r.load(&v.0), due)));
+            *out = u.of(0);
         }
-        let range = self.blocks.finished(pair);
-        self.surface.apply(&range, self.mass, &mut fields.rate, level.force);
-        let rates = fields.rate[range.clone()].iter_mut().zip(&self.inverse_mass[range.clone()]);
-        for (rate, inverse) in rates {
-            *rate = NodalLanes(rate.0.map(|lanes| lanes.map(|f| f * inverse)));
+        let forces = &mut view.rate[range];
+        if self.external.is_empty() {
+            forces.fill(Nodal::ZERO);
+        } else {
+            let loads = forces.iter_mut().zip(&self.external[nodes]);
+            loads.for_each(|(force, external)| *force = Nodal::all_but_contact(external));
         }
-        fields.internal[range.clone()].fill(NodalLanes::ZERO);
-        fields.once[range.clone()].fill(NodalLumping::ZERO);
-        fields.twice[range].fill(NodalLumping::ZERO);
+        self.subtract_forces(r, self.blocks.even(turn), view);
     }
 
     #[inline(always)]
-    fn displace(&self, range: Range<usize>, fields: &mut Fields<D>, level: &mut AuxiliaryLevel<'_, D>) {
-        let moving = fields.displacement[range.clone()].iter_mut().zip(&fields.half_step[range.clone()]);
-        for ((u, v), out) in moving.zip(&mut level.displacement[range.clone()]) {
-            let (mut value, velocity) = (u.0, v.0);
-            for c in 0..D {
-                (0..MOTIONS).for_each(|l| value[c][l] += self.due * velocity[c][l]);
-                out[c] = value[c][0];
-            }
-            u.0 = value;
+    fn subtract_forces<R: Registers>(&self, r: R, block: Option<usize>, view: &mut View<'_, D>) {
+        let Some(block) = block else { return };
+        let range = view.local(&self.blocks.nodes(block));
+        let (x, forces) = (&view.displacement[range.clone()], &mut view.rate[range]);
+        subtract_stiffness(r, &self.pairs.laws, self.pairs.block(block), x, forces);
+    }
+
+    /// The forces of the odd block of a turn, and ã_n.
+    #[inline(always)]
+    fn accelerate<R: Registers>(&self, r: R, turn: usize, view: &mut View<'_, D>) {
+        self.subtract_forces(r, self.blocks.odd(turn), view);
+        let nodes = self.blocks.finished(turn);
+        let range = view.local(&nodes);
+        self.surface.apply(&nodes, &mut view.rate[range.clone()], &mut view.level.force[range.clone()]);
+        for (rate, inverse) in view.rate[range.clone()].iter_mut().zip(&self.inverse_mass[nodes]) {
+            rate.0 = r.store(r.mul(r.load(&rate.0), r.splat(*inverse)));
         }
-        if fields.external.is_empty() {
-            fields.rate[range].fill(NodalLanes::ZERO);
-            return;
-        }
-        for (force, external) in fields.rate[range.clone()].iter_mut().zip(&fields.external[range]) {
-            // No load acts on the contact difference.
-            *force = NodalLanes(external.map(|f| [f, f, f, 0.0]));
-        }
+        view.internal[range.clone()].fill(Nodal::ZERO);
+        view.once[range.clone()].fill(FirstPair::ZERO);
+        view.twice[range].fill(FirstPair::ZERO);
     }
 
     /// −Kã and M⁻¹(M − M_c)ã.
     #[inline(always)]
-    fn correct_once(&self, pair: usize, fields: &mut Fields<D>, level: &mut AuxiliaryLevel<'_, D>) {
-        for elements in self.blocks.pair(pair) {
-            self.cells.subtract_both(elements, &fields.rate, &mut fields.internal, &mut fields.once);
-        }
-        let range = self.blocks.finished(pair);
-        for (once, inverse) in fields.once[range.clone()].iter_mut().zip(&self.inverse_mass[range.clone()]) {
-            *once = NodalLumping(once.0.map(|lanes| lanes.map(|f| f * inverse)));
-        }
-        for (node, c) in self.surface.prescribed(&range) {
-            fields.internal[node].0[c] = [0.0; MOTIONS];
-            fields.once[node].0[c] = [0.0; LUMPED];
-        }
-        if let Some(out) = &mut level.lumping_difference {
-            for (out, once) in out[range.clone()].iter_mut().zip(&fields.once[range]) {
-                *out = once.0.map(|lanes| lanes[0]);
+    fn correct_once<R: Registers>(&self, r: R, turn: usize, part: &Part, view: &mut View<'_, D>) {
+        if part.second.contains(&turn) {
+            for block in self.blocks.even(turn).into_iter().chain(self.blocks.odd(turn)) {
+                let range = view.local(&self.blocks.nodes(block));
+                let (x, forces) = (&view.rate[range.clone()], &mut view.internal[range.clone()]);
+                subtract_both(r, &self.pairs.laws, self.pairs.block(block), x, forces, &mut view.once[range]);
             }
+        }
+        if !part.second_done.contains(&turn) {
+            return;
+        }
+        let nodes = self.blocks.finished(turn);
+        let range = view.local(&nodes);
+        for (once, inverse) in view.once[range.clone()].iter_mut().zip(&self.inverse_mass[nodes.clone()]) {
+            once.0 = r.store4(r.mul4(r.load4(&once.0), r.splat4(*inverse)));
+        }
+        for (node, c) in self.surface.prescribed(&nodes) {
+            view.internal[node - view.start].set(c, 0.0);
+            view.once[node - view.start].set(c, 0.0);
+        }
+        if let Some(out) = &mut view.level.lumping_difference {
+            let sums = out[range.clone()].iter_mut().zip(&view.once[range]);
+            sums.for_each(|(out, once)| *out = once.auxiliary());
         }
     }
 
-    /// (M − M_c)M⁻¹(M − M_c)ã.
+    /// (M − M_c)M⁻¹(M − M_c)ã, v_n and v_{n+½}.
     #[inline(always)]
-    fn correct_twice(&self, pair: usize, fields: &mut Fields<D>) {
-        for elements in self.blocks.pair(pair) {
-            self.cells.add_lumping(elements, &fields.once, &mut fields.twice);
+    fn correct_twice<R: Registers>(
+        &self,
+        r: R,
+        turn: usize,
+        part: &Part,
+        view: &mut View<'_, D>,
+        kinetic: &mut Kinetic,
+    ) {
+        if part.third.contains(&turn) {
+            for block in self.blocks.even(turn).into_iter().chain(self.blocks.odd(turn)) {
+                let range = view.local(&self.blocks.nodes(block));
+                add_lumping(r, self.pairs.block(block), &view.once[range.clone()], &mut view.twice[range]);
+            }
         }
-        for (node, c) in self.surface.prescribed(&self.blocks.finished(pair)) {
-            fields.twice[node].0[c] = [0.0; LUMPED];
+        if part.third_done.contains(&turn) {
+            let nodes = self.blocks.finished(turn);
+            for (node, c) in self.surface.prescribed(&nodes) {
+                view.twice[node - view.start].set(c, 0.0);
+            }
+            self.advance(r, nodes, view, kinetic);
         }
     }
 
     /// v_n and v_{n+½} under the corrected acceleration.
     #[inline(always)]
-    fn advance(&self, range: Range<usize>, fields: &mut Fields<D>, kinetic: &mut Kinetic) {
-        let LevelWeights { time: [after, before], mass: [half, damping] } = self.weights;
+    fn advance<R: Registers>(&self, r: R, nodes: Range<usize>, view: &mut View<'_, D>, kinetic: &mut Kinetic) {
+        let LevelWeights { time, mass: [half, damping] } = &self.weights;
+        let (after, before) = (r.load(&time[0].0), r.load(&time[1].0));
+        let (half, damping) = (r.load4(&half.0), r.load4(&damping.0));
+        let (back, forward) = (r.splat(self.back), r.splat(self.forward));
         let [mut simulated, mut auxiliary] = [kinetic.simulated, kinetic.auxiliary];
-        for i in range {
-            let (mass, inverse) = (self.mass[i], self.inverse_mass[i]);
-            let (internal, once, twice) = (fields.internal[i].0, fields.once[i].0, fields.twice[i].0);
-            let (mut rate, mut velocity) = (fields.rate[i].0, fields.half_step[i].0);
-            let mut squares = [0.0; 2];
-            for c in 0..D {
-                let mut lumped = [0.0; MOTIONS];
-                (0..LUMPED).for_each(|l| lumped[l] = half[l] * once[c][l] + damping[l] * (inverse * twice[c][l]));
-                let plain = rate[c];
-                for l in 0..MOTIONS {
-                    let force = inverse * internal[c][l];
-                    let first = plain[l] + (before[l] * force + lumped[l]);
-                    let next = plain[l] + (after[l] * force + lumped[l]);
-                    rate[c][l] = velocity[c][l] + self.back * first;
-                    velocity[c][l] += self.forward * next;
-                }
-                squares[0] += self.simulated[i][c] * self.simulated[i][c];
-                squares[1] += velocity[c][0] * velocity[c][0];
-            }
-            simulated += mass * squares[0];
-            auxiliary += mass * squares[1];
-            (fields.rate[i].0, fields.half_step[i].0) = (rate, velocity);
+        let square = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>();
+        let range = view.local(&nodes);
+        let given = self.simulated[nodes.clone()].iter().zip(&self.mass[nodes.clone()]);
+        let given = given.zip(&self.inverse_mass[nodes]);
+        let corrections = view.internal[range.clone()].iter().zip(&view.once[range.clone()]);
+        let corrections = corrections.zip(&view.twice[range.clone()]);
+        let motions = view.rate[range.clone()].iter_mut().zip(&mut view.half_step[range]);
+        for ((((velocity, mass), inverse), ((internal, once), twice)), (rate, half_step)) in
+            given.zip(corrections).zip(motions)
+        {
+            let twice = r.mul4(r.load4(&twice.0), r.splat4(*inverse));
+            let lumped = r.add4(r.mul4(half, r.load4(&once.0)), r.mul4(damping, twice));
+            let plain = r.load(&rate.0);
+            let plain = r.with_first(plain, r.add4(r.first(plain), lumped));
+            let force = r.mul(r.load(&internal.0), r.splat(*inverse));
+            let start = r.load(&half_step.0);
+            rate.0 = r.store(r.add(start, r.mul(r.add(plain, r.mul(before, force)), back)));
+            half_step.0 = r.store(r.add(start, r.mul(r.add(plain, r.mul(after, force)), forward)));
+            simulated += mass * square(velocity);
+            auxiliary += mass * square(&half_step.of(0));
         }
         *kinetic = Kinetic { simulated, auxiliary };
     }

@@ -29,10 +29,10 @@ fn motion_with<const D: usize, const N: usize>(
     let none = vec![[0.0; D]; problem.surface().nodes().len()];
     let mut advance = |n: usize| {
         let (mut displacement, mut force) = (still.clone(), still.clone());
-        let mut level = AuxiliaryLevel { displacement: &mut displacement, force: &mut force, lumping_difference: None };
+        let level = AuxiliaryLevel { displacement: &mut displacement, force: &mut force, lumping_difference: None };
         motions.begin(&dynamics, n);
         let simulated = SimulatedLevel { velocity: &still, strain: 0.0, reaction: &none };
-        motions.advance(&dynamics, n, &simulated, &none, &mut level);
+        motions.advance(&dynamics, n, &simulated, &none, level);
         displacement
     };
     (0..=times.step_count()).map(&mut advance).collect()

@@ -1,6 +1,6 @@
 //! The corrections of the acceleration, and the steps after which they are left out.
 
-use super::{LUMPED, MOTIONS};
+use super::lanes::{FirstPair, MOTIONS, Nodal};
 use percute_core::time::TimeGrid;
 
 /// Which part of each correction a motion has.
@@ -47,9 +47,9 @@ pub(super) struct Weights {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LevelWeights {
     /// Of −M⁻¹Kã (s²) for the acceleration from t_n on, and up to t_n.
-    pub(super) time: [[f64; MOTIONS]; 2],
+    pub(super) time: [Nodal; 2],
     /// Of M⁻¹(M − M_c)ã once and twice.
-    pub(super) mass: [[f64; LUMPED]; 2],
+    pub(super) mass: [FirstPair; 2],
 }
 
 impl Weights {
@@ -64,11 +64,10 @@ impl Weights {
         self.reversals += usize::from(n < times.step_count() && reverses(times, n));
         let shares = if self.reversals <= FEW { self.shares } else { [Shares::NONE; MOTIONS] };
         let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));
-        let mass: [f64; LUMPED] = std::array::from_fn(|l| shares[l].mass);
-        LevelWeights {
-            time: [next * last, last * last].map(|square| shares.map(|share| share.time * square / 12.0)),
-            mass: [mass.map(|mass| 0.5 * mass), mass.map(|mass| -(mass * self.damping))],
-        }
+        let [first, second] = [shares[0].mass, shares[1].mass];
+        let mass = |factor: f64| FirstPair([factor * first, factor * second, factor * first, factor * second]);
+        let time = |square: f64| Nodal::new(shares.map(|share| [share.time * square / 12.0; 2]));
+        LevelWeights { time: [time(next * last), time(last * last)], mass: [mass(0.5), mass(-self.damping)] }
     }
 }
 

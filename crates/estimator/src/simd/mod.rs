@@ -1,0 +1,292 @@
+//! The instruction set of the hot loops, chosen when the program runs.
+//!
+//! A binary is compiled for the oldest processor that it must run on. Its loops then use registers of two numbers. On a
+//! newer processor, [`dispatch`] and [`run_task`] run a copy of the loops that was compiled for registers of four or eight.
+//! Products and sums are never fused, so the bits are those of the portable copy. This folder is the only one of the crate that
+//! knows instruction sets.
+//!
+//! [`dispatch`] is for loops that the compiler turns into vectors by itself. Where lanes are gathered and exchanged, it makes
+//! short vectors with many permutations, three times as many instructions. Such loops are a
+//! [`Task`] over [`Registers`].
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use pulp::{Arch, NullaryFnOnce};
+
+/// Runs a task with the widest registers of this processor. The task and all functions of its loops must be `#[inline(always)]`:
+/// other functions keep the instructions of the oldest processor.
+///
+/// ```ignore
+/// dispatch(#[inline(always)] || sweep(cells, values));
+/// ```
+#[inline]
+pub(crate) fn dispatch<R>(task: impl FnOnce() -> R) -> R {
+    if cfg!(feature = "portable") { task() } else { Arch::new().dispatch(Closure(task)) }
+}
+
+/// A task that is compiled anew for each instruction set.
+struct Closure<F>(F);
+
+impl<R, F: FnOnce() -> R> NullaryFnOnce for Closure<F> {
+    type Output = R;
+
+    #[inline(always)]
+    fn call(self) -> R {
+        (self.0)()
+    }
+}
+
+/// Eight numbers: two components of four vectors. Number 4 p + 2 c + l is component c of vector l of pair p.
+pub(crate) type Eight = [f64; 8];
+/// Four numbers: a pair of vectors.
+pub(crate) type Four = [f64; 4];
+
+/// Operations on eight numbers, and on the first four of them.
+pub(crate) trait Registers: Copy {
+    /// Eight numbers in registers.
+    type Eight: Copy;
+    /// Four numbers in registers.
+    type Four: Copy;
+
+    /// From memory.
+    fn load(self, from: &Eight) -> Self::Eight;
+    /// To memory.
+    fn store(self, from: Self::Eight) -> Eight;
+    /// Eight times the same number.
+    fn splat(self, x: f64) -> Self::Eight;
+    /// Sum.
+    fn add(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+    /// Difference.
+    fn sub(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+    /// Product.
+    fn mul(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+    /// Components exchanged.
+    fn swap(self, v: Self::Eight) -> Self::Eight;
+    /// Pairs exchanged, and the vectors of each.
+    fn turn(self, v: Self::Eight) -> Self::Eight;
+    /// The first pair.
+    fn first(self, v: Self::Eight) -> Self::Four;
+    /// The first pair of another, with the second of this.
+    fn with_first(self, v: Self::Eight, first: Self::Four) -> Self::Eight;
+
+    /// From memory.
+    fn load4(self, from: &Four) -> Self::Four;
+    /// To memory.
+    fn store4(self, from: Self::Four) -> Four;
+    /// Four times the same number.
+    fn splat4(self, x: f64) -> Self::Four;
+    /// Sum.
+    fn add4(self, a: Self::Four, b: Self::Four) -> Self::Four;
+    /// Difference.
+    fn sub4(self, a: Self::Four, b: Self::Four) -> Self::Four;
+    /// Product.
+    fn mul4(self, a: Self::Four, b: Self::Four) -> Self::Four;
+}
+
+/// Work that is done with registers.
+pub(crate) trait Task {
+    /// What it gives.
+    type Output;
+
+    /// Does the work. All functions of its loops must be `#[inline(always)]`.
+    fn run<R: Registers>(self, r: R) -> Self::Output;
+}
+
+/// Does the work with the widest registers of this processor.
+#[inline]
+pub(crate) fn run_task<T: Task>(task: T) -> T::Output {
+    #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
+    {
+        use pulp::x86::{V3, V4};
+        if let Some(set) = V4::try_new() {
+            return set.vectorize(
+                #[inline(always)]
+                || task.run(set),
+            );
+        }
+        if let Some(set) = V3::try_new() {
+            return set.vectorize(
+                #[inline(always)]
+                || task.run(set),
+            );
+        }
+    }
+    task.run(Portable)
+}
+
+/// Plain arrays, for every processor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Portable;
+
+#[inline(always)]
+fn each<const W: usize>(a: [f64; W], b: [f64; W], f: impl Fn(f64, f64) -> f64) -> [f64; W] {
+    std::array::from_fn(
+        #[inline(always)]
+        |i| f(a[i], b[i]),
+    )
+}
+
+#[inline(always)]
+fn plus(a: f64, b: f64) -> f64 {
+    a + b
+}
+
+#[inline(always)]
+fn minus(a: f64, b: f64) -> f64 {
+    a - b
+}
+
+#[inline(always)]
+fn times(a: f64, b: f64) -> f64 {
+    a * b
+}
+
+impl Registers for Portable {
+    type Eight = Eight;
+    type Four = Four;
+
+    #[inline(always)]
+    fn load(self, from: &Eight) -> Eight {
+        *from
+    }
+
+    #[inline(always)]
+    fn store(self, from: Eight) -> Eight {
+        from
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f64) -> Eight {
+        [x; 8]
+    }
+
+    #[inline(always)]
+    fn add(self, a: Eight, b: Eight) -> Eight {
+        each(a, b, plus)
+    }
+
+    #[inline(always)]
+    fn sub(self, a: Eight, b: Eight) -> Eight {
+        each(a, b, minus)
+    }
+
+    #[inline(always)]
+    fn mul(self, a: Eight, b: Eight) -> Eight {
+        each(a, b, times)
+    }
+
+    #[inline(always)]
+    fn swap(self, [a, b, c, d, e, f, g, h]: Eight) -> Eight {
+        [c, d, a, b, g, h, e, f]
+    }
+
+    #[inline(always)]
+    fn turn(self, [a, b, c, d, e, f, g, h]: Eight) -> Eight {
+        [f, e, h, g, b, a, d, c]
+    }
+
+    #[inline(always)]
+    fn first(self, [a, b, c, d, ..]: Eight) -> Four {
+        [a, b, c, d]
+    }
+
+    #[inline(always)]
+    fn with_first(self, [.., e, f, g, h]: Eight, [a, b, c, d]: Four) -> Eight {
+        [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    fn load4(self, from: &Four) -> Four {
+        *from
+    }
+
+    #[inline(always)]
+    fn store4(self, from: Four) -> Four {
+        from
+    }
+
+    #[inline(always)]
+    fn splat4(self, x: f64) -> Four {
+        [x; 4]
+    }
+
+    #[inline(always)]
+    fn add4(self, a: Four, b: Four) -> Four {
+        each(a, b, plus)
+    }
+
+    #[inline(always)]
+    fn sub4(self, a: Four, b: Four) -> Four {
+        each(a, b, minus)
+    }
+
+    #[inline(always)]
+    fn mul4(self, a: Four, b: Four) -> Four {
+        each(a, b, times)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[inline(always)]
+    fn sweep(values: &[[f64; 8]], to: &mut [[f64; 8]]) {
+        for (to, value) in to.iter_mut().zip(values) {
+            let (sum, value) = (*to, *value);
+            *to = std::array::from_fn(|l| sum[l] / 3.0 + value[l] * value[l]);
+        }
+    }
+
+    /// A fused product and sum would change the last bit of some of the thousand numbers.
+    #[test]
+    fn the_bits_are_those_of_the_portable_copy() {
+        let values: Vec<[f64; 8]> = (0..128).map(|i| std::array::from_fn(|l| ((8 * i + l) as f64).sin())).collect();
+        let (mut plain, mut wide) = (values.clone(), values.clone());
+        sweep(&values, &mut plain);
+        dispatch(
+            #[inline(always)]
+            || sweep(&values, &mut wide),
+        );
+        assert_eq!(plain, wide);
+    }
+
+    /// Every operation on numbers without a pattern.
+    struct All([Eight; 2]);
+
+    impl Task for All {
+        type Output = (Vec<Eight>, Vec<Four>);
+
+        fn run<R: Registers>(self, r: R) -> Self::Output {
+            let [a, b] = self.0.map(|v| r.load(&v));
+            let (c, d) = (r.first(a), r.load4(&[self.0[1][1], self.0[1][3], self.0[1][5], self.0[1][7]]));
+            let eight = [
+                r.splat(self.0[0][3]),
+                r.add(a, b),
+                r.sub(a, b),
+                r.mul(a, b),
+                r.swap(a),
+                r.turn(a),
+                r.with_first(b, c),
+            ];
+            let four = [c, d, r.splat4(self.0[0][2]), r.add4(c, d), r.sub4(c, d), r.mul4(c, d)];
+            (eight.map(|v| r.store(v)).to_vec(), four.map(|v| r.store4(v)).to_vec())
+        }
+    }
+
+    /// Every instruction set of this processor does what plain arrays do.
+    #[test]
+    fn the_operations_are_those_of_plain_arrays() {
+        let values = [0, 8].map(|start| std::array::from_fn(|i| ((start + i + 1) as f64).sqrt()));
+        let plain = All(values).run(Portable);
+        assert_eq!(plain, run_task(All(values)));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(set) = pulp::x86::V3::try_new() {
+            let run = || All(values).run(set);
+            assert_eq!(plain, set.vectorize(run));
+        }
+        assert_eq!(plain.0[4], [2, 3, 0, 1, 6, 7, 4, 5].map(|i| values[0][i]));
+        assert_eq!(plain.0[5], [5, 4, 7, 6, 1, 0, 3, 2].map(|i| values[0][i]));
+    }
+}

@@ -1,0 +1,158 @@
+//! The registers of AVX2 and AVX-512.
+
+use super::{Eight, Four, Registers};
+use pulp::cast;
+use pulp::x86::{V3, V4};
+use std::arch::x86_64::{__m256d, __m512d};
+
+/// Operations on four numbers, which both instruction sets have.
+macro_rules! four {
+    () => {
+        #[inline(always)]
+        fn load4(self, from: &Four) -> __m256d {
+            cast(*from)
+        }
+
+        #[inline(always)]
+        fn store4(self, from: __m256d) -> Four {
+            cast(from)
+        }
+
+        #[inline(always)]
+        fn splat4(self, x: f64) -> __m256d {
+            self.avx._mm256_set1_pd(x)
+        }
+
+        #[inline(always)]
+        fn add4(self, a: __m256d, b: __m256d) -> __m256d {
+            self.avx._mm256_add_pd(a, b)
+        }
+
+        #[inline(always)]
+        fn sub4(self, a: __m256d, b: __m256d) -> __m256d {
+            self.avx._mm256_sub_pd(a, b)
+        }
+
+        #[inline(always)]
+        fn mul4(self, a: __m256d, b: __m256d) -> __m256d {
+            self.avx._mm256_mul_pd(a, b)
+        }
+    };
+}
+
+/// AVX2: two registers.
+impl Registers for V3 {
+    type Eight = [__m256d; 2];
+    type Four = __m256d;
+
+    four!();
+
+    #[inline(always)]
+    fn load(self, from: &Eight) -> Self::Eight {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store(self, from: Self::Eight) -> Eight {
+        cast(from)
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f64) -> Self::Eight {
+        [self.splat4(x); 2]
+    }
+
+    #[inline(always)]
+    fn add(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        [self.add4(a[0], b[0]), self.add4(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn sub(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        [self.sub4(a[0], b[0]), self.sub4(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn mul(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        [self.mul4(a[0], b[0]), self.mul4(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn swap(self, [a, b]: Self::Eight) -> Self::Eight {
+        [self.avx._mm256_permute2f128_pd::<1>(a, a), self.avx._mm256_permute2f128_pd::<1>(b, b)]
+    }
+
+    #[inline(always)]
+    fn turn(self, [a, b]: Self::Eight) -> Self::Eight {
+        [self.avx._mm256_permute_pd::<0b0101>(b), self.avx._mm256_permute_pd::<0b0101>(a)]
+    }
+
+    #[inline(always)]
+    fn first(self, [a, _]: Self::Eight) -> __m256d {
+        a
+    }
+
+    #[inline(always)]
+    fn with_first(self, [_, b]: Self::Eight, first: __m256d) -> Self::Eight {
+        [first, b]
+    }
+}
+
+/// AVX-512: one register.
+impl Registers for V4 {
+    type Eight = __m512d;
+    type Four = __m256d;
+
+    four!();
+
+    #[inline(always)]
+    fn load(self, from: &Eight) -> __m512d {
+        cast(*from)
+    }
+
+    #[inline(always)]
+    fn store(self, from: __m512d) -> Eight {
+        cast(from)
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f64) -> __m512d {
+        self.avx512f._mm512_set1_pd(x)
+    }
+
+    #[inline(always)]
+    fn add(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_add_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn sub(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_sub_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn mul(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_mul_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn swap(self, v: __m512d) -> __m512d {
+        self.avx512f._mm512_shuffle_f64x2::<0b1011_0001>(v, v)
+    }
+
+    #[inline(always)]
+    fn turn(self, v: __m512d) -> __m512d {
+        let swapped = self.avx512f._mm512_shuffle_f64x2::<0b0100_1110>(v, v);
+        self.avx512f._mm512_permute_pd::<0b0101_0101>(swapped)
+    }
+
+    #[inline(always)]
+    fn first(self, v: __m512d) -> __m256d {
+        self.avx512f._mm512_castpd512_pd256(v)
+    }
+
+    #[inline(always)]
+    fn with_first(self, v: __m512d, first: __m256d) -> __m512d {
+        self.avx512f._mm512_insertf64x4::<0>(v, first)
+    }
+}
