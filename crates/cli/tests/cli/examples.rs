@@ -21,10 +21,10 @@ struct Example(&'static str, &'static str, f64);
 
 const EXAMPLES: [Example; 5] = [
     Example("bar", "result    sup 4.10 % (76.30 J^½ at 4.9912e-5 s), mean 3.31 %", 1.007),
-    Example("block", "result    sup 6.35 % (167.2 J^½ at 1.3e-5 s), mean 5.75 %", 1.068),
-    Example("drop", "result    sup 7.50 % (2.203 J^½ at 0.0025153 s), mean 6.62 %", 1.296),
-    Example("tilted", "result    sup 8.02 % (210.8 J^½ at 1.6e-5 s), mean 6.23 %", 1.121),
-    Example("beam", "result    sup 7.56 % (0.9114 J^½ at 2.9483e-4 s), mean 7.26 %", 0.814),
+    Example("block", "result    sup 6.34 % (166.8 J^½ at 1.3e-5 s), mean 5.74 %", 1.066),
+    Example("drop", "result    sup 7.36 % (2.162 J^½ at 0.0025153 s), mean 6.53 %", 1.272),
+    Example("tilted", "result    sup 7.97 % (209.5 J^½ at 1.6e-5 s), mean 6.20 %", 1.114),
+    Example("beam", "result    sup 7.49 % (0.9032 J^½ at 2.9483e-4 s), mean 7.21 %", 0.807),
 ];
 
 fn folder() -> PathBuf {

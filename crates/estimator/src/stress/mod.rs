@@ -5,6 +5,7 @@ mod bar;
 mod energy_form;
 mod piecewise;
 mod reference;
+mod traction_forms;
 mod triangle;
 
 use crate::lanes::Value;
@@ -14,6 +15,7 @@ use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
+pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};
 pub(crate) use triangle::TriangleStress;
 
 /// What an element's stress must balance, per unit of section or thickness.

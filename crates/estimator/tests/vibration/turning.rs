@@ -102,17 +102,18 @@ fn bending(level: usize) -> [[f64; 2]; 2] {
     effectivities(&estimates, exact.sup, exact.mean)
 }
 
-/// Each index of `mixed` lies in the range and does not rise from mesh to mesh, but for 1 %.
+/// Each index of `mixed` lies in the range and does not rise from mesh to mesh, but for 2 %: on coarse meshes, the descent to
+/// tractions of least energy goes a little farther.
 fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
     for (k, [_, mixed]) in meshes.iter().enumerate() {
         assert!(mixed.iter().all(|x| (range[0]..=range[1]).contains(x)), "{name}, mesh {k}: {meshes:?}");
         let before = meshes[k.saturating_sub(1)][1];
-        assert!(mixed.iter().zip(before).all(|(x, before)| *x <= 1.01 * before), "{name}, mesh {k}: {meshes:?}");
+        assert!(mixed.iter().zip(before).all(|(x, before)| *x <= 1.02 * before), "{name}, mesh {k}: {meshes:?}");
     }
 }
 
-/// Measured with `mixed` on 6² to 48² cells: largest error 1.24, 1.11, 1.06, 1.03 and mean 1.22, 1.11, 1.07, 1.04; unstructured
-/// 1.28, 1.18, 1.13, 1.11 and 1.35, 1.25, 1.18, 1.15. The rotation in Γ_DA of `closest` is an error of the order of the true
+/// Measured with `mixed` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03; unstructured
+/// 1.21, 1.12, 1.08, 1.06 and 1.29, 1.19, 1.13, 1.11. The rotation in Γ_DA of `closest` is an error of the order of the true
 /// one: its index tends to about 2.1, unstructured 2.5.
 #[test]
 fn lame_mode() {
@@ -128,8 +129,8 @@ fn lame_mode() {
     assert!(structured.windows(2).all(|pair| pair[1][0][0] > pair[0][0][0]), "{structured:?}");
 }
 
-/// Measured with `mixed`: largest error 1.26, 1.16, 1.12, mean 1.12, 1.11, 1.11; with `closest` 1.48, 1.41, 1.41 and 1.54, 1.50,
-/// 1.49.
+/// Measured with `mixed`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and 1.53, 1.48,
+/// 1.48.
 #[test]
 fn bending_mode() {
     assert_steady("bending", &[0, 1, 2].map(bending), [0.95, 1.35]);

@@ -53,7 +53,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     /// Whether the lumping difference is wanted.
     mixed: bool,
     minimises: bool,
-    minimisation: Option<TractionMinimisation<D>>,
+    minimisation: Option<TractionMinimisation>,
     /// Weight of the work of normal forces off contact.
     normal_work: f64,
 }
@@ -166,10 +166,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         }
     }
 
-    fn memory(&self, levels: usize, threads: usize) -> usize {
+    fn memory(&self, _levels: usize, _threads: usize) -> usize {
         let mesh = self.problem.mesh();
         let concentration = self.concentration.as_ref().map_or(0, |concentration| concentration.memory(self.problem));
-        TractionMinimisation::<D>::memory(mesh.simplex().shape(), mesh.element_count(), levels, threads)
+        TractionMinimisation::memory(mesh.simplex().shape(), mesh.element_count())
             .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }

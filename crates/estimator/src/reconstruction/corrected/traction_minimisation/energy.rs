@@ -1,14 +1,9 @@
-//! The energy of an element as a function of the moments on its edges.
+//! The slope of the energy of an element in the moments on its edges.
 
+use super::modes::MOMENTS;
 use crate::lanes::Value;
 use crate::measure::{ElementMeasure, NodalBalance};
-use crate::stress::{EnergyForm, LOADS, Loading};
-
-/// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
-pub(super) const MOMENTS: usize = 12;
-
-/// Energy of an element as a quadratic form of the moments on its edges, ½ mᵀHm.
-pub(super) type Form = [[f64; MOMENTS]; MOMENTS];
+use crate::stress::{EnergyForm, LOADS};
 
 /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
 /// the stress of the displacement that is equilibrated.
@@ -24,19 +19,6 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
     moment_gradient(&form.traction_slope(&loading))
 }
 
-/// Its derivative.
-pub(super) fn moment_form<const D: usize, const N: usize>(
-    measure: &ElementMeasure<'_, D, N>,
-    form: &EnergyForm<'_>,
-) -> Form {
-    std::array::from_fn(|i| {
-        let mut moments = [[[0.0; D]; D]; N];
-        moments[i / 4][i / 2 % 2][i % 2] = 1.0;
-        let loading = Loading { traction: measure.tractions(&moments), volume: [[0.0; D]; N] };
-        moment_gradient(&form.traction_slope(&loading))
-    })
-}
-
 /// The slope of a product of stresses, linear in the loads of the element, tractions first.
 pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOADS]) -> [f64; MOMENTS] {
     let mut gradient = [[[0.0; D]; D]; N];
@@ -47,7 +29,7 @@ pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOA
 /// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions are
 /// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
 #[inline(always)]
-fn moment_gradient<T: Value, const D: usize, const N: usize>(gradient: &[[[T; D]; D]; N]) -> [T; MOMENTS] {
+pub(super) fn moment_gradient<T: Value, const D: usize, const N: usize>(gradient: &[[[T; D]; D]; N]) -> [T; MOMENTS] {
     let mut moments = [T::ZERO; MOMENTS];
     for (k, slope) in gradient.iter().enumerate() {
         for c in 0..D {

@@ -1,64 +1,27 @@
-use super::basis::{FacetMoments, Modes};
+mod case;
+
+use super::modes::MOMENTS;
 use super::*;
-use crate::element::elements;
-use percute_core::load::Support;
+use case::{Case, problem, problem_of};
+use percute_core::ids::FacetId;
 use percute_core::material::Elastic;
-use percute_core::problem::TriangleProblem;
+use percute_core::mesh::{ElementGroups, TriangleMesh};
 use percute_testkit::{Random, random_rectangle};
-
-/// A block of random triangles whose left side is held.
-fn problem() -> TriangleProblem {
-    Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
-        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap())
-        .support(Support { group: "left".into(), components: [true, true], velocity: None })
-        .build()
-        .unwrap()
-}
-
-fn prepared(problem: &TriangleProblem) -> TractionMinimisation<2> {
-    TractionMinimisation::new(problem, &elements(problem)).unwrap()
-}
-
-fn random_modes(basis: &Basis<2>, random: &mut Random) -> Modes {
-    let mut modes = basis.no_modes();
-    modes.edges.iter_mut().flatten().for_each(|x| *x = random.between(-1.0, 1.0));
-    modes.nodes.iter_mut().flatten().flatten().for_each(|x| *x = random.between(-1.0, 1.0));
-    modes
-}
-
-fn random_moments(basis: &Basis<2>, random: &mut Random) -> Vec<FacetMoments<2>> {
-    let mut moments = basis.no_moments();
-    moments.iter_mut().flatten().flatten().flatten().for_each(|x| *x = random.between(-1.0, 1.0));
-    moments
-}
-
-/// Slopes of all elements as a random quadratic energy has them at its start.
-fn random_slopes(
-    problem: &TriangleProblem,
-    all: &TractionMinimisation<2>,
-    random: &mut Random,
-) -> Vec<[Lanes; MOMENTS]> {
-    let apart = random_moments(&all.basis, random);
-    let slope = |e: usize| basis::apply(&all.forms[e], &all.basis.of_element(e, &apart));
-    (0..problem.mesh().element_count()).map(slope).collect()
-}
 
 /// Moments on an edge act like forces at its two nodes: no mode gives any element a resultant or a moment.
 #[test]
 fn modes_have_no_resultant_on_any_element() {
-    let (problem, mut random) = (problem(), Random::new(1));
-    let basis = prepared(&problem).basis;
-    let mut moments = basis.no_moments();
-    basis.spread(&random_modes(&basis, &mut random), &mut moments);
-    for e in 0..problem.mesh().element_count() {
-        let points = problem.mesh().cell_points(ElementId::new(e));
-        let all = basis.of_element(e, &moments);
+    let case = Case::new(problem());
+    let links = case.on_links(&case.random_modes(&mut Random::new(1)));
+    for e in 0..case.elements.len() {
+        let points = case.problem.mesh().cell_points(ElementId::new(e));
+        let all = case.of_element(e, &links);
         for lane in 0..LANES {
             let (mut force, mut couple) = ([0.0; 2], 0.0);
             for k in 0..3 {
                 for p in 0..2 {
                     let at = points[crate::stress::facet_node::<3>(k, p)];
-                    let f = [0, 1].map(|c| all[4 * k + 2 * p + c][lane]);
+                    let f = [0, 1].map(|c| all[4 * k + 2 * p + c].0[lane]);
                     force = [force[0] + f[0], force[1] + f[1]];
                     couple += at[0] * f[1] - at[1] * f[0];
                 }
@@ -73,108 +36,140 @@ fn modes_have_no_resultant_on_any_element() {
 /// Their number is that of all changes that balance: unknown moments less three equations for each element.
 #[test]
 fn the_modes_are_all_there_are() {
-    let problem = problem();
-    let basis = prepared(&problem).basis;
-    let (facets, elements) = (basis.no_moments().len(), problem.mesh().element_count());
-    let modes = basis.no_modes();
-    let count = modes.edges.len() + 3 * modes.nodes.len();
+    let case = Case::new(problem());
+    let mesh = case.problem.mesh();
+    let unknown = |f: &usize| mesh.facets()[*f].neighbour.is_some() || case.problem.supported(FacetId::new(*f))[0];
+    let (facets, modes) = ((0..mesh.facets().len()).filter(unknown).count(), case.modes());
     // One column for each mode: the moments that it makes.
-    let mut columns = Vec::new();
-    for m in 0..count {
-        let mut one = basis.no_modes();
-        match m.checked_sub(modes.edges.len()) {
-            None => one.edges[m] = [1.0; LANES],
-            Some(m) => one.nodes[m / 3][m % 3] = [if m % 3 == 2 { 0.01 } else { 1.0 }; LANES],
-        }
-        let mut moments = basis.no_moments();
-        basis.spread(&one, &mut moments);
-        columns.push(moments.iter().flatten().flatten().map(|lanes| lanes[0]).collect::<Vec<_>>());
-    }
-    let matrix = nalgebra::DMatrix::from_fn(4 * facets, count, |r, c| columns[c][r]);
+    let column = |m: &usize| {
+        // Couples of 1 N have levers of some 5 mm.
+        let turn = *m < 3 * mesh.node_count() && m % 3 == 2;
+        let one = case.with(&[*m], |_| Lanes::constant(if turn { 0.01 } else { 1.0 }));
+        case.on_links(&one).iter().flatten().map(|lanes| lanes.0[0]).collect::<Vec<_>>()
+    };
+    let columns: Vec<_> = modes.iter().map(column).collect();
+    let matrix = nalgebra::DMatrix::from_fn(columns[0].len(), modes.len(), |r, c| columns[c][r]);
     // A held side leaves no equation redundant.
-    assert_eq!(count, 4 * facets - 3 * elements);
+    assert_eq!(modes.len(), 4 * facets - 3 * case.elements.len());
     // Singular values of independent modes of size 1 are far above this, those of dependent ones at rounding.
-    assert_eq!(matrix.rank(1e-6), count);
+    assert_eq!(matrix.rank(1e-6), modes.len());
 }
 
 #[test]
-fn gathering_is_the_transpose_of_spreading() {
-    let (problem, mut random) = (problem(), Random::new(2));
-    let all = prepared(&problem);
-    let (modes, moments) = (random_modes(&all.basis, &mut random), random_moments(&all.basis, &mut random));
-    let (mut spread, mut gathered) = (all.basis.no_moments(), all.basis.no_modes());
-    all.basis.spread(&modes, &mut spread);
-    all.basis.gather(&moments, &mut gathered);
+fn adding_slopes_is_the_transpose_of_adding_changes() {
+    let (case, mut random) = (Case::new(problem()), Random::new(2));
+    let (modes, slopes) = (case.random_modes(&mut random), case.random_slopes(&mut random));
+    let (links, gathered) = (case.on_links(&modes), case.in_modes(&slopes));
     for lane in 0..LANES {
-        let work: f64 = spread
-            .iter()
-            .flatten()
-            .flatten()
-            .zip(moments.iter().flatten().flatten())
-            .map(|(a, b)| a[lane] * b[lane])
-            .sum();
-        let edges: f64 = modes.edges.iter().zip(&gathered.edges).map(|(a, b)| a[lane] * b[lane]).sum();
-        let nodes: f64 =
-            modes.nodes.iter().flatten().zip(gathered.nodes.iter().flatten()).map(|(a, b)| a[lane] * b[lane]).sum();
-        // Rounding of some hundred terms of up to 300.
-        assert!((work - edges - nodes).abs() < 1e-9, "{work} {edges} {nodes}");
+        let (mut work, mut size) = (0.0, 0.0);
+        for (e, slope) in slopes.iter().enumerate() {
+            for (m, s) in case.of_element(e, &links).iter().zip(slope) {
+                work += m.0[lane] * s.0[lane];
+                size += (m.0[lane] * s.0[lane]).abs();
+            }
+        }
+        let same: f64 = modes.all().zip(gathered.all()).map(|(a, b)| a.0[lane] * b.0[lane]).sum();
+        // Rounding of some thousand terms.
+        assert!((work - same).abs() < 1e-14 * size, "{work} {same} of {size}");
     }
 }
 
-/// Energy falls at every step, and many steps lead to where no mode has a slope any more.
+/// The matrix has the energy of the elements' own maps.
 #[test]
-fn energy_falls_to_its_least_value() {
-    let (problem, mut random) = (problem(), Random::new(3));
-    let all = prepared(&problem);
-    let slopes = random_slopes(&problem, &all, &mut random);
-    // ½cᵀHc + slope·c of a change c.
-    let energy = |change: &[FacetMoments<2>], lane: usize| -> f64 {
-        let of = |e: usize| {
-            let moments = all.basis.of_element(e, change);
-            let product = basis::apply(&all.forms[e], &moments);
-            (0..MOMENTS).map(|m| moments[m][lane] * (0.5 * product[m][lane] + slopes[e][m][lane])).sum::<f64>()
-        };
-        (0..slopes.len()).map(of).sum()
-    };
-    let after = |steps: usize| descent::descend(&all.basis, &all.forms, |e| slopes[e], steps);
+fn the_matrix_is_the_energy() {
+    let (case, mut random) = (Case::new(problem()), Random::new(5));
+    let mut coefficients = case.random_modes(&mut random);
+    let x = coefficients.clone();
+    let product = case.multiply(&x);
+    case.all.operator.relax(&case.block(), &x.nodes, &mut coefficients.edges);
+    case.all.operator.unscale_nodes(&case.block(), &x.nodes, &mut coefficients.nodes);
+    let none = vec![[Lanes::ZERO; MOMENTS]; case.elements.len()];
+    let energy = case.energy(&none, &coefficients).0;
     for lane in 0..LANES {
-        let energies: Vec<f64> = [0, 1, 2, 3, STEPS, 400].map(|steps| energy(&after(steps), lane)).to_vec();
-        assert_eq!(energies[0], 0.0);
-        assert!(energies.windows(2).all(|pair| pair[1] < pair[0]), "{energies:?}");
-        // What the steps taken leave of what could be gained.
-        assert!(energies[4] < 0.95 * energies[5], "{energies:?}");
+        let same: f64 = 0.5 * x.all().zip(product.all()).map(|(a, b)| a.0[lane] * b.0[lane]).sum::<f64>();
+        // Rounding of some hundred terms of like size.
+        assert!((same - energy[lane]).abs() < 1e-12 * energy[lane], "{same} {}", energy[lane]);
     }
-    let change = after(400);
-    let mut facets = all.basis.no_moments();
-    let mut first = all.basis.no_moments();
-    for (e, slope) in slopes.iter().enumerate() {
-        let product = basis::apply(&all.forms[e], &all.basis.of_element(e, &change));
-        let total = std::array::from_fn(|m| std::array::from_fn(|lane| product[m][lane] + slope[m][lane]));
-        all.basis.add_to_facets(e, &total, &mut facets);
-        all.basis.add_to_facets(e, slope, &mut first);
+    let matrix = case.matrix();
+    assert!((&matrix - matrix.transpose()).amax() < 1e-13);
+}
+
+/// Ten times as long.
+fn stretched(mesh: &TriangleMesh) -> TriangleMesh {
+    let points = mesh.points().iter().map(|p| [10.0 * p[0], p[1]]).collect();
+    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+    let nodes = |f: &FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
+    let groups = mesh.facet_groups().iter().map(|(name, facets)| (name.clone(), facets.iter().map(nodes).collect()));
+    TriangleMesh::new(points, &cells, &groups.collect(), &ElementGroups::new()).unwrap()
+}
+
+/// Random meshes and structured ones, also stretched and almost incompressible. Measured are 97.6 to 99.1 % of what can be
+/// gained, stretched 94.0 to 97.8 %. Random slopes are harder than real ones, which leave 0.5 to 1.5 %.
+#[test]
+fn the_steps_gain_most_of_what_can_be_gained() {
+    let body =
+        |mesh: TriangleMesh, ratio: f64| problem_of(mesh, Elastic::plane_strain(210e9, ratio, 7800.0, 1.0).unwrap());
+    let random = |seed: u64| random_rectangle(0.05, 0.04, 8, seed).unwrap();
+    let structured = TriangleMesh::rectangle(0.05, 0.04, 10, 8).unwrap();
+    let cases = [
+        (body(random(1), 0.3), 0.95),
+        (body(random(2), 0.49), 0.95),
+        (body(structured.clone(), 0.3), 0.95),
+        (body(stretched(&random(3)), 0.3), 0.93),
+        (body(stretched(&structured), 0.49), 0.93),
+    ];
+    for (problem, part) in cases {
+        let case = Case::new(problem);
+        let slopes = case.random_slopes(&mut Random::new(3));
+        let (reached, least) = (case.energy(&slopes, &case.change(&slopes)), case.least(&slopes));
+        let parts = reached / least;
+        assert!(parts.0.iter().all(|x| (part..=1.0 + 1e-12).contains(x)), "{parts:?}");
     }
-    let size = |moments: &[FacetMoments<2>]| {
-        let mut modes = all.basis.no_modes();
-        all.basis.gather(moments, &mut modes);
-        modes.edges.iter().flatten().chain(modes.nodes.iter().flatten().flatten()).fold(0.0_f64, |m, x| m.max(x.abs()))
-    };
-    // Converged to what rounding of the energies lets conjugate gradients reach.
-    assert!(size(&facets) < 1e-9 * size(&first), "{} of {}", size(&facets), size(&first));
+}
+
+/// Close below the exact one: measured are 98.8 to 100 %. In structured meshes the largest eigenvalues lie close together: six steps
+/// of Lanczos find 94 %. The iteration gains energy up to 1.14 times the eigenvalue that it assumes.
+#[test]
+fn the_largest_eigenvalue() {
+    let mesh = TriangleMesh::rectangle(0.05, 0.05, 12, 12).unwrap();
+    for mesh in [stretched(&mesh), mesh, random_rectangle(0.05, 0.04, 6, 3).unwrap()] {
+        let case = Case::new(problem_of(mesh, Elastic::plane_strain(210e9, 0.4, 7800.0, 1.0).unwrap()));
+        let (exact, found) = (case.matrix().symmetric_eigenvalues().max(), case.all.largest_eigenvalue);
+        assert!(found <= (1.0 + 1e-12) * exact && found > 0.98 * exact, "{found} {exact}");
+    }
 }
 
 /// A lane does not depend on its neighbours, and one without any slope stays where it is.
 #[test]
 fn lanes_are_apart() {
-    let (problem, mut random) = (problem(), Random::new(4));
-    let all = prepared(&problem);
-    let slopes = random_slopes(&problem, &all, &mut random);
-    let together = descent::descend(&all.basis, &all.forms, |e| slopes[e], STEPS);
+    let (case, mut random) = (Case::new(problem()), Random::new(4));
+    let slopes = case.random_slopes(&mut random);
+    let together = case.change(&slopes);
     for lane in 0..LANES {
-        let only = |e: usize| slopes[e].map(|lanes| std::array::from_fn(|l| if l == 0 { lanes[lane] } else { 0.0 }));
-        let alone = descent::descend(&all.basis, &all.forms, only, STEPS);
-        for (a, b) in together.iter().flatten().flatten().zip(alone.iter().flatten().flatten()) {
-            assert_eq!(a[lane], b[0]);
-            assert!(b[1..].iter().all(|x| *x == 0.0));
+        let only = |slope: &[Lanes; MOMENTS]| {
+            slope.map(|lanes| Lanes::at_levels(|l| if l == 0 { lanes.0[lane] } else { 0.0 }))
+        };
+        let alone = case.change(&slopes.iter().map(only).collect::<Vec<_>>());
+        for (a, b) in together.all().zip(alone.all()) {
+            assert_eq!(a.0[lane], b.0[0]);
+            assert!(b.0[1..].iter().all(|x| *x == 0.0));
         }
+    }
+}
+
+/// Threads, and an order of nodes without any locality, do not change the work that each number is made of.
+#[test]
+fn the_order_of_the_work_does_not_matter() {
+    let mesh = TriangleMesh::rectangle(0.05, 0.04, 160, 130).unwrap();
+    for mesh in [mesh.clone(), percute_testkit::renumbered(&mesh, 1).unwrap().0] {
+        let case = Case::new(problem_of(mesh, Elastic::plane_strain(210e9, 0.3, 7800.0, 1.0).unwrap()));
+        let slopes = case.random_slopes(&mut Random::new(6));
+        let change = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| case.change(&slopes)).all().map(|lanes| lanes.0).collect::<Vec<_>>()
+        };
+        let alone = change(1);
+        assert!(alone.iter().flatten().all(|x| x.is_finite()));
+        assert!([2, 3].into_iter().all(|threads| change(threads) == alone));
     }
 }

@@ -1,0 +1,185 @@
+//! The matrix of the energy from the forms of the elements.
+
+use super::mode_forms::{ModeForm, edge, mode_forms};
+use super::modes::Numbers;
+use super::operator::{NONE, Operator, Sector, WithEdges, WithNodes};
+use crate::element::Element;
+use crate::lanes::LANES;
+use crate::simd::dispatch;
+use crate::stress::TractionForms;
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::problem::Problem;
+
+/// The parts of the mesh that matter.
+#[derive(Clone, Copy, Debug)]
+struct Unknown<'a, const D: usize, const N: usize> {
+    problem: &'a Problem<D, N>,
+    elements: &'a [Element<D, N>],
+    numbers: &'a Numbers,
+}
+
+/// The matrix for the modes of a problem.
+pub(super) fn assemble<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    elements: &[Element<D, N>],
+    numbers: &Numbers,
+) -> Operator {
+    let unknown = Unknown { problem, elements, numbers };
+    let (mut operator, forms) = (unknown.empty(), TractionForms::get());
+    for first in (0..elements.len()).step_by(LANES) {
+        let form = dispatch(
+            #[inline(always)]
+            || mode_forms(problem, forms, first),
+        );
+        (first..elements.len().min(first + LANES)).for_each(|e| unknown.add(&mut operator, e, &form, e - first));
+    }
+    unknown.factor(&mut operator);
+    scale(&mut operator);
+    operator
+}
+
+impl<const D: usize, const N: usize> Unknown<'_, D, N> {
+    /// A facet held in all components has unknown moments like an inner one.
+    fn facet(&self, facet: FacetId) -> bool {
+        self.problem.mesh().facets()[facet.index()].neighbour.is_some() || self.problem.supported(facet) == [true; D]
+    }
+
+    /// Sectors of a node: none unless all its edges are unknown.
+    fn sectors_of(&self, node: NodeId) -> usize {
+        let star = self.problem.mesh().stars().star(node);
+        match star.links.iter().all(|link| link.is_some_and(|f| self.facet(f))) {
+            true if star.is_closed() => star.elements.len(),
+            true => star.links.len(),
+            false => 0,
+        }
+    }
+
+    /// 1 if an element lies on the side of the neighbour of one of its edges.
+    fn side(&self, e: usize, facet: FacetId) -> usize {
+        usize::from(self.problem.mesh().facets()[facet.index()].owner != ElementId::new(e))
+    }
+
+    /// No energy yet.
+    fn empty(&self) -> Operator {
+        let mesh = self.problem.mesh();
+        let (nodes, edges) = (mesh.node_count(), self.numbers.edges());
+        let mut operator = Operator {
+            first_sector: vec![0],
+            sectors: Vec::new(),
+            with_nodes: Vec::with_capacity(edges),
+            with_edges: Vec::with_capacity(edges),
+            ends: vec![[[0.0; 3]; 3]; edges],
+            node_scale: vec![[[0.0; 3]; 3]; nodes],
+            edge_scale: vec![0.0; edges],
+        };
+        for node in 0..nodes {
+            let sectors = operator.first_sector[node] + self.sectors_of(NodeId::new(node)) as u32;
+            operator.first_sector.push(sectors);
+            // Where an edge of the boundary has no neighbour, it meets itself, with entries 0.
+            for edge in self.numbers.first_edge(node)..self.numbers.first_edge(node + 1) {
+                operator.with_nodes.push(WithNodes { nodes: [node as u32; 4], entries: [[0.0; 3]; 4] });
+                operator.with_edges.push(WithEdges { edges: [edge as u32; 4], entries: [0.0; 4] });
+            }
+        }
+        operator.sectors = vec![Sector { spoke: 0, rim: NONE }; operator.first_sector[nodes] as usize];
+        operator
+    }
+
+    /// Adds the form of an element, not yet scaled.
+    fn add(&self, to: &mut Operator, e: usize, form: &ModeForm, lane: usize) {
+        let mesh = self.problem.mesh();
+        let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
+        let number = [0, 1, 2].map(|k| self.numbers.of(facets[k]));
+        let entry = |i: usize, j: usize| form[i][j].0[lane];
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let (lower, higher) = if cell[a] < cell[b] { (a, b) } else { (b, a) };
+            let (at, side) = (number[k], self.side(e, facets[k]));
+            let row = &mut to.with_nodes[at];
+            for (slot, node) in [(0, lower), (1, higher), (2 + side, k)] {
+                row.nodes[slot] = cell[node].index() as u32;
+                (0..3).for_each(|c| row.entries[slot][c] += entry(edge(k), 3 * node + c));
+            }
+            let row = &mut to.with_edges[at];
+            for (slot, other) in [(2 * side, a), (2 * side + 1, b)] {
+                row.edges[slot] = number[other] as u32;
+                row.entries[slot] += entry(edge(k), edge(other));
+            }
+            to.edge_scale[at] += entry(edge(k), edge(k));
+            let (ends, own) = (&mut to.ends[at], &mut to.node_scale[cell[k].index()]);
+            for i in 0..3 {
+                (0..3).for_each(|j| ends[i][j] += entry(3 * lower + i, 3 * higher + j));
+                (0..=i).for_each(|j| own[i][j] += entry(3 * k + i, 3 * k + j));
+            }
+        }
+        (0..3).for_each(|i| self.add_sectors(to, e, i, &number));
+    }
+
+    /// Sets the edges around local node `i` of an element.
+    fn add_sectors(&self, to: &mut Operator, e: usize, i: usize, number: &[usize; 3]) {
+        let mesh = self.problem.mesh();
+        let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
+        let (node, sectors) = (cell[i], to.sectors(cell[i].index()));
+        if sectors.is_empty() {
+            return;
+        }
+        // The star enters by the edge to the next node and leaves by that to the one after it.
+        let enter = sectors.start + self.elements[e].links[i] as usize - mesh.stars().link_range(node).start;
+        let leave = if enter + 1 < sectors.end { enter + 1 } else { sectors.start };
+        for (at, k, other) in [(enter, (i + 2) % 3, (i + 1) % 3), (leave, (i + 1) % 3, (i + 2) % 3)] {
+            to.sectors[at].spoke = 2 * number[k] as u32 + u32::from(cell[other] < node);
+        }
+        to.sectors[enter].rim = (2 * number[i] + self.side(e, facets[i])) as u32;
+    }
+
+    /// Turns the blocks of nodes and edges into their scales.
+    fn factor(&self, operator: &mut Operator) {
+        for node in 0..operator.node_scale.len() {
+            let modes = !operator.sectors(node).is_empty();
+            let scale = &mut operator.node_scale[node];
+            *scale = if modes { inverse_factor(scale) } else { [[0.0; 3]; 3] };
+        }
+        for facet in (0..operator.edge_scale.len()).map(FacetId::new) {
+            let scale = &mut operator.edge_scale[self.numbers.of(facet)];
+            *scale = if self.facet(facet) && *scale > 0.0 { 1.0 / scale.sqrt() } else { 0.0 };
+        }
+    }
+}
+
+/// Scales all entries.
+fn scale(operator: &mut Operator) {
+    let Operator { with_nodes, with_edges, ends, node_scale, edge_scale, .. } = operator;
+    for (edge, scale) in edge_scale.iter().enumerate() {
+        let row = &mut with_nodes[edge];
+        for (entries, node) in row.entries.iter_mut().zip(row.nodes) {
+            *entries = node_scale[node as usize].map(|row| scale * (0..3).map(|c| row[c] * entries[c]).sum::<f64>());
+        }
+        let [lower, higher] = [0, 1].map(|end| &node_scale[row.nodes[end] as usize]);
+        let half = ends[edge].map(|entries| higher.map(|row| (0..3).map(|c| row[c] * entries[c]).sum::<f64>()));
+        ends[edge] = lower.map(|row| [0, 1, 2].map(|j| (0..3).map(|c| row[c] * half[c][j]).sum()));
+        let row = &mut with_edges[edge];
+        for (entry, other) in row.entries.iter_mut().zip(row.edges) {
+            *entry *= scale * edge_scale[other as usize];
+        }
+    }
+}
+
+/// L⁻¹ of a matrix LLᵀ, of which the part on and below the diagonal is given; zero if it has none.
+fn inverse_factor(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let mut l = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in 0..=i {
+            let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            if i != j {
+                l[i][j] = rest / l[j][j];
+            } else if rest > 0.0 {
+                l[i][i] = rest.sqrt();
+            } else {
+                return [[0.0; 3]; 3];
+            }
+        }
+    }
+    let (x, y, z) = (1.0 / l[0][0], 1.0 / l[1][1], 1.0 / l[2][2]);
+    let below = -l[1][0] * x * y;
+    [[x, 0.0, 0.0], [below, y, 0.0], [-(l[2][0] * x + l[2][1] * below) * z, -l[2][1] * y * z, z]]
+}

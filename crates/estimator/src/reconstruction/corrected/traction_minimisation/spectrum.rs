@@ -1,0 +1,111 @@
+//! The largest eigenvalue of the matrix of the iteration, from a few Lanczos steps.
+//!
+//! The start vectors are made of lengths and directions in the mesh: they turn with the body, and their numbers do not
+//! matter. The eigenvalue, and with it the estimate, then depends neither on axes nor on numbering.
+
+use super::Workspace;
+use super::modes::{MOMENTS, Modes, Numbers};
+use super::operator::{Block, Operator};
+use crate::lanes::{LANES, Lanes, Value};
+use crate::simd::dispatch;
+use percute_core::mesh::Mesh;
+
+/// Lanczos steps, with eight start vectors. On meshes of 72 to 18 432 triangles, structured and random, also stretched and almost
+/// incompressible, they find 97.6 to 99.9 % of the value that 24 steps find. Six find 91 to 98 %, too little: the largest eigenvalue is that
+/// of tractions that alternate from triangle to triangle, as the slopes of a structured mesh do.
+const STEPS: usize = 12;
+
+/// Distances from the centroid are phases, up to this angle (rad): elements side by side differ, and rounding does not show.
+const PHASE: f64 = 1e3;
+
+/// The largest eigenvalue, at least 1: that of a single mode.
+pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    numbers: &Numbers,
+    operator: &Operator,
+    space: &mut Workspace,
+) -> f64 {
+    let block = Block::new(numbers, 0..mesh.node_count(), 0);
+    let Workspace { slopes: now, change: next, edges, .. } = space;
+    now.clear();
+    dispatch(
+        #[inline(always)]
+        || {
+            start(mesh, numbers, now);
+            operator.scale_slopes(&block, &mut now.nodes, &mut now.edges);
+            operator.balance(&block, &mut now.nodes, &now.edges);
+        },
+    );
+    let mut before = Modes::new(numbers);
+    let mut square = Lanes::ZERO;
+    now.all().for_each(|x| square += *x * *x);
+    let mut tridiagonal = [[Lanes::ZERO; 2]; STEPS];
+    for entries in &mut tridiagonal {
+        let length = Lanes(square.0.map(f64::sqrt));
+        let inverse = Lanes(length.0.map(|x| if x > 0.0 { 1.0 / x } else { 0.0 }));
+        now.all_mut().for_each(|x| *x = *x * inverse);
+        operator.multiply(&block, now, next, edges);
+        let mut diagonal = Lanes::ZERO;
+        for (x, (v, old)) in next.all_mut().zip(now.all().zip(before.all())) {
+            diagonal += *v * *x;
+            *x -= length * *old;
+        }
+        square = Lanes::ZERO;
+        for (x, v) in next.all_mut().zip(now.all()) {
+            *x -= diagonal * *v;
+            square += *x * *x;
+        }
+        *entries = [diagonal, length];
+        std::mem::swap(&mut before, now);
+        std::mem::swap(now, next);
+    }
+    (0..LANES).map(|lane| largest_of(&tridiagonal, lane)).fold(1.0, f64::max)
+}
+
+fn largest_of(tridiagonal: &[[Lanes; 2]; STEPS], lane: usize) -> f64 {
+    let entry = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => tridiagonal[i][0].0[lane],
+        1 => tridiagonal[i.max(j)][1].0[lane],
+        _ => 0.0,
+    };
+    nalgebra::SMatrix::<f64, STEPS, STEPS>::from_fn(entry).symmetric_eigenvalues().max()
+}
+
+/// Slopes whose moments point from the other nodes of an element to the ends of its edges, with phases of their own.
+#[inline(always)]
+fn start<const D: usize, const N: usize>(mesh: &Mesh<D, N>, numbers: &Numbers, slopes: &mut Modes) {
+    let points = mesh.points();
+    let centre: [f64; D] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
+    let distance = |p: &[f64; D]| p.iter().zip(&centre).map(|(x, c)| (x - c).powi(2)).sum::<f64>().sqrt();
+    let unit = PHASE / points.iter().map(distance).fold(0.0, f64::max);
+    let phases: Vec<[f64; 2]> = points.iter().map(|p| (unit * distance(p)).sin_cos().into()).collect();
+    let mut part = slopes.part();
+    for (e, cell) in mesh.cells().iter().enumerate() {
+        let mut slope = [Lanes::ZERO; MOMENTS];
+        // Of each node, sine and cosine of once to eight times its phase.
+        let turns = cell.map(|node| multiples(phases[node.index()]));
+        for k in 0..N {
+            for p in 0..D {
+                let [own, other] = [(k + 1 + p) % N, (k + 2 - p) % N];
+                let [sine, cosine] = turns[own];
+                for c in 0..D {
+                    let [own, other, apex] = [own, other, k].map(|i| points[cell[i].index()][c]);
+                    let (along, across) = (own - other, own - apex);
+                    slope[4 * k + 2 * p + c] = cosine * along + sine * across;
+                }
+            }
+        }
+        numbers.add_slope(mesh, e, &slope, &mut part);
+    }
+}
+
+/// Sine and cosine of once, twice, … an angle.
+#[inline(always)]
+fn multiples([sine, cosine]: [f64; 2]) -> [Lanes; 2] {
+    let (mut multiples, mut now) = ([Lanes::ZERO; 2], [sine, cosine]);
+    for lane in 0..LANES {
+        (multiples[0].0[lane], multiples[1].0[lane]) = (now[0], now[1]);
+        now = [now[0] * cosine + now[1] * sine, now[1] * cosine - now[0] * sine];
+    }
+    multiples
+}
