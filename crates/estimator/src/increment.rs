@@ -1,6 +1,5 @@
 //! ∫₀ᵗ dt of ã and of the lumping difference, of which u̇_DA is made \[13\].
 
-use crate::lanes::{FieldLanes, Lanes};
 use crate::nodal_field::{FieldPool, NodalField};
 use percute_core::ids::NodeId;
 
@@ -27,31 +26,14 @@ impl<const D: usize> Increment<D> {
         [Self(middle), Self(last)]
     }
 
+    /// Its values at all nodes.
+    pub(crate) fn values(&self) -> &[[f64; D]] {
+        &self.0
+    }
+
     /// Its values at the nodes of an element.
     #[inline]
     pub(crate) fn gather<const N: usize>(&self, nodes: &[NodeId; N]) -> [[f64; D]; N] {
         nodes.map(|n| self.0[n.index()])
-    }
-}
-
-/// Such integrals at some nodes, at some instants side by side.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct IncrementLanes<const D: usize>(FieldLanes<D>);
-
-impl<const D: usize> IncrementLanes<D> {
-    /// Takes the values at these nodes, at each instant.
-    #[inline(always)]
-    pub(crate) fn gather<'i>(
-        &mut self,
-        nodes: &[u32],
-        increments: impl Iterator<Item = Option<&'i Increment<D>>> + Clone,
-    ) {
-        self.0.gather(nodes, increments.map(|increment| increment.map(|increment| &increment.0[..])));
-    }
-
-    /// The values at the nodes of an element, which have these places.
-    #[inline(always)]
-    pub(crate) fn of<const N: usize>(&self, local: &[u32; N]) -> [[Lanes; D]; N] {
-        self.0.of(local)
     }
 }

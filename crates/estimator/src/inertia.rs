@@ -26,8 +26,19 @@ struct Rotation<const D: usize, const N: usize> {
 }
 
 /// Places of the nodes from the centroid (m), from differences, so that a distant origin costs no digits.
+#[inline(always)]
 pub(crate) fn arms<const D: usize, const N: usize>(points: &[[f64; D]; N]) -> [[f64; D]; N] {
-    points.map(|p| std::array::from_fn(|c| points.iter().map(|q| p[c] - q[c]).sum::<f64>() / N as f64))
+    let mut arms = [[0.0; D]; N];
+    for i in 0..N {
+        for c in 0..D {
+            let mut sum = 0.0;
+            for q in points {
+                sum += points[i][c] - q[c];
+            }
+            arms[i][c] = sum * (1.0 / N as f64);
+        }
+    }
+    arms
 }
 
 /// Number of rotations.
@@ -36,18 +47,31 @@ const fn rotation_count(dimension: usize) -> usize {
 }
 
 impl<const D: usize, const N: usize> Inertia<D, N> {
+    #[inline(always)]
     pub(crate) fn new(choice: Acceleration, arms: &[[f64; D]; N]) -> Self {
         let mut rotations = [Rotation { field: [[0.0; D]; N], inverse: 0.0 }; D];
-        let planes = (1..D).flat_map(|b| (0..b).map(move |a| (a, b)));
-        for (at, (a, b)) in planes.enumerate() {
-            let (earlier, later) = rotations.split_at_mut(at);
-            let field = &mut later[0].field;
-            for (value, arm) in field.iter_mut().zip(arms) {
-                (value[a], value[b]) = (-arm[b], arm[a]);
+        let mut at = 0;
+        for b in 1..D {
+            for a in 0..b {
+                let (earlier, later) = rotations.split_at_mut(at);
+                let field = &mut later[0].field;
+                for (value, arm) in field.iter_mut().zip(arms) {
+                    (value[a], value[b]) = (-arm[b], arm[a]);
+                }
+                for rotation in earlier {
+                    rotation.remove_from(field);
+                }
+                let mut square = 0.0;
+                for value in &*field {
+                    let mut sum = 0.0;
+                    for x in value {
+                        sum += x * x;
+                    }
+                    square += sum;
+                }
+                later[0].inverse = 1.0 / square;
+                at += 1;
             }
-            earlier.iter().for_each(|rotation| rotation.remove_from(field));
-            let square: f64 = field.iter().map(|value| value.iter().map(|x| x * x).sum::<f64>()).sum();
-            later[0].inverse = 1.0 / square;
         }
         Self { choice, rotations }
     }
@@ -130,6 +154,7 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
     }
 
     /// Makes another nodal field orthogonal to this one.
+    #[inline(always)]
     fn remove_from(&self, nodal: &mut [[f64; D]; N]) {
         let share = self.work_on(nodal) * self.inverse;
         for i in 0..N {

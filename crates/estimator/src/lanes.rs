@@ -17,6 +17,12 @@ pub(crate) const LANES: usize = 8;
 pub(crate) struct Lanes(pub(crate) [f64; LANES]);
 
 impl Lanes {
+    /// Square roots.
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
     /// The numbers of the levels before, that of the first level given.
     #[inline(always)]
     pub(crate) fn later(self, first: f64) -> Self {
@@ -174,6 +180,32 @@ impl SubAssign for Lanes {
     }
 }
 
+/// Takes the values of a nodal field at these nodes into their records, at each level that has the field; at the others, any values.
+#[inline(always)]
+pub(crate) fn gather<'f, R, const D: usize>(
+    records: &mut [R],
+    nodes: &[u32],
+    levels: impl Iterator<Item = Option<&'f [[f64; D]]>> + Clone,
+    place: impl Fn(&mut R) -> &mut [Lanes; D],
+) {
+    let Some(some) = levels.clone().flatten().next() else { return };
+    let mut fields = [some; LANES];
+    for (to, level) in fields.iter_mut().zip(levels) {
+        // All of one length: the first check is then that of all.
+        *to = &level.unwrap_or(some)[..some.len()];
+    }
+    let [a, b, c, d, e, f, g, h] = fields;
+    for (to, &node) in records.iter_mut().zip(nodes) {
+        let n = node as usize;
+        let (a, b, c, d) = (&a[n], &b[n], &c[n], &d[n]);
+        let (e, f, g, h) = (&e[n], &f[n], &g[n], &h[n]);
+        let to = place(to);
+        for k in 0..D {
+            to[k] = Lanes([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k]]);
+        }
+    }
+}
+
 /// A nodal field at some nodes, at some levels side by side.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FieldLanes<const D: usize>(Vec<[Lanes; D]>);
@@ -182,21 +214,14 @@ impl<const D: usize> FieldLanes<D> {
     /// Takes the values at these nodes, at each level that has the field; at the others, any values.
     #[inline(always)]
     pub(crate) fn gather<'f>(&mut self, nodes: &[u32], levels: impl Iterator<Item = Option<&'f [[f64; D]]>> + Clone) {
-        let Some(some) = levels.clone().flatten().next() else { return };
-        let mut fields = [some; LANES];
-        for (to, level) in fields.iter_mut().zip(levels) {
-            *to = level.unwrap_or(some);
-        }
         self.0.resize(nodes.len(), [Lanes::ZERO; D]);
-        let [a, b, c, d, e, f, g, h] = fields;
-        for (to, &node) in self.0.iter_mut().zip(nodes) {
-            let n = node as usize;
-            let (a, b, c, d) = (&a[n], &b[n], &c[n], &d[n]);
-            let (e, f, g, h) = (&e[n], &f[n], &g[n], &h[n]);
-            for k in 0..D {
-                to[k] = Lanes([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k]]);
-            }
-        }
+        gather(
+            &mut self.0,
+            nodes,
+            levels,
+            #[inline(always)]
+            |values| values,
+        );
     }
 
     /// The values by places.

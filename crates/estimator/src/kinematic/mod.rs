@@ -15,7 +15,7 @@ mod window;
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
-use crate::lanes::{FieldLanes, Lanes};
+use crate::lanes::{Lanes, Value, gather};
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 
@@ -55,29 +55,51 @@ impl<const D: usize, const N: usize, T> ElementMotion<D, N, T> {
     }
 }
 
-/// u_CA and u̇_CA at some nodes, at some half-step instants side by side.
-#[derive(Clone, Debug, Default)]
+/// u_CA and u̇_CA at a node, at some half-step instants side by side.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct MotionLanes<const D: usize> {
-    displacement: FieldLanes<D>,
-    velocity: FieldLanes<D>,
+    displacement: [Lanes; D],
+    velocity: [Lanes; D],
 }
 
 impl<const D: usize> MotionLanes<D> {
-    /// Takes the values at these nodes, at each instant.
+    pub(crate) const REST: Self = Self { displacement: [Lanes::ZERO; D], velocity: [Lanes::ZERO; D] };
+
+    /// Takes the motion of these nodes into their records.
     #[inline(always)]
-    pub(crate) fn gather<'m>(
-        &mut self,
+    pub(crate) fn gather<'m, R>(
+        records: &mut [R],
         nodes: &[u32],
         motions: impl Iterator<Item = Option<&'m NodalMotion<D>>> + Clone,
+        place: impl Fn(&mut R) -> &mut Self,
     ) {
-        self.displacement.gather(nodes, motions.clone().map(|motion| motion.map(NodalMotion::displacement)));
-        self.velocity.gather(nodes, motions.map(|motion| motion.map(NodalMotion::velocity)));
+        gather(
+            records,
+            nodes,
+            motions.clone().map(|motion| motion.map(NodalMotion::displacement)),
+            #[inline(always)]
+            |record| &mut place(record).displacement,
+        );
+        gather(
+            records,
+            nodes,
+            motions.map(|motion| motion.map(NodalMotion::velocity)),
+            #[inline(always)]
+            |record| &mut place(record).velocity,
+        );
     }
+}
 
-    /// The motion of an element without contact node, whose nodes have these places.
+impl<const D: usize, const N: usize> ElementMotion<D, N, Lanes> {
+    /// The motion of an element without contact node, from that of its nodes.
     #[inline(always)]
-    pub(crate) fn element<const N: usize>(&self, local: &[u32; N]) -> ElementMotion<D, N, Lanes> {
-        ElementMotion { displacement: self.displacement.of(local), velocity: self.velocity.of(local) }
+    pub(crate) fn of_nodes(nodes: [&MotionLanes<D>; N]) -> Self {
+        let mut motion = Self { displacement: [[Lanes::ZERO; D]; N], velocity: [[Lanes::ZERO; D]; N] };
+        for i in 0..N {
+            motion.displacement[i] = nodes[i].displacement;
+            motion.velocity[i] = nodes[i].velocity;
+        }
+        motion
     }
 }
 

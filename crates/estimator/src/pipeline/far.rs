@@ -2,16 +2,18 @@
 
 use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
-use super::sampling::{Course, ElementSample, Sampling, trapezoid};
+use super::sampling::{Course, ElementSample, Sampling};
 use crate::blocks::BLOCK;
-use crate::increment::IncrementLanes;
-use crate::kinematic::MotionLanes;
-use crate::lanes::{LANES, Lanes, Value};
-use crate::measure::{BalanceFields, Balanced, ElementError, ElementMeasure};
+use crate::increment::Increment;
+use crate::kinematic::{ElementMotion, MotionLanes};
+use crate::lanes::{LANES, Lanes, Value, gather};
+use crate::measure::{
+    AdmissibleStress, BalanceFields, BalanceNode, Balanced, ElementError, ElementMeasure, NodalBalance, at_places,
+};
 use crate::residual::{Residuals, worse};
 use crate::simd::dispatch;
 use crate::stress::{EnergyForm, EnergyForms};
-use crate::time_level::{Side, Velocities};
+use crate::time_level::Velocities;
 use percute_core::ids::ElementId;
 use rayon::prelude::*;
 
@@ -34,6 +36,13 @@ impl FarSums {
     }
 }
 
+/// η_E of a far element so far, and its σ_DA at the last level.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FarCourse<const D: usize, const N: usize> {
+    pub(super) course: Course,
+    stress: AdmissibleStress<D, N>,
+}
+
 /// The results of a block of far elements.
 struct FarBlock {
     levels: ElementError<Lanes>,
@@ -45,31 +54,51 @@ struct FarBlock {
 /// The fields of a block at some levels, and in the middles before them.
 #[derive(Default)]
 struct BlockFields<const D: usize> {
-    now: VelocityLanes<D>,
-    mid: VelocityLanes<D>,
+    now: Vec<VelocityLanes<D>>,
+    mid: Vec<VelocityLanes<D>>,
     balance: BalanceFields<D>,
 }
 
-/// [`Velocities`] side by side.
-#[derive(Default)]
+/// [`Velocities`] of a node side by side.
+#[derive(Clone, Copy)]
 struct VelocityLanes<const D: usize> {
     motion: MotionLanes<D>,
-    increment: IncrementLanes<D>,
-    lumping_increment: IncrementLanes<D>,
+    increment: [Lanes; D],
+    lumping_increment: [Lanes; D],
 }
 
 impl<const D: usize> VelocityLanes<D> {
     #[inline(always)]
     fn gather<'v>(
-        &mut self,
+        records: &mut Vec<Self>,
         nodes: &[u32],
         velocities: impl Iterator<Item = Option<&'v Velocities<D>>> + Clone,
         mixed: bool,
     ) {
-        self.motion.gather(nodes, velocities.clone().map(|v| v.map(|v| &v.motion)));
-        self.increment.gather(nodes, velocities.clone().map(|v| v.map(|v| &v.increment)));
+        let none = [Lanes::ZERO; D];
+        records.resize(nodes.len(), Self { motion: MotionLanes::REST, increment: none, lumping_increment: none });
+        MotionLanes::gather(
+            records,
+            nodes,
+            velocities.clone().map(|v| v.map(|v| &v.motion)),
+            #[inline(always)]
+            |record| &mut record.motion,
+        );
+        gather(
+            records,
+            nodes,
+            velocities.clone().map(|v| v.map(|v| v.increment.values())),
+            #[inline(always)]
+            |record| &mut record.increment,
+        );
         if mixed {
-            self.lumping_increment.gather(nodes, velocities.map(|v| v.and_then(|v| v.lumping_increment.as_ref())));
+            gather(
+                records,
+                nodes,
+                velocities.map(|v| v.and_then(|v| v.lumping_increment.as_ref()).map(Increment::values)),
+                #[inline(always)]
+                |record| &mut record.lumping_increment,
+            );
         }
     }
 }
@@ -79,11 +108,11 @@ pub(super) fn sample<const D: usize, const N: usize>(
     shared: &Sampling<'_, '_, D, N>,
     levels: &SampledLevels<'_, D>,
     is_near: &[bool],
-    courses: &mut [Course],
+    courses: &mut [FarCourse<D, N>],
     sums: &mut FarSums,
 ) -> (Residuals, Vec<Contribution>) {
     let all = FarLevels::new(shared, levels);
-    let block = |fields: &mut BlockFields<D>, (block, courses): (usize, &mut [Course])| {
+    let block = |fields: &mut BlockFields<D>, (block, courses): (usize, &mut [FarCourse<D, N>])| {
         dispatch(
             #[inline(always)]
             || all.sample(block, fields, is_near, courses),
@@ -110,8 +139,9 @@ struct FarLevels<'a, 's, 'p, const D: usize, const N: usize> {
     /// Which levels end an interval of a single step, and whether any does.
     single: [bool; LANES],
     has_mids: bool,
-    /// Length of the interval before each level (s).
-    lengths: [f64; LANES],
+    /// Weights of the integral over the interval before each level: of η at its ends and in its middle (s).
+    ends: Lanes,
+    middles: Lanes,
     /// An element is checked at each level of so many.
     turns: usize,
     /// The number of each level, modulo the turns.
@@ -135,7 +165,8 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
             levels,
             single,
             has_mids: single.contains(&true),
-            lengths: std::array::from_fn(length),
+            ends: Lanes::at_levels(|lane| if single[lane] { 0.25 * length(lane) } else { 0.5 * length(lane) }),
+            middles: Lanes::at_levels(|lane| if single[lane] { 0.5 * length(lane) } else { 0.0 }),
             turns,
             turn: std::array::from_fn(|lane| index(lane).map_or(usize::MAX, |n| n % turns)),
             wanted: std::array::from_fn(|lane| index(lane).is_some_and(|n| shared.maps.want(n))),
@@ -143,7 +174,13 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
     }
 
     #[inline(always)]
-    fn sample(&self, block: usize, fields: &mut BlockFields<D>, is_near: &[bool], courses: &mut [Course]) -> FarBlock {
+    fn sample(
+        &self,
+        block: usize,
+        fields: &mut BlockFields<D>,
+        is_near: &[bool],
+        courses: &mut [FarCourse<D, N>],
+    ) -> FarBlock {
         let mut found = FarBlock {
             levels: ElementError::zero(),
             mids: ElementError::zero(),
@@ -157,14 +194,19 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
         let mut worst = Lanes::ZERO;
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
-            let lanes = forms.prepare(problem, group.clone().map(ElementId::new));
+            fields.balance.gather_moments(&equilibration.elements[group.clone()], self.levels.levels);
+            let nodes_of = |e: usize| fields.balance.nodes(&block.local[e - range.start]);
+            let points = group.clone().map(|e| (ElementId::new(e), BalanceNode::points(&nodes_of(e))));
+            let lanes = forms.prepare(problem, points);
             for (e, lane) in group.zip(lanes) {
                 if !is_near[e] {
-                    let (k, id) = (e - range.start, ElementId::new(e));
-                    let form = forms.of(problem, id, lane);
-                    let measure = ElementMeasure::new(problem, &equilibration.elements[e], id, self.shared.choice);
+                    let (k, id, nodes) = (e - range.start, ElementId::new(e), nodes_of(e));
+                    let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
+                    let of = (problem, &equilibration.elements[e], id);
+                    let measure = ElementMeasure::of_nodes(of, self.shared.choice, &nodes);
+                    let balance = fields.balance.nodal_balance(e - start, self.levels.levels, id, &nodes);
                     let element = FarElement { all: self, measure, form, id, local: &block.local[k] };
-                    element.sample(fields, &mut courses[k], &mut found, &mut worst);
+                    element.sample(fields, &balance, &mut courses[k], &mut found, &mut worst);
                 }
             }
         }
@@ -177,12 +219,12 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
     #[inline(always)]
     fn gather(&self, fields: &mut BlockFields<D>, nodes: &[u32]) {
         let forces = self.levels.levels.forces();
-        fields.balance.gather(nodes, self.levels.levels);
+        fields.balance.gather(self.shared.problem, nodes, self.levels.levels);
         let mixed = fields.balance.is_mixed();
-        fields.now.gather(nodes, forces.iter().map(|f| Some(&f.now)), mixed);
+        VelocityLanes::gather(&mut fields.now, nodes, forces.iter().map(|f| Some(&f.now)), mixed);
         if self.has_mids {
             let mids = forces.iter().zip(self.single).map(|(f, single)| f.mid.as_ref().filter(|_| single));
-            fields.mid.gather(nodes, mids, mixed);
+            VelocityLanes::gather(&mut fields.mid, nodes, mids, mixed);
         }
     }
 }
@@ -199,47 +241,49 @@ struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
     /// Samples the element at all levels and in the middles before them.
     #[inline(always)]
-    fn sample(&self, fields: &BlockFields<D>, course: &mut Course, found: &mut FarBlock, worst: &mut Lanes) {
-        let balanced = {
-            let (equilibration, levels) = (self.all.shared.equilibration, self.all.levels.levels);
-            self.measure.balanced(&fields.balance.nodal_balance(equilibration, levels, self.id, self.local))
-        };
-        let residual = self.measure.resultant_residual(&balanced, self.all.levels.levels.force_scale());
-        *worst = worst.worse(residual);
+    fn sample(
+        &self,
+        fields: &BlockFields<D>,
+        balance: &NodalBalance<D, N, Lanes>,
+        so_far: &mut FarCourse<D, N>,
+        found: &mut FarBlock,
+        worst: &mut Lanes,
+    ) {
+        let (levels, balanced) = (self.all.levels.levels, self.measure.balanced(balance));
+        *worst = worst.worse(self.measure.resultant_residual(&balanced, levels.force_scale()));
         self.check(&balanced, &mut found.residuals);
+        let stress = self.measure.stress(&self.form, &balanced);
         let mixed = fields.balance.is_mixed();
-        let now = self.error(&balanced, &fields.now, mixed);
+        let now = self.error(&stress, &fields.now, mixed);
         found.levels.add(&now);
         let mut mid = ElementError::zero();
         if self.all.has_mids {
-            let middle = Balanced::middle(&self.before(&balanced), &balanced);
-            mid = self.error(&middle, &fields.mid, mixed).only(&self.all.single);
+            // A window that begins with the first level has no middle before it.
+            let before = AdmissibleStress::combine(&so_far.stress, &stress, |last: f64, now: Lanes| now.later(last));
+            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, mixed).only(&self.all.single);
             found.mids.add(&mid);
         }
-        self.integrate(&now, &mid, course, &mut found.kept);
-    }
-
-    /// The fields that balance at the level before each level.
-    #[inline(always)]
-    fn before(&self, balanced: &Balanced<D, N, Lanes>) -> Balanced<D, N, Lanes> {
-        let Some(level) = &self.all.levels.before else {
-            return Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.later(0.0));
-        };
-        let fields = self.measure.nodal_balance(self.all.shared.equilibration, level, &[None; N], Side::After);
-        Balanced::combine(&self.measure.balanced(&fields), balanced, |before: f64, now: Lanes| now.later(before))
+        let last = levels.len() - 1;
+        so_far.stress = AdmissibleStress::combine(&stress, &stress, |now: Lanes, _: Lanes| now.0[last]);
+        self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
     }
 
     #[inline(always)]
     fn error(
         &self,
-        balanced: &Balanced<D, N, Lanes>,
-        velocities: &VelocityLanes<D>,
+        stress: &AdmissibleStress<D, N, Lanes>,
+        velocities: &[VelocityLanes<D>],
         mixed: bool,
     ) -> ElementError<Lanes> {
-        let lumping = mixed.then(|| velocities.lumping_increment.of(self.local));
-        let increment = self.measure.increment_of(&velocities.increment.of(self.local), lumping.as_ref());
-        let motion = velocities.motion.element(self.local);
-        self.measure.error(&self.form, balanced, &increment, &motion, |_| Lanes::ZERO)
+        let nodes = at_places(velocities, self.local);
+        let (mut increment, mut lumping, mut motions) =
+            ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N], [&nodes[0].motion; N]);
+        for i in 0..N {
+            (increment[i], lumping[i]) = (nodes[i].increment, nodes[i].lumping_increment);
+            motions[i] = &nodes[i].motion;
+        }
+        let increment = self.measure.increment_of(&increment, mixed.then_some(&lumping));
+        self.measure.error(stress, &increment, &ElementMotion::of_nodes(motions), Lanes::ZERO)
     }
 
     /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear and the
@@ -247,6 +291,9 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
     #[inline(always)]
     fn check(&self, balanced: &Balanced<D, N, Lanes>, residuals: &mut Residuals) {
         let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;
+        if !self.all.turn.contains(&turn) {
+            return;
+        }
         for (lane, _) in self.all.turn.iter().enumerate().filter(|&(_, &level)| level == turn) {
             let one = Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.0[lane]);
             self.measure.check_stress(&one, self.all.levels.levels.force_scale().0[lane], residuals);
@@ -262,12 +309,11 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) {
-        let (totals, mids) = (now.total(), mid.total());
-        let mut last = course.last().total();
+        let totals = now.total();
+        // The trapezoidal rule, with the middle where it is sampled.
+        let integrals = (totals.later(course.last().total()) + totals) * self.all.ends + mid.total() * self.all.middles;
         for (lane, forces) in self.all.levels.levels.forces().iter().enumerate() {
-            let middle = self.all.single[lane].then_some(mids.0[lane]);
-            course.add(trapezoid(self.all.lengths[lane], last, middle, totals.0[lane]));
-            last = totals.0[lane];
+            course.add(integrals.0[lane]);
             if self.all.wanted[lane] {
                 course.reach(ElementSample::away_from_contact(now.lane(lane)));
                 course.keep(self.id, forces.level.index, kept);

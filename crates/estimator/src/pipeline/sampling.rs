@@ -136,7 +136,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     pub(super) fn new(shared: &'a Sampling<'a, 'p, D, N>, id: ElementId) -> Self {
         let (problem, element) = (shared.problem, &shared.equilibration.elements[id.index()]);
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-        let [lane, ..] = forms.prepare(problem, std::iter::once(id));
+        let [lane, ..] = forms.prepare(problem, std::iter::once((id, problem.mesh().cell_points(id))));
         Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice), forms, lane }
     }
 
@@ -182,10 +182,15 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) -> [ElementSample; 3] {
-        let form = self.forms.of(self.shared.problem, self.id, self.lane);
+        let points = self.shared.problem.mesh().cell_points(self.id);
+        let form = self.forms.of(self.shared.problem, self.id, &points, self.lane);
         let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, k: usize| {
-            let hats = |loading: &_| hat_energy(loading, interval.hats[k]);
-            let error = self.measure.error(&form, balanced, &at.increment, &at.motion, hats);
+            let beside = match interval.hats[k] {
+                [] => 0.0,
+                hats => hat_energy(&self.measure.difference(balanced, &at.motion), hats),
+            };
+            let stress = self.measure.stress(&form, balanced);
+            let error = self.measure.error(&stress, &at.increment, &at.motion, beside);
             ElementSample { error, contact: interval.contact[k] }
         };
         let [before, after] = interval.balanced;

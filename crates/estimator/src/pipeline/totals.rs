@@ -4,7 +4,6 @@ use super::far::FarSums;
 use super::near::NearElement;
 use super::prepare::{Impulse, Preparation};
 use super::sampled_interval::{SampledInterval, intervals, samples};
-use super::sampling::Course;
 use super::separation::separation;
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
 use crate::map::ElementMap;
@@ -17,8 +16,8 @@ use percute_core::time::TimeGrid;
 pub(crate) struct Worked<const D: usize, const N: usize> {
     pub(crate) far: FarSums,
     pub(crate) near: Vec<NearElement<D, N>>,
-    /// η_E of far elements.
-    pub(crate) courses: Vec<Course>,
+    /// ∫η_E dt of far elements (J s).
+    pub(crate) integrals: Vec<f64>,
     pub(crate) residuals: Residuals,
     pub(crate) maps: Vec<ElementMap<D>>,
 }
@@ -30,10 +29,9 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,
 ) -> Estimate<D> {
-    let Worked { far, near, courses, mut residuals, maps } = worked;
+    let Worked { far, near, integrals: mut integral, mut residuals, maps } = worked;
     let last = preparation.count() - 1;
     let end = times.instants()[last];
-    let mut integral = courses.iter().map(|course| course.integral).collect::<Vec<_>>();
     for element in &near {
         integral[element.element.index()] = element.course.integral;
         residuals.merge(&element.residuals);

@@ -3,12 +3,12 @@
 //! Nothing here depends on the number of threads or on where windows end: every number is computed
 //! by one task from its own data, and sums are taken over fixed blocks of elements in order.
 
-use super::far::{self, FarSums};
+use super::far::{self, FarCourse, FarSums};
 use super::maps::{Balance, Maps};
 use super::near::{ContactSampling, NearElement, near_elements};
 use super::prepare::Preparation;
 use super::sampled_levels::SampledLevels;
-use super::sampling::{Course, Sampling};
+use super::sampling::Sampling;
 use super::totals::{self, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
@@ -23,6 +23,8 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Levels in preparation and the one that is kept for the next window.
 const OTHER_LEVELS: usize = 4;
@@ -44,9 +46,9 @@ fn size(options: &Options) -> usize {
 pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
     let levels = size(options).min(times.step_count()).saturating_add(OTHER_LEVELS);
     // Its places in the blocks of elements and stars are three for each node of it.
-    let element = size_of::<Element<D, N>>() + 3 * N * size_of::<u32>() + size_of::<Course>();
-    // Moments of a window and of the level that is kept.
-    let link = size_of::<[Lanes; D]>() + size_of::<[f64; D]>();
+    let element = size_of::<Element<D, N>>() + 3 * N * size_of::<u32>() + size_of::<FarCourse<D, N>>();
+    // Moments of a window.
+    let link = size_of::<[Lanes; D]>();
     // At the level and half way to the next.
     let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
     let steps = times.step_count() / options.every.max(1) + 1;
@@ -75,9 +77,11 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     equilibrated: EquilibratedLevels<D>,
     near: Vec<NearElement<D, N>>,
     is_near: Vec<bool>,
+    /// The links by which the stars of their nodes enter and leave them, in order.
+    near_links: Arc<[u32]>,
     far: FarSums,
     /// η_E of far elements.
-    courses: Vec<Course>,
+    courses: Vec<FarCourse<D, N>>,
     pub(super) maps: Maps<D>,
     residuals: Residuals,
 }
@@ -87,10 +91,14 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         let near = near_elements(problem);
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.iter().for_each(|n| is_near[n.element.index()] = true);
+        let equilibration = Equilibration::new(problem);
+        let links = near.iter().flat_map(|n| equilibration.elements[n.element.index()].links);
+        let near_links: BTreeSet<u32> = links.flat_map(|link| [link, link + 1]).collect();
         Self {
             problem,
             times,
-            equilibration: Equilibration::new(problem),
+            equilibration,
+            near_links: near_links.into_iter().collect(),
             choice: options.acceleration(D),
             size: size(options),
             carried: None,
@@ -99,7 +107,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             near,
             is_near,
             far: FarSums::default(),
-            courses: vec![Course::default(); problem.mesh().element_count()],
+            courses: vec![FarCourse::default(); problem.mesh().element_count()],
             maps,
             residuals: Residuals::default(),
         }
@@ -119,7 +127,8 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         self.near.iter().for_each(|near| self.maps.put(&near.kept));
         let Self { problem, times, far, near, courses, residuals, .. } = self;
         let maps = self.maps.finish(problem, &self.equilibration.elements, preparation.tracks());
-        totals::estimate(problem, times, preparation, Worked { far, near, courses, residuals, maps })
+        let integrals = courses.iter().map(|course| course.course.integral).collect();
+        totals::estimate(problem, times, preparation, Worked { far, near, integrals, residuals, maps })
     }
 
     /// Works on the levels of the window and keeps the last for the next one.
@@ -132,7 +141,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
         preparation.reconstruction().improve(&self.equilibration, self.choice, &mut levels);
         self.sample(preparation, &levels);
-        self.carried = levels.keep_last();
+        self.carried = levels.keep_last(&self.near_links);
         self.equilibrated = levels;
     }
 

@@ -1,6 +1,6 @@
 //! The stress of a bar element: the quadratic that its loading determines.
 
-use super::{Loading, StressResiduals};
+use super::{Fluctuation, Loading, StressResiduals};
 use crate::lanes::Value;
 use crate::residual::worse;
 use percute_core::material::LinearLaw;
@@ -29,13 +29,19 @@ impl BarStress {
         [at(0.0), at(0.5), at(1.0)]
     }
 
-    /// ½∫σ²/E; the square of a quadratic with nodal values a, m, b integrates to
-    /// L(4a² + 16m² + 4b² + 4am + 4mb − 2ab)/30.
+    /// Coordinates of the stress without its mean: that of the mean of σ' and that of its difference.
     #[inline(always)]
-    pub(super) fn energy<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> T {
-        let [a, m, b] = self.stress(loading);
-        let square = (a * a + b * b) * 4.0 + m * m * 16.0 + m * (a + b) * 4.0 - a * b * 2.0;
-        square * (0.5 * self.compliance * self.length / 30.0)
+    pub(super) fn fluctuation<T: Value, const D: usize, const N: usize>(
+        &self,
+        loading: &Loading<D, N, T>,
+    ) -> Fluctuation<D, N, T> {
+        let (g0, g1) = (loading.volume[0][0], loading.volume[1][0]);
+        let mut coordinates = Fluctuation::zero();
+        // ½∫σ²/E of (L/2) s and of (L/4)(s²/2 − 1/6) on −1 < s < 1.
+        let cubed = self.compliance * self.length * self.length * self.length;
+        coordinates.nodes[0][0] = (g0 + g1) * (0.5 * (cubed / 24.0).sqrt());
+        coordinates.nodes[1][0] = (g1 - g0) * (cubed / 1440.0).sqrt();
+        coordinates
     }
 
     /// By Simpson's rule, exact for a quadratic.
@@ -76,13 +82,15 @@ mod tests {
     use super::*;
     use percute_core::material::Elastic;
 
-    /// Against Gauss points: σ = 1 + 2x + 3x² on [0, 2] with E = 5.
+    /// σ = 1 + 2x + 3x² on [0, 2] with E = 5: the mean is 7, and ½∫(σ − 7)²/E, by powers of x, follows from ∫σ².
     #[test]
     fn energy_of_a_quadratic() {
         let map = BarStress::new(2.0, &Elastic::bar(5.0, 1.0, 1.0).unwrap());
         let loading = Loading { traction: [[[17.0]], [[-1.0]]], volume: [[2.0], [14.0]] };
-        let exact = 0.5 / 5.0 * (2.0 + 2.0 * 4.0 + (4.0 + 6.0) * 8.0 / 3.0 + 12.0 * 4.0 + 9.0 * 32.0 / 5.0);
-        assert!((map.energy(&loading) - exact).abs() < 1e-13 * exact);
+        let square = 2.0 + 2.0 * 4.0 + (4.0 + 6.0) * 8.0 / 3.0 + 12.0 * 4.0 + 9.0 * 32.0 / 5.0;
+        let exact = 0.5 / 5.0 * (square - 49.0 * 2.0);
+        let found = map.fluctuation(&loading).energy();
+        assert!((found - exact).abs() < 1e-13 * exact, "{found} {exact}");
         let r = map.residuals(&loading, 0.0);
         assert!(r.divergence < 1e-14 && r.edges < 1e-14);
     }

@@ -3,6 +3,7 @@
 
 mod bar;
 mod energy_form;
+mod fluctuation;
 mod piecewise;
 mod reference;
 mod traction_forms;
@@ -11,6 +12,7 @@ mod triangle;
 use crate::lanes::Value;
 use bar::BarStress;
 pub(crate) use energy_form::{EnergyForm, EnergyForms};
+pub(crate) use fluctuation::Fluctuation;
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};
 pub(crate) use piecewise::MONOMIALS;

@@ -11,6 +11,7 @@ use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only [`Equilibration`] makes them.
 #[derive(Clone, Debug, Default)]
@@ -33,10 +34,11 @@ pub(crate) struct EquilibratedLevel<'a, const D: usize> {
     moments_before: Option<&'a [[f64; D]]>,
 }
 
-/// The moments of a level on the links of all stars (N).
+/// The moments of a level on links of stars (N).
 #[derive(Clone, Copy, Debug)]
 enum Moments<'a, const D: usize> {
-    Alone(&'a [[f64; D]]),
+    /// On some links: their numbers, in order, and their moments.
+    Some(&'a [u32], &'a [[f64; D]]),
     Lane(&'a [[Lanes; D]], usize),
 }
 
@@ -45,6 +47,7 @@ enum Moments<'a, const D: usize> {
 pub(crate) struct KeptLevel<const D: usize> {
     forces: ForcesKnown<D>,
     force_scale: f64,
+    links: Arc<[u32]>,
     moments: Vec<[f64; D]>,
 }
 
@@ -98,8 +101,8 @@ impl<const D: usize> EquilibratedLevels<D> {
         &mut self.forces
     }
 
-    /// Takes the last level out and frees the fields of the others.
-    pub(crate) fn keep_last(&mut self) -> Option<KeptLevel<D>> {
+    /// Takes the last level out, with the moments on some links, in order, and frees the fields of the others.
+    pub(crate) fn keep_last(&mut self, links: &Arc<[u32]>) -> Option<KeptLevel<D>> {
         let forces = self.forces.pop()?;
         let lane = self.forces.len();
         self.forces.clear();
@@ -107,7 +110,8 @@ impl<const D: usize> EquilibratedLevels<D> {
         Some(KeptLevel {
             forces,
             force_scale: self.force_scale.0[lane],
-            moments: self.moments.iter().map(|moment| moment.map(|m| m.0[lane])).collect(),
+            moments: links.iter().map(|&link| self.moments[link as usize].map(|m| m.0[lane])).collect(),
+            links: Arc::clone(links),
         })
     }
 }
@@ -117,7 +121,7 @@ impl<const D: usize> KeptLevel<D> {
         EquilibratedLevel {
             forces: &self.forces,
             force_scale: self.force_scale,
-            moments: Moments::Alone(&self.moments),
+            moments: Moments::Some(&self.links, &self.moments),
             moments_before: None,
         }
     }
@@ -145,7 +149,8 @@ impl<'a, const D: usize> EquilibratedLevel<'a, D> {
     #[inline]
     fn moment(&self, link: usize) -> [f64; D] {
         match self.moments {
-            Moments::Alone(moments) => moments[link],
+            // A link that was not kept has no place.
+            Moments::Some(links, moments) => moments[links.partition_point(|&kept| (kept as usize) < link)],
             Moments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),
         }
     }
@@ -202,8 +207,12 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     /// Largest nodal force of any element at each level (N).
     fn force_scale(&self, forces: &[ForcesKnown<D>]) -> Lanes {
         let blocks = (0..self.elements.len().div_ceil(BLOCK)).into_par_iter();
-        let largest =
-            |fields: &mut StarFields<D>, block: usize| dispatch(|| self.force_scale_of(forces, block, fields));
+        let largest = |fields: &mut StarFields<D>, block: usize| {
+            dispatch(
+                #[inline(always)]
+                || self.force_scale_of(forces, block, fields),
+            )
+        };
         blocks.map_init(StarFields::default, largest).reduce(|| Lanes::ZERO, Value::max)
     }
 

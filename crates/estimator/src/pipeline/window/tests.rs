@@ -50,7 +50,7 @@ impl Run<'_> {
     fn residuals(mut self, levels: Vec<EquilibratedLevels<2>>) -> Residuals {
         for mut some in levels {
             self.window.sample(&self.preparation, &some);
-            self.window.carried = some.keep_last();
+            self.window.carried = some.keep_last(&self.window.near_links);
         }
         let mut residuals = self.window.residuals;
         self.window.near.iter().for_each(|near| residuals.merge(&near.residuals));

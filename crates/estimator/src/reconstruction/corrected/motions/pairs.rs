@@ -13,7 +13,6 @@ use std::ops::Range;
 /// 3, are one. Without a partner, B has no gradients and no mass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
-    ///
     /// Nodes are counted from the first one of the block.
     pub(super) nodes: [u32; 4],
     /// √V ∇φ, V the volume (m³), at the nodes 1 and 2 of A and 2 and 3 of B; that at node 0 is minus the sum.

@@ -14,8 +14,8 @@ use crate::lanes::Lanes;
 use crate::simd::dispatch;
 use percute_core::ids::NodeId;
 
-/// Products with the matrix; the first step needs none. On impacts and vibrations, the five steps gain 98.5 to 99.5 % of what can be
-/// gained. Five of conjugate gradients, preconditioned by nodes and edges alone, would gain 97.5 to 99.6 %.
+/// Products with the matrix; the first step needs none. Over an impact or a vibration, the five steps gain 98.7 to 99.9 % of what can
+/// be gained. Five of conjugate gradients, preconditioned by nodes and edges alone, would gain 96.2 to 99.6 %.
 const PRODUCTS: usize = 4;
 
 /// Part of the largest eigenvalue from which on the iteration reduces all errors: smaller ones bring little gain.
@@ -108,7 +108,9 @@ impl Operator {
             edges,
             #[inline(always)]
             |node, sum| {
-                nodes[node].iter_mut().zip(sum).for_each(|(to, sum)| *to += *sum);
+                for i in 0..3 {
+                    nodes[node][i] += sum[i];
+                }
             },
         );
     }
@@ -174,9 +176,9 @@ impl Operator {
             v,
             #[inline(always)]
             |node, sum| {
-                for (i, sum) in sum.iter().enumerate() {
+                for i in 0..3 {
                     let (x, b) = (nodes[node][i], slopes[node][i]);
-                    to[node][i] = x * of_x + (b * of_b + (x + *sum) * of_product);
+                    to[node][i] = x * of_x + (b * of_b + (x + sum[i]) * of_product);
                 }
             },
         );

@@ -3,7 +3,7 @@
 use super::modes::MOMENTS;
 use crate::lanes::Value;
 use crate::measure::{ElementMeasure, NodalBalance};
-use crate::stress::{EnergyForm, LOADS};
+use crate::stress::{EnergyForm, LOADS, facet_node};
 
 /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
 /// the stress of the displacement that is equilibrated.
@@ -14,9 +14,31 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
     fields: &NodalBalance<D, N, T>,
     stress: &[[T; D]; D],
 ) -> [T; MOMENTS] {
-    let mut loading = measure.balanced(fields).loading;
-    measure.subtract_tractions(stress, &mut loading);
-    moment_gradient(&form.traction_slope(&loading))
+    let admissible = measure.stress(form, &measure.balanced(fields));
+    let mut difference = admissible.mean;
+    for a in 0..D {
+        for b in 0..D {
+            difference[a][b] -= stress[a][b];
+        }
+    }
+    // A moment is a force on its node: it changes the mean stress by the product with the arm of the node. The traction at the second
+    // node of an edge less that at the first is D(D+1) times the difference of the moments.
+    let (strain, slopes) = (measure.strain(&difference), form.difference_slope(&admissible.fluctuation));
+    let mut moments = [T::ZERO; MOMENTS];
+    for (k, slope) in slopes.iter().enumerate() {
+        for c in 0..D {
+            let turning = slope[c] * (D * (D + 1)) as f64;
+            for p in 0..D {
+                let arm = &measure.arms()[facet_node::<N>(k, p)];
+                let mut sum = if p == 0 { -turning } else { turning };
+                for b in 0..D {
+                    sum += strain[c][b] * arm[b];
+                }
+                moments[4 * k + 2 * p + c] = sum;
+            }
+        }
+    }
+    moments
 }
 
 /// The slope of a product of stresses, linear in the loads of the element, tractions first.

@@ -21,7 +21,7 @@ use super::concentration::Concentration;
 use crate::blocks::BLOCK;
 use crate::element::Element;
 use crate::lanes::{LANES, Lanes, Value};
-use crate::measure::{BalanceFields, ElementMeasure};
+use crate::measure::{BalanceFields, BalanceNode, ElementMeasure};
 use crate::options::Acceleration;
 use crate::simd::dispatch;
 use crate::stress::{EnergyForms, hooke};
@@ -234,19 +234,22 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
         let (problem, equilibration, levels) = (self.problem, self.equilibration, self.levels);
         let first = equilibration.blocks.elements(block).start;
         let block = equilibration.blocks.block(block);
-        fields.gather(block.nodes, levels);
+        fields.gather(problem, block.nodes, levels);
         fields.gather_displacement(block.nodes, levels);
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
-            let lanes = forms.prepare(problem, group.clone().map(ElementId::new));
+            fields.gather_moments(&equilibration.elements[group.clone()], levels);
+            let nodes_of = |e: usize| fields.nodes(&block.local[e - first]);
+            let points = group.clone().map(|e| (ElementId::new(e), BalanceNode::points(&nodes_of(e))));
+            let lanes = forms.prepare(problem, points);
             for (e, lane) in group.zip(lanes) {
-                let (id, local) = (ElementId::new(e), &block.local[e - first]);
-                let element = &equilibration.elements[e];
-                let measure = ElementMeasure::new(problem, element, id, self.choice);
-                let balance = fields.nodal_balance(equilibration, levels, id, local);
-                let stress = hooke(problem.material(id), &element.gradient(&fields.displacement(local)));
-                let slope = moment_slope(&measure, &forms.of(problem, id, lane), &balance, &stress);
+                let (id, nodes, element) = (ElementId::new(e), nodes_of(e), &equilibration.elements[e]);
+                let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
+                let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
+                let balance = fields.nodal_balance(e - start, levels, id, &nodes);
+                let stress = hooke(problem.material(id), &element.gradient(&BalanceNode::displacements(&nodes)));
+                let slope = moment_slope(&measure, &form, &balance, &stress);
                 self.numbers.add_slope(problem.mesh(), e, &slope, to);
             }
         }

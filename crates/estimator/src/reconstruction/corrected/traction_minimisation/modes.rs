@@ -141,7 +141,7 @@ impl Numbers {
         for k in 0..N {
             let (a, b) = ((k + 1) % N, (k + 2) % N);
             let edge = Edge::new(mesh, cell[a], cell[b]);
-            let [ax, ay, bx, by] = [0, 1, 2, 3].map(|m| slope[4 * k + m]);
+            let (ax, ay, bx, by) = (slope[4 * k], slope[4 * k + 1], slope[4 * k + 2], slope[4 * k + 3]);
             let (x, y) = (bx - ax, by - ay);
             to.edges[self.of(facets[k]) - to.first_edge] += x * edge.along[0] + y * edge.along[1];
             let couple = x * edge.lever[0] + y * edge.lever[1];
@@ -149,7 +149,10 @@ impl Numbers {
             nodes[b] = [nodes[b][0] + bx, nodes[b][1] + by, nodes[b][2] + couple];
         }
         for (node, own) in cell.iter().zip(&nodes) {
-            to.nodes[node.index() - to.first_node].iter_mut().zip(own).for_each(|(to, own)| *to += *own);
+            let to = &mut to.nodes[node.index() - to.first_node];
+            for i in 0..3 {
+                to[i] += own[i];
+            }
         }
     }
 

@@ -95,7 +95,9 @@ impl Operator {
         for node in block.nodes.clone() {
             let (slopes, scale) = (&mut nodes[node - block.first_node], &self.node_scale[node]);
             let values = *slopes;
-            (0..3).for_each(|i| slopes[i] = combined(&scale[i], &values));
+            for i in 0..3 {
+                slopes[i] = combined(&scale[i], &values);
+            }
         }
         self.scale_edges(block, edges);
     }
@@ -106,7 +108,9 @@ impl Operator {
         for node in block.nodes.clone() {
             let (at, scale) = (node - block.first_node, &self.node_scale[node]);
             let values = from[at];
-            (0..3).for_each(|i| to[at][i] = combined(&[scale[0][i], scale[1][i], scale[2][i]], &values));
+            for i in 0..3 {
+                to[at][i] = combined(&[scale[0][i], scale[1][i], scale[2][i]], &values);
+            }
         }
     }
 
@@ -124,7 +128,11 @@ impl Operator {
     pub(super) fn nodes_around_edges(&self, block: &Block, x: &[[Lanes; 3]], mut with: impl FnMut(usize, Lanes)) {
         for edge in block.edges.clone() {
             let WithNodes { nodes, entries } = &self.with_nodes[edge];
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| combined(&entries[k], &x[nodes[k] as usize - block.first_node]));
+            let mut parts = [Lanes::ZERO; 4];
+            for k in 0..4 {
+                parts[k] = combined(&entries[k], &x[nodes[k] as usize - block.first_node]);
+            }
+            let [a, b, c, d] = parts;
             with(edge - block.first_edge, (a + b) + (c + d));
         }
     }
@@ -134,7 +142,11 @@ impl Operator {
     pub(super) fn edges_around_edges(&self, block: &Block, x: &[Lanes], mut with: impl FnMut(usize, Lanes)) {
         for edge in block.edges.clone() {
             let WithEdges { edges, entries } = &self.with_edges[edge];
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| x[edges[k] as usize - block.first_edge] * entries[k]);
+            let mut parts = [Lanes::ZERO; 4];
+            for k in 0..4 {
+                parts[k] = x[edges[k] as usize - block.first_edge] * entries[k];
+            }
+            let [a, b, c, d] = parts;
             with(edge - block.first_edge, (a + b) + (c + d));
         }
     }
@@ -155,7 +167,9 @@ impl Operator {
                 let (edge, higher) = ((spoke >> 1) as usize, spoke & 1 == 1);
                 let (row, value) = (&self.with_nodes[edge], edges[edge - block.first_edge]);
                 let entries = &row.entries[usize::from(higher)];
-                (0..3).for_each(|i| sum[i] -= value * entries[i]);
+                for i in 0..3 {
+                    sum[i] -= value * entries[i];
+                }
                 if NODES {
                     let end = &x[row.nodes[usize::from(!higher)] as usize - block.first_node];
                     let m = &self.ends[edge];
@@ -167,7 +181,9 @@ impl Operator {
                 if *rim != NONE {
                     let (edge, side) = ((rim >> 1) as usize, (rim & 1) as usize);
                     let (entries, value) = (&self.with_nodes[edge].entries[2 + side], edges[edge - block.first_edge]);
-                    (0..3).for_each(|i| sum[i] -= value * entries[i]);
+                    for i in 0..3 {
+                        sum[i] -= value * entries[i];
+                    }
                 }
             }
             with(node - block.first_node, &sum);

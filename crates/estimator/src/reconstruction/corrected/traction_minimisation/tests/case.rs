@@ -5,7 +5,7 @@ use super::super::modes::MOMENTS;
 use super::super::operator::Block;
 use super::super::*;
 use crate::element::elements;
-use crate::stress::Loading;
+use crate::stress::{Loading, TriangleStress};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
@@ -43,13 +43,12 @@ impl Case {
         let form = |(e, element): (usize, &Element<2, 3>)| {
             let id = ElementId::new(e);
             let measure = ElementMeasure::new(&problem, element, id, Acceleration::Closest);
-            let mut energies = EnergyForms::new(Shape::Triangle);
-            let lane = energies.prepare(&problem, [id].into_iter())[0];
+            let stress = TriangleStress::new(&problem.mesh().cell_points(id), problem.material(id));
             std::array::from_fn(|i| {
                 let mut moments = [[[0.0; 2]; 2]; 3];
                 moments[i / 4][i / 2 % 2][i % 2] = 1.0;
                 let loading = Loading { traction: measure.tractions(&moments), volume: [[0.0; 2]; 3] };
-                moment_gradient(&energies.of(&problem, id, lane).traction_slope(&loading))
+                moment_gradient(&stress.traction_slope(&loading))
             })
         };
         let forms = elements.iter().enumerate().map(form).collect();

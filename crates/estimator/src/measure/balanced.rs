@@ -1,0 +1,113 @@
+//! The dynamically admissible fields of an element.
+
+use crate::lanes::Value;
+use crate::stress::{Loading, facet_node};
+
+/// The fields of an element that tractions and Γ_DA are made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodalBalance<const D: usize, const N: usize, T = f64> {
+    /// Outward moments of each facet at its nodes (N).
+    pub(crate) moments: [[[T; D]; D]; N],
+    /// ã at the nodes (m/s²).
+    pub(crate) acceleration: [[T; D]; N],
+    /// The lumping difference at the nodes, which `mixed` has (m/s²).
+    pub(crate) lumping_difference: Option<[[T; D]; N]>,
+    /// f_d (N/m³).
+    pub(crate) body_force: [T; D],
+}
+/// The dynamically admissible fields of an element at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Balanced<const D: usize, const N: usize, T = f64> {
+    /// Tractions and Γ_DA − f_d.
+    pub(crate) loading: Loading<D, N, T>,
+    /// Largest component of f_d and of ρã at the nodes (N/m³). Γ_DA − f_d is made of them, and where
+    /// they cancel, as in a fall, it does not show how large the terms of the balance are.
+    pub(super) terms: T,
+    /// Their work on the shape function of each node.
+    pub(super) forces: [NodalForce<D, T>; N],
+}
+
+/// The forces on one node of an element (N per unit of section or thickness).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NodalForce<const D: usize, T> {
+    /// Tractions.
+    pub(super) outer: [T; D],
+    /// Γ_DA − f_d.
+    pub(super) inner: [T; D],
+}
+
+impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
+    /// Half way between two instants, \[57\]–\[58\].
+    #[inline(always)]
+    pub(crate) fn middle(a: &Self, b: &Self) -> Self {
+        Self::combine(a, b, |x, y| (x + y) * 0.5)
+    }
+
+    /// The fields that `number` makes of those of two.
+    #[inline(always)]
+    pub(crate) fn combine<A: Value, B: Value>(
+        a: &Balanced<D, N, A>,
+        b: &Balanced<D, N, B>,
+        number: impl Fn(A, B) -> T,
+    ) -> Self {
+        let zero = NodalForce { outer: [T::ZERO; D], inner: [T::ZERO; D] };
+        let mut forces = [zero; N];
+        let mut loading = Loading { traction: [[[T::ZERO; D]; D]; N], volume: [[T::ZERO; D]; N] };
+        for k in 0..N {
+            for c in 0..D {
+                for p in 0..D {
+                    loading.traction[k][p][c] = number(a.loading.traction[k][p][c], b.loading.traction[k][p][c]);
+                }
+                loading.volume[k][c] = number(a.loading.volume[k][c], b.loading.volume[k][c]);
+                forces[k].outer[c] = number(a.forces[k].outer[c], b.forces[k].outer[c]);
+                forces[k].inner[c] = number(a.forces[k].inner[c], b.forces[k].inner[c]);
+            }
+        }
+        Self { loading, terms: number(a.terms, b.terms), forces }
+    }
+}
+/// Outward moments of each facet at its nodes, from those by which the star of each node enters and leaves the element:
+/// entering moments have the other sign.
+#[inline(always)]
+pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
+    around: impl Fn(usize) -> [[T; D]; 2],
+) -> [[[T; D]; D]; N] {
+    let mut moments = [[[T::ZERO; D]; D]; N];
+    for k in 0..N {
+        for p in 0..D {
+            let [entry, exit] = around(facet_node::<N>(k, p));
+            for c in 0..D {
+                moments[k][p][c] = if enters::<D>(k, p) { -entry[c] } else { exit[c] };
+            }
+        }
+    }
+    moments
+}
+
+/// Whether the star of the p-th node of facet k enters the element by it.
+const fn enters<const D: usize>(k: usize, p: usize) -> bool {
+    if D == 1 { k == 1 } else { p == 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::mesh::{BarMesh, TriangleMesh};
+    use percute_core::simplex::Simplex;
+
+    fn check<const D: usize, const N: usize>(simplex: &dyn Simplex<D, N>) {
+        for (i, facets) in simplex.facets_around().iter().enumerate() {
+            for (exit, facet) in facets.iter().enumerate() {
+                let Some(k) = *facet else { continue };
+                let p = (0..D).find(|&p| facet_node::<N>(k, p) == i).unwrap();
+                assert_eq!(enters::<D>(k, p), exit == 0, "node {i}, facet {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn stars_enter_elements_as_the_mesh_says() {
+        check(BarMesh::uniform_bar(1.0, 2).unwrap().simplex());
+        check(TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap().simplex());
+    }
+}

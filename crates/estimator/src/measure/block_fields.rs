@@ -1,0 +1,166 @@
+//! The fields of the nodes of a block of elements, at some levels side by side.
+
+use super::balanced::{NodalBalance, outward};
+use crate::element::Element;
+use crate::lanes::{Lanes, Value, gather};
+use crate::traction::EquilibratedLevels;
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+
+/// A node of a block of elements, with the fields of which tractions and Γ_DA are made at some levels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BalanceNode<const D: usize> {
+    /// Its place (m).
+    point: [f64; D],
+    /// Its initial velocity (m/s).
+    pub(super) start: [f64; D],
+    displacement: [Lanes; D],
+    acceleration: [Lanes; D],
+    lumping_difference: [Lanes; D],
+}
+
+/// The nodes of a block of elements, at some levels.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BalanceFields<const D: usize> {
+    nodes: Vec<BalanceNode<D>>,
+    /// The moments by which the stars of the nodes of some elements enter and leave them (N): those of a node follow each other.
+    moments: Vec<[[Lanes; D]; 2]>,
+    mixed: bool,
+    has_body_force: bool,
+}
+
+impl<const D: usize> BalanceFields<D> {
+    /// Takes the fields of these nodes.
+    #[inline(always)]
+    pub(crate) fn gather<const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        nodes: &[u32],
+        levels: &EquilibratedLevels<D>,
+    ) {
+        let forces = levels.forces();
+        self.mixed = forces.iter().any(|f| f.level.lumping_difference.is_some());
+        self.has_body_force = forces.iter().any(|f| !f.level.body_force.is_empty());
+        let (zero, none) = ([0.0; D], [Lanes::ZERO; D]);
+        let rest =
+            BalanceNode { point: zero, start: zero, displacement: none, acceleration: none, lumping_difference: none };
+        self.nodes.resize(nodes.len(), rest);
+        for (record, &node) in self.nodes.iter_mut().zip(nodes) {
+            record.point = problem.mesh().points()[node as usize];
+            record.start = problem.initial_velocity()[node as usize];
+        }
+        gather(
+            &mut self.nodes,
+            nodes,
+            forces.iter().map(|f| Some(&f.acceleration[..])),
+            #[inline(always)]
+            |node| &mut node.acceleration,
+        );
+        if self.mixed {
+            gather(
+                &mut self.nodes,
+                nodes,
+                forces.iter().map(|f| f.level.lumping_difference.as_deref()),
+                #[inline(always)]
+                |node| &mut node.lumping_difference,
+            );
+        }
+    }
+
+    /// Takes the displacements that are equilibrated too.
+    #[inline(always)]
+    pub(crate) fn gather_displacement(&mut self, nodes: &[u32], levels: &EquilibratedLevels<D>) {
+        gather(
+            &mut self.nodes,
+            nodes,
+            levels.forces().iter().map(|f| Some(&f.level.displacement[..])),
+            #[inline(always)]
+            |node| &mut node.displacement,
+        );
+    }
+
+    /// Whether there is a lumping difference.
+    #[inline(always)]
+    pub(crate) fn is_mixed(&self) -> bool {
+        self.mixed
+    }
+
+    /// The nodes of an element, which have these places.
+    #[inline(always)]
+    pub(crate) fn nodes<const N: usize>(&self, local: &[u32; N]) -> [&BalanceNode<D>; N] {
+        at_places(&self.nodes, local)
+    }
+
+    /// Takes the moments of some elements: one loop for all, so that none waits for another to come from memory.
+    #[inline(always)]
+    pub(crate) fn gather_moments<const N: usize>(
+        &mut self,
+        elements: &[Element<D, N>],
+        levels: &EquilibratedLevels<D>,
+    ) {
+        let moments = levels.moments();
+        self.moments.resize(N * elements.len(), [[Lanes::ZERO; D]; 2]);
+        for (own, element) in self.moments.chunks_exact_mut(N).zip(elements) {
+            for i in 0..N {
+                let pair = &moments[element.links[i] as usize..][..2];
+                own[i] = [pair[0], pair[1]];
+            }
+        }
+    }
+
+    /// The fields of an element without contact node: the k-th whose moments were taken.
+    #[inline(always)]
+    pub(crate) fn nodal_balance<const N: usize>(
+        &self,
+        k: usize,
+        levels: &EquilibratedLevels<D>,
+        id: ElementId,
+        nodes: &[&BalanceNode<D>; N],
+    ) -> NodalBalance<D, N, Lanes> {
+        let own = &self.moments[N * k..][..N];
+        let around = |i: usize| own[i];
+        let (mut acceleration, mut lumping_difference) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
+        for i in 0..N {
+            acceleration[i] = nodes[i].acceleration;
+            lumping_difference[i] = nodes[i].lumping_difference;
+        }
+        NodalBalance {
+            moments: outward(around),
+            acceleration,
+            lumping_difference: self.mixed.then_some(lumping_difference),
+            body_force: if self.has_body_force { levels.body_force(id) } else { [Lanes::ZERO; D] },
+        }
+    }
+}
+
+impl<const D: usize> BalanceNode<D> {
+    /// The places of the nodes of an element (m).
+    #[inline(always)]
+    pub(crate) fn points<const N: usize>(nodes: &[&Self; N]) -> [[f64; D]; N] {
+        let mut points = [[0.0; D]; N];
+        for i in 0..N {
+            points[i] = nodes[i].point;
+        }
+        points
+    }
+
+    /// The displacements of the nodes of an element that are equilibrated (m).
+    #[inline(always)]
+    pub(crate) fn displacements<const N: usize>(nodes: &[&Self; N]) -> [[Lanes; D]; N] {
+        let mut displacements = [[Lanes::ZERO; D]; N];
+        for i in 0..N {
+            displacements[i] = nodes[i].displacement;
+        }
+        displacements
+    }
+}
+
+/// The records at these places.
+#[inline(always)]
+pub(crate) fn at_places<'r, R, const N: usize>(records: &'r [R], local: &[u32; N]) -> [&'r R; N] {
+    let mut found = [&records[local[0] as usize]; N];
+    for i in 1..N {
+        found[i] = &records[local[i] as usize];
+    }
+    found
+}

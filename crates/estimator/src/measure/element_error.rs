@@ -1,0 +1,48 @@
+//! The part of an element in η.
+
+use crate::lanes::{LANES, Lanes, Value};
+
+/// The part of one element in η and d at one sample (J), contact apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ElementError<T = f64> {
+    pub(crate) kinetic: T,
+    pub(crate) elastic: T,
+    pub(crate) reference: T,
+}
+
+impl<T: Value> ElementError<T> {
+    #[inline(always)]
+    pub(crate) fn total(&self) -> T {
+        self.kinetic + self.elastic
+    }
+
+    #[inline(always)]
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.kinetic += other.kinetic;
+        self.elastic += other.elastic;
+        self.reference += other.reference;
+    }
+}
+
+impl ElementError<Lanes> {
+    /// No error.
+    #[inline(always)]
+    pub(crate) fn zero() -> Self {
+        Self { kinetic: Lanes::ZERO, elastic: Lanes::ZERO, reference: Lanes::ZERO }
+    }
+
+    /// At one level.
+    #[inline(always)]
+    pub(crate) fn lane(&self, lane: usize) -> ElementError {
+        let Self { kinetic, elastic, reference } = self;
+        ElementError { kinetic: kinetic.0[lane], elastic: elastic.0[lane], reference: reference.0[lane] }
+    }
+
+    /// At these levels, 0 at the others.
+    #[inline(always)]
+    pub(crate) fn only(&self, wanted: &[bool; LANES]) -> Self {
+        let Self { kinetic, elastic, reference } = self;
+        let [kinetic, elastic, reference] = [kinetic, elastic, reference].map(|number| number.only(wanted));
+        Self { kinetic, elastic, reference }
+    }
+}
