@@ -291,7 +291,7 @@ def estimate(
     *,
     reconstruction: Literal["corrected", "consistent", "published"] | None = None,
     acceleration: Literal["closest", "rigid", "weak", "mixed"] | None = None,
-    every: int | None = None,
+    every: int | Literal["auto"] | None = None,
     threads: int | None = None,
     window: int | None = None,
     instants: int | ArrayLike | None = None,
@@ -314,8 +314,10 @@ def estimate(
         the linear one that does the lumped work, or the closest one for tractions that balance less of the lumped mass,
         which needs the reconstruction "corrected". By default as stated, else "mixed" for plane bodies with "corrected"
         and "closest" for all others.
-    every : int, optional
-        The error is sampled at every so many steps, and at the end. By default as stated, else at every step.
+    every : int or "auto", optional
+        The error is sampled at every so many steps, and at the end; or, with "auto", around onset, release and peaks of the contact
+        force, at the ``instants`` of maps, and between them as sparsely as keeps the mean: at every step on small meshes. By default
+        as stated, else "auto".
     threads : int, optional
         How many threads to use, at most 1024; one for each core by default. The result does not depend on it.
     window : int, optional
@@ -344,7 +346,7 @@ def estimate(
         stated[1] if acceleration is None else text("acceleration", acceleration),
         # The default without one of its parts, for the evidence on each part.
         text("_ablation", _ablation),
-        stated[2] if every is None else whole("every", every),
+        stated[2] if every is None else _sampling(every),
     )
     work = pace(threads, window)
     wanted = _wanted(instants, history)
@@ -353,6 +355,15 @@ def estimate(
     with shown(progress) as tell:
         data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), tell)
     return Estimate._of(data, history, history._name)
+
+
+def _sampling(every: object) -> int | str:
+    """Check at which steps the error is sampled."""
+    if isinstance(every, str):
+        if every != "auto":
+            raise wrong("every", every, '"auto" or a whole number')
+        return every
+    return whole("every", every)
 
 
 def pace(threads: int | None, window: int | None) -> tuple[int | None, int | None]:

@@ -79,8 +79,10 @@ class StoredEstimate:
         self._sources = self._read_sources(report)
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
         self._given: tuple[bool, bool] = report.of(bool, "given", "velocity"), report.of(bool, "given", "acceleration")
-        kinds = ("reconstruction", str), ("acceleration", str), ("every", int)
-        self._options = tuple(report.of(kind, "options", name) for name, kind in kinds)
+        every = report.part("options", "every")
+        if type(every) is not int and every != "auto":
+            raise report.wrong(("options", "every"), 'must be a whole number or "auto"')
+        self._options = report.of(str, "options", "reconstruction"), report.of(str, "options", "acceleration"), every
 
     @staticmethod
     def _read_sources(report: _Report) -> dict[str, Any] | None:
@@ -127,9 +129,9 @@ class StoredEstimate:
         """Whether the history had its own velocities and accelerations."""
         return self._given
 
-    def options(self) -> tuple[str, str, int]:
+    def options(self) -> tuple[str, str, int | str]:
         """Its options."""
-        options: tuple[str, str, int] = self._options
+        options: tuple[str, str, int | str] = self._options
         return options
 
     def worst_elements(self, count: int) -> list[tuple[int, float]]:

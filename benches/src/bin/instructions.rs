@@ -6,7 +6,7 @@
 use percute_benches::{Block, Failure, Motion, Order, estimated, problem, simulated, steps, wall};
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::TriangleMesh;
-use percute_estimator::{Estimator, Options, Reconstruction};
+use percute_estimator::{Estimator, Options, Reconstruction, Sampling};
 use std::hint::black_box;
 
 /// Cells along x and y of all stages.
@@ -18,7 +18,7 @@ fn main() -> Result<(), Failure> {
     let (stage, count) = (next()?, next()?.parse()?);
     let block = Block::new(CELLS, Order::Structured, Motion::Impact)?;
     let sampled = |reconstruction, every| {
-        let options = Options { reconstruction, every, threads: Some(1), ..Options::default() };
+        let options = Options { reconstruction, every: Sampling::Every(every), threads: Some(1), ..Options::default() };
         estimated(&block, count, options, wall).map(|_| ())
     };
     match stage.as_str() {

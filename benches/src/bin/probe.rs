@@ -7,7 +7,7 @@
 #![allow(clippy::print_stdout, reason = "the answers are its purpose")]
 
 use percute_benches::{Block, Clock, Csr, Failure, Motion, Order, estimated, processor, simulated, wall};
-use percute_estimator::{Options, Reconstruction};
+use percute_estimator::{Options, Reconstruction, Sampling};
 use std::cell::OnceCell;
 use std::hint::black_box;
 use std::io::{BufRead, Write};
@@ -39,7 +39,7 @@ fn read(mut arguments: impl Iterator<Item = String>) -> Result<Request, Failure>
     let cells = [next()?.parse()?, next()?.parse()?];
     let mut request =
         Request { cells, order: Order::Structured, motion: Motion::Impact, options: None, clock: processor };
-    let mut options = Options { threads: Some(1), ..Options::default() };
+    let mut options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     while let Ok(name) = next() {
         match name.as_str() {
             "--order" => request.order = next()?.parse()?,

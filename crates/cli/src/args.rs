@@ -1,7 +1,7 @@
 //! The arguments of the command.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, UnknownName};
+use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, Sampling, UnknownName, UnknownSampling};
 use percute_workflow::case::Instants;
 use percute_workflow::message::hint;
 use std::ffi::OsString;
@@ -113,9 +113,9 @@ pub struct EstimateArguments {
     /// Choice of the admissible acceleration [default: as stored in the history]
     #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>, help = named("Choice of the admissible acceleration", Acceleration::ALL))]
     pub acceleration: Option<Acceleration>,
-    /// Sample the error at every k-th step [default: as stored in the history]
-    #[arg(long, value_name = "K", value_parser = steps)]
-    pub every: Option<usize>,
+    /// Sample the error at every k-th step, or at those that "auto" chooses [default: as stored in the history]
+    #[arg(long, value_name = "K", value_parser = sampling)]
+    pub every: Option<Sampling>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub maps: MapArguments,
@@ -209,6 +209,10 @@ fn threads(text: &str) -> Result<usize, String> {
 
 fn steps(text: &str) -> Result<usize, String> {
     whole(text, usize::MAX).ok_or_else(|| "must be a whole number of steps, 1 or more".to_string())
+}
+
+fn sampling(text: &str) -> Result<Sampling, String> {
+    text.parse().map_err(|error: UnknownSampling| error.to_string())
 }
 
 fn instants(text: &str) -> Result<Instants, String> {

@@ -8,7 +8,7 @@ mod common;
 use common::each_case;
 use criterion::{Criterion, criterion_group, criterion_main};
 use percute_benches::{Block, estimated, simulated, wall};
-use percute_estimator::{Options, Reconstruction};
+use percute_estimator::{Options, Reconstruction, Sampling};
 use std::time::Duration;
 
 /// Steps of one iteration: full windows.
@@ -31,7 +31,12 @@ fn estimate(criterion: &mut Criterion) {
         for threads in [1, 2] {
             for &reconstruction in Reconstruction::ALL {
                 for (kind, every) in [("sampled", 1), ("between samples", STEPS)] {
-                    let options = Options { reconstruction, every, threads: Some(threads), ..Options::default() };
+                    let options = Options {
+                        reconstruction,
+                        every: Sampling::Every(every),
+                        threads: Some(threads),
+                        ..Options::default()
+                    };
                     group.bench_function(format!("{reconstruction} {kind}/{threads} threads/{name}"), |b| {
                         b.iter_custom(|count| alone(case, count, options));
                     });

@@ -23,6 +23,21 @@ impl Parts {
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.contact
     }
+
+    /// The mean of two.
+    pub(crate) fn mean(a: &Self, b: &Self) -> Self {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        Self {
+            kinetic: mean(a.kinetic, b.kinetic),
+            elastic: mean(a.elastic, b.elastic),
+            contact: mean(a.contact, b.contact),
+        }
+    }
+
+    /// Each part times a factor.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self { kinetic: factor * self.kinetic, elastic: factor * self.elastic, contact: factor * self.contact }
+    }
 }
 
 /// η and d at one instant. With `consistent` and `published`, an instant at which the contact zone changes has two

@@ -1,5 +1,6 @@
 //! The choices that the method leaves open.
 
+use crate::sampling::Sampling;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -107,9 +108,8 @@ pub struct Options {
     /// For evidence only.
     #[serde(skip)]
     pub ablation: Ablation,
-    /// The error is sampled at every half-step instant if 1, else at t_0, t_k, t_2k, … and at the end, so that the
-    /// mean covers the whole run.
-    pub every: usize,
+    /// At which steps the error is sampled.
+    pub every: Sampling,
     /// How many threads, at most [`MOST_THREADS`]; by default one for each core. The result does not depend on it.
     pub threads: Option<usize>,
     /// How many sampled steps are worked on at once; by default, and at most, 8. The result does not depend on it.
@@ -122,7 +122,7 @@ impl Default for Options {
             reconstruction: Reconstruction::default(),
             acceleration: None,
             ablation: Ablation::default(),
-            every: 1,
+            every: Sampling::Auto,
             window: None,
             threads: None,
         }

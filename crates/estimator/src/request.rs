@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// Steps at whose instants the contribution of every element is kept: increasing, and each one
-    /// sampled: a multiple of [`Options::every`](crate::Options::every), or the last step of the time
+    /// sampled: a multiple of [`Sampling::stride`](crate::Sampling::stride), or the last step of the time
     /// grid.
     pub steps: Vec<usize>,
     /// Whether the admissible fields are kept there too.
@@ -37,7 +37,7 @@ pub enum RequestError {
 
 impl Request {
     /// Maps without fields at no more than `count` sampled steps, spread evenly over the time from t_0 to T;
-    /// `every` is that of the options. Fewer come where fewer are sampled, or where two of the
+    /// `every` is the stride of the options. Fewer come where fewer are sampled, or where two of the
     /// times wanted have the same sampled step nearest to them. A single one is that at T.
     #[must_use]
     pub fn evenly(times: &TimeGrid, count: usize, every: usize) -> Self {

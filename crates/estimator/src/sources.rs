@@ -66,6 +66,18 @@ pub(crate) struct NearParts {
     pub(crate) front: f64,
 }
 
+impl NearParts {
+    /// The mean of two.
+    pub(crate) fn mean(a: &Self, b: &Self) -> Self {
+        Self { misfit: 0.5 * (a.misfit + b.misfit), front: 0.5 * (a.front + b.front) }
+    }
+
+    /// Both times a factor.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self { misfit: factor * self.misfit, front: factor * self.front }
+    }
+}
+
 /// The sources of η over time, and by how much a finer mesh or a shorter step would change them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Separation {

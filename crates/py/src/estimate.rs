@@ -1,7 +1,7 @@
 //! Estimates of histories.
 
 use crate::history::HistoryData;
-use crate::options::{self, Stated, Wanted, analysis, options};
+use crate::options::{self, Every, Stated, Wanted, analysis, options};
 use crate::problem::ProblemData;
 use crate::run::Run;
 use crate::{bridge, contact, errors, view};
@@ -77,7 +77,7 @@ pub(crate) fn estimate(
     reconstruction: &str,
     acceleration: Option<&str>,
     ablation: &str,
-    every: usize,
+    every: Every,
     threads: Option<usize>,
     window: Option<usize>,
     instants: Option<Wanted>,
@@ -85,7 +85,7 @@ pub(crate) fn estimate(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
     let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, format!("`_ablation`: {error}")))?;
-    let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, every)? };
+    let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, &every)? };
     let instants = instants.map(Instants::from);
     let made =
         map_dimension!(&history.run, run => estimate_one(py, run, options, instants.as_ref(), fields, progress)?);

@@ -44,7 +44,7 @@ impl HistoryData {
         let (reconstruction, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
-            options: options::options(py, &reconstruction, acceleration.as_deref(), every)?,
+            options: options::options(py, &reconstruction, acceleration.as_deref(), &every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: reaction.as_slice()?,

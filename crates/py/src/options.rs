@@ -2,7 +2,7 @@
 
 use crate::errors;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Options, Request, UnknownName};
+use percute_estimator::{Acceleration, Options, Request, Sampling, UnknownName};
 use percute_workflow::case::Instants;
 use percute_workflow::message::hint;
 use percute_workflow::run::Analysis;
@@ -24,12 +24,42 @@ impl From<Wanted> for Instants {
     }
 }
 
+/// At which steps the error is sampled, as Python has it: so many steps apart, or a name.
+#[derive(FromPyObject, IntoPyObject)]
+pub(crate) enum Every {
+    Steps(usize),
+    Name(String),
+}
+
+impl Every {
+    /// The option of the estimate.
+    pub(crate) fn sampling(&self, py: Python<'_>) -> PyResult<Sampling> {
+        match self {
+            Self::Steps(steps) => Ok(Sampling::Every(*steps)),
+            Self::Name(name) if *name == Sampling::Auto.to_string() => Ok(Sampling::Auto),
+            Self::Name(name) => {
+                let wrong = format!("`every` is \"{name}\"; it must be \"auto\" or a number of steps, at least 1");
+                Err(errors::input(py, wrong))
+            }
+        }
+    }
+}
+
+impl From<Sampling> for Every {
+    fn from(sampling: Sampling) -> Self {
+        match sampling {
+            Sampling::Auto => Self::Name(sampling.to_string()),
+            Sampling::Every(steps) => Self::Steps(steps),
+        }
+    }
+}
+
 /// Reconstruction, Γ_DA unless it is left to the reconstruction, and `every`, as Python has them.
-pub(crate) type Stated = (String, Option<String>, usize);
+pub(crate) type Stated = (String, Option<String>, Every);
 
 /// Options of an estimate, for Python.
 pub(crate) fn stated(options: &Options) -> Stated {
-    (options.reconstruction.to_string(), options.acceleration.map(|name| name.to_string()), options.every)
+    (options.reconstruction.to_string(), options.acceleration.map(|name| name.to_string()), options.every.into())
 }
 
 /// Options of an estimate by their names.
@@ -37,7 +67,7 @@ pub(crate) fn options(
     py: Python<'_>,
     reconstruction: &str,
     acceleration: Option<&str>,
-    every: usize,
+    every: &Every,
 ) -> PyResult<Options> {
     let unknown = |name: &str, error: UnknownName| {
         let hint = hint(&error.given, error.known.iter().copied());
@@ -50,7 +80,7 @@ pub(crate) fn options(
     if let Some(error) = unsuitable {
         return Err(errors::input(py, format!("`acceleration` {error}")));
     }
-    Ok(Options { reconstruction, acceleration, every, ..Options::default() })
+    Ok(Options { reconstruction, acceleration, every: every.sampling(py)?, ..Options::default() })
 }
 
 /// The analysis of steps; without `instants`, no maps are kept.
@@ -61,8 +91,6 @@ pub(crate) fn analysis(
     contact_steps: bool,
     times: &TimeGrid,
 ) -> Analysis {
-    // An `every` of zero is for the estimator to refuse.
-    let every = options.every.max(1);
-    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(times, every));
+    let steps = instants.map_or_else(Vec::new, |wanted| wanted.steps(times, options.every.stride()));
     Analysis { options, request: Request { steps, fields }, contact_steps }
 }

@@ -12,7 +12,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Options, Reconstruction};
+use percute_estimator::{Acceleration, Options, Reconstruction, Sampling};
 use percute_testkit::{Random, strategy::rectangle};
 use percute_workflow::case::{Case, NotRepresentable, Source, parse, problem_from, statement};
 use percute_workflow::run::{Analysis, Storage, run};
@@ -161,7 +161,11 @@ fn options(random: &mut Random) -> Options {
     let accelerations = Acceleration::of(reconstruction);
     // The last one is the default.
     let acceleration = accelerations.get(random.bits() as usize % (accelerations.len() + 1)).copied();
-    Options { reconstruction, acceleration, every: 1 + random.bits() as usize % 1000, ..Options::default() }
+    let every = match random.bits() as usize % 1000 {
+        0..100 => Sampling::Auto,
+        steps => Sampling::Every(steps),
+    };
+    Options { reconstruction, acceleration, every, ..Options::default() }
 }
 
 /// Four different names of any letters, empty ones and control characters among them.

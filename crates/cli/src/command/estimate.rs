@@ -37,7 +37,7 @@ where
     let instants = maps.instants.clone().unwrap_or_default();
     let times = stored.file.times();
     within("--instants", &instants, times.end())?;
-    let wanted = || Request { steps: instants.steps(times, options.every), fields: maps.fields };
+    let wanted = || Request { steps: instants.steps(times, options.every.stride()), fields: maps.fields };
     let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();

@@ -36,7 +36,7 @@ where
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
     within("--instants", instants, case.times.end())?;
-    let wanted = || Request { steps: instants.steps(&case.times, options.every), fields };
+    let wanted = || Request { steps: instants.steps(&case.times, options.every.stride()), fields };
     let request = request(stored, "--estimate", maps, wanted)?;
     let told = console.warn_about(case, work.quiet);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;

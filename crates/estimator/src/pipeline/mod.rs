@@ -10,6 +10,7 @@ mod prepare;
 mod sampled_interval;
 mod sampled_levels;
 mod sampling;
+mod schedule;
 mod separation;
 mod totals;
 mod window;
@@ -18,6 +19,7 @@ use crate::error::EstimateError;
 use crate::estimate::Estimate;
 use crate::options::{MOST_THREADS, Options};
 use crate::request::Request;
+use crate::sampling::Sampling;
 use maps::Maps;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::problem::Problem;
@@ -44,6 +46,7 @@ const THREADED: usize = 20_000;
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
+    every: Sampling,
     pool: ThreadPool,
     preparation: Preparation<'p, D, N>,
     window: LevelWindow<'p, D, N>,
@@ -55,8 +58,11 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     /// # Errors
     /// Options out of range, or threads that cannot be started.
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: Options) -> Result<Self, EstimateError> {
-        for (name, value) in [("every", Some(options.every)), ("window", options.window), ("threads", options.threads)]
-        {
+        let every = match options.every {
+            Sampling::Auto => None,
+            Sampling::Every(steps) => Some(steps),
+        };
+        for (name, value) in [("every", every), ("window", options.window), ("threads", options.threads)] {
             if value == Some(0) {
                 return Err(EstimateError::Zero { name });
             }
@@ -71,15 +77,19 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
         let mut preparation = Preparation::new(problem, times, &options);
         preparation.prepare(&window.equilibration.elements);
-        Ok(Self { problem, times, pool, preparation, window })
+        Ok(Self { problem, times, every: options.every, pool, preparation, window })
     }
 
-    /// Keeps the maps requested as well, from the first step on. No other number of the estimate changes.
+    /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`] samples them for this: its sums then
+    /// have more samples. Otherwise no other number of the estimate changes.
     ///
     /// # Errors
     /// Steps out of order, beyond the last or not sampled; more maps than memory can hold.
     pub fn keeping(mut self, request: &Request) -> Result<Self, EstimateError> {
-        request.check(self.times, self.preparation.every())?;
+        request.check(self.times, self.every.stride())?;
+        if self.every == Sampling::Auto {
+            self.preparation.request(&request.steps);
+        }
         self.window.maps = Maps::new(request.clone(), self.problem)?;
         Ok(self)
     }
@@ -93,14 +103,14 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
         }
         self.preparation.finish();
-        self.pass_on(true);
+        self.pass_on();
         let estimate = self.window.finish(&self.pool, &self.preparation);
         if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
     }
 
     /// Hands the levels that are ready to the window.
-    fn pass_on(&mut self, last: bool) {
-        while let Some(level) = self.preparation.next_ready(last) {
+    fn pass_on(&mut self) {
+        while let Some(level) = self.preparation.next_ready() {
             self.window.push(&self.pool, level, &self.preparation);
         }
     }
@@ -115,7 +125,7 @@ impl<const D: usize, const N: usize> StateSink<D> for Estimator<'_, D, N> {
         } else {
             preparation.push(state);
         }
-        self.pass_on(false);
+        self.pass_on();
         Ok(())
     }
 }

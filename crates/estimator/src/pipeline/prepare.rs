@@ -4,6 +4,7 @@ mod impulse;
 mod interval;
 mod supports;
 
+use super::schedule::Schedule;
 use crate::contact_density::OffContact;
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -16,6 +17,7 @@ use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, Simulate
 use crate::residual::{Residuals, worse};
 use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, SurfaceStep, TimeLevel};
 pub(crate) use impulse::Impulse;
+use impulse::normal_sum;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
@@ -31,7 +33,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,
     loaded: LoadedFacets<'p, D, N>,
     reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
-    every: usize,
+    schedule: Schedule,
     motion: FreeMotion<D>,
     pool: FieldPool<D>,
     tracks: Vec<ContactTrack>,
@@ -64,7 +66,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             dynamics: Dynamics::new(problem, times),
             loaded: LoadedFacets::new(problem),
             reconstruction: reconstruction::new(problem, times, options),
-            every: options.every,
+            schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
             motion: FreeMotion::new(problem, &pool),
             pool,
             tracks: Vec::new(),
@@ -101,9 +103,19 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.given
     }
 
-    /// Which steps are sampled.
-    pub(super) fn every(&self) -> usize {
-        self.every
+    /// Samples these steps as well; they are in increasing order.
+    pub(super) fn request(&mut self, steps: &[usize]) {
+        self.schedule.request(steps);
+    }
+
+    /// The steps that are sampled, as far as they are known.
+    pub(super) fn sampled(&self) -> &[usize] {
+        self.schedule.steps()
+    }
+
+    /// Whether the middles of intervals between samples are estimated.
+    pub(super) fn estimates_middles(&self) -> bool {
+        self.schedule.is_automatic()
     }
 
     pub(super) fn tracks(&self) -> &[ContactTrack] {
@@ -164,6 +176,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
         self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
+        let decision = self.schedule.advance(n, step.touching, normal_sum(problem, step.reaction));
+        if decision.before {
+            self.differ_at_last();
+        }
         let (mid, now) = self.motion.advance(problem, self.times, state);
         self.track_contact(step, mid.as_ref(), &now);
         let miss = self.supports.advance(problem, self.times, n, &now);
@@ -172,7 +188,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let simulated = SimulatedStep { state, velocity: now.velocity() };
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated, &self.pool);
         self.unmeasured.clear();
-        if n.is_multiple_of(self.every) || n == self.times.step_count() {
+        if decision.now {
             self.reconstruction.differ([step.displacement, now.velocity()]);
         } else if self.reconstruction.differences().is_some() {
             self.unmeasured.extend_from_slice(step.displacement);
@@ -207,8 +223,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Takes in that no more steps come.
     pub(super) fn finish(&mut self) {
         // The last level of an interrupted run is sampled as well.
-        if let (Some(last), false) = (self.motions.back(), self.unmeasured.is_empty()) {
-            self.reconstruction.differ([&self.unmeasured, last.now.velocity()]);
+        if self.schedule.finish(self.count - 1) {
+            self.differ_at_last();
         }
         self.complete_interval();
         // No step follows: the contact force does not jump at the last level.
@@ -222,16 +238,22 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities off
     /// contact.
-    pub(super) fn next_ready(&mut self, last: bool) -> Option<ForcesKnown<D>> {
+    pub(super) fn next_ready(&mut self) -> Option<ForcesKnown<D>> {
         while let Some(mut level) = self.ready.pop_front() {
             self.off_contact.append(&mut level.off_contact);
-            let end = last && self.ready.is_empty();
-            if level.level.index % self.every == 0 || end {
+            if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
                 return Some(level);
             }
         }
         None
+    }
+
+    /// Measures the difference of simulation and auxiliary solution at the last level, which has turned out to be sampled.
+    fn differ_at_last(&mut self) {
+        if let (Some(last), false) = (self.motions.back(), self.unmeasured.is_empty()) {
+            self.reconstruction.differ([&self.unmeasured, last.now.velocity()]);
+        }
     }
 
     /// Hands the normal motion of the candidate nodes to their tracks.

@@ -3,7 +3,7 @@
 use super::far::FarSums;
 use super::near::NearElement;
 use super::prepare::{Impulse, Preparation};
-use super::sampled_interval::{SampledInterval, intervals, samples};
+use super::sampled_interval::{SampledInterval, estimate_middles, intervals, samples};
 use super::separation::separation;
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
 use crate::map::ElementMap;
@@ -29,7 +29,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,
 ) -> Estimate<D> {
-    let Worked { far, near, integrals: mut integral, mut residuals, maps } = worked;
+    let Worked { far, near, integrals: mut integral, mut residuals, mut maps } = worked;
     let last = preparation.count() - 1;
     let end = times.instants()[last];
     for element in &near {
@@ -40,7 +40,12 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     residuals.merge(&preparation.residuals);
     preparation.reconstruction().concentration().into_iter().for_each(|stars| stars.add_residuals(&mut residuals));
 
-    let intervals = intervals(times, preparation.every(), last, &far, &near);
+    let mut intervals = intervals(times, preparation.sampled(), &far, &near);
+    if preparation.estimates_middles() {
+        let factor = estimate_middles(&mut intervals);
+        let accumulated = maps.iter_mut().flat_map(|map| &mut map.accumulated);
+        integral.iter_mut().chain(accumulated).for_each(|integral| *integral *= factor);
+    }
     let over_time = samples(&intervals);
     let worst = over_time.iter().fold(over_time[0], |a, b| if b.parts.total() > a.parts.total() { *b } else { a });
     let Impulse { kept, simulated } = preparation.impulse;

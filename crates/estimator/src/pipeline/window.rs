@@ -51,7 +51,8 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let link = size_of::<[Lanes; D]>();
     // At the level and half way to the next.
     let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
-    let steps = times.step_count() / options.every.max(1) + 1;
+    let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
+    let steps = times.step_count() / spacing + 1;
     let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
     levels
         .saturating_mul(bytes_of_level(problem, options))

@@ -19,7 +19,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, TrueError, bar_impact_error};
-use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request};
+use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request, Sampling};
 use percute_exact::BarImpact;
 
 /// The bar of §7.1.4 of the paper; `fraction` is the gap in steps of flight. The run ends half a
@@ -101,7 +101,12 @@ fn the_program_agrees_with_the_computation_by_hand() {
                     assert!(hand.admissible, "{what}: penetrates, by hand only the equality problem is solved");
                     let ours = estimate(
                         &bar,
-                        Options { reconstruction, acceleration: Some(acceleration), every, ..Options::default() },
+                        Options {
+                            reconstruction,
+                            acceleration: Some(acceleration),
+                            every: Sampling::Every(every),
+                            ..Options::default()
+                        },
                     );
                     let pairs = [
                         (ours.error.sup, hand.sup),

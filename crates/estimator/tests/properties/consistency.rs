@@ -6,7 +6,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, Options, Reconstruction};
+use percute_estimator::{Estimate, Options, Reconstruction, Sampling};
 use percute_testkit::random_rectangle;
 
 /// Problems with friction, gravity and steps that change.
@@ -27,7 +27,7 @@ fn estimates() -> Vec<(Options, Estimate<2>)> {
         let history = history(&problem, &times);
         for options in all_choices() {
             all.extend([1, 4].map(|every| {
-                let options = Options { every, ..options };
+                let options = Options { every: Sampling::Every(every), ..options };
                 (options, estimate(&problem, &history, options))
             }));
         }

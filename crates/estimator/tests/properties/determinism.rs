@@ -9,7 +9,7 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{
-    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request, Separation,
+    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request, Sampling, Separation,
 };
 use percute_testkit::{disc, random_rectangle};
 
@@ -89,7 +89,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
             let options = Options {
                 reconstruction,
                 acceleration: Some(acceleration),
-                every,
+                every: Sampling::Every(every),
                 window,
                 threads,
                 ..Options::default()

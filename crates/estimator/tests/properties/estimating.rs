@@ -5,7 +5,7 @@ use percute_core::history::{History, SinkError, StateSink, Step, StepError, Step
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{Acceleration, Estimate, EstimateError, Estimator, Options, Reconstruction, Request};
+use percute_estimator::{Acceleration, Estimate, EstimateError, Estimator, Options, Reconstruction, Request, Sampling};
 
 /// All reconstructions of the contact force under each of the Γ_DA.
 pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
@@ -89,7 +89,7 @@ pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Proble
     for (k, options) in all_choices().enumerate() {
         // Each `every` meets each reconstruction; all 20 combinations would cost three times as much.
         for every in if k % 3 == 0 { vec![1, 2, 5] } else { vec![1] } {
-            let options = Options { every, ..options };
+            let options = Options { every: Sampling::Every(every), ..options };
             let what = format!("{what}, {}, {}, every {every}", options.reconstruction, options.acceleration(D));
             let estimate = estimate(problem, &history, options);
             assert_admissible(&what, &estimate);

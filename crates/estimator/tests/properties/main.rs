@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod anything;
+mod automatic;
 #[path = "../common/beside.rs"]
 mod beside;
 mod bodies;

@@ -6,7 +6,7 @@ use percute_core::history::{Step, StepError};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{
-    Acceleration, EstimateError, Estimator, MOST_THREADS, Options, Reconstruction, UnsuitableAcceleration,
+    Acceleration, EstimateError, Estimator, MOST_THREADS, Options, Reconstruction, Sampling, UnsuitableAcceleration,
 };
 use percute_testkit::random_rectangle;
 
@@ -143,7 +143,7 @@ fn too_few_steps_and_impossible_options() {
         assert_eq!(estimator.estimator.finish(), Err(EstimateError::TooFewSteps { count }));
     }
     for options in [
-        Options { every: 0, ..Options::default() },
+        Options { every: Sampling::Every(0), ..Options::default() },
         Options { window: Some(0), ..Options::default() },
         Options { threads: Some(0), ..Options::default() },
     ] {

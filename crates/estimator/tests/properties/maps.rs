@@ -10,6 +10,7 @@ use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{
     AdmissibleFields, ElementMap, Estimate, EstimateError, Estimator, Options, Reconstruction, Request, RequestError,
+    Sampling,
 };
 use percute_testkit::random_rectangle;
 
@@ -34,8 +35,8 @@ fn fields<const D: usize>(map: &ElementMap<D>) -> &AdmissibleFields<D> {
 fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) {
     let history = history(problem, times);
     for (k, options) in all_choices().enumerate() {
-        let options = Options { every: 1 + k % 3, ..options };
-        let request = all_steps(times, options.every);
+        let options = Options { every: Sampling::Every(1 + k % 3), ..options };
+        let request = all_steps(times, options.every.stride());
         let estimate = estimate_with_maps(problem, &history, options, &request);
         assert_eq!(estimate.maps.iter().map(|m| m.step).collect::<Vec<_>>(), request.steps);
         let mut jumps = 0;
@@ -59,7 +60,7 @@ fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGr
             accumulated.clone_from(&map.accumulated);
         }
         // The densities of `consistent` jump where the zone changes, those of `published` never.
-        if options.every == 1 {
+        if options.every == Sampling::Every(1) {
             assert_eq!(jumps > 0, options.reconstruction == Reconstruction::Consistent, "{options:?}");
         }
         assert!(estimate.maps[0].accumulated.iter().all(|x| *x == 0.0));
@@ -85,7 +86,7 @@ fn elements_of_a_bar_add_up() {
 fn accumulated_is_the_integral() {
     let (problem, times) = impact();
     let history = history(&problem, &times);
-    let options = Options { every: 2, threads: Some(1), ..Options::default() };
+    let options = Options { every: Sampling::Every(2), threads: Some(1), ..Options::default() };
     let estimate = estimate_with_maps(&problem, &history, options, &all_steps(&times, 2));
     let mut by_hand = vec![0.0; problem.mesh().element_count()];
     // Away from contact both sides of an instant are one.
@@ -221,7 +222,7 @@ fn refused(request: &Request, options: Options) -> RequestError {
 #[test]
 fn impossible_requests_are_refused() {
     let request = |steps: &[usize]| Request { steps: steps.to_vec(), fields: false };
-    let (one, three) = (Options::default(), Options { every: 3, ..Options::default() });
+    let (one, three) = (Options::default(), Options { every: Sampling::Every(3), ..Options::default() });
     assert_eq!(refused(&request(&[0, 61]), one), RequestError::Beyond { step: 61, last: 60 });
     assert_eq!(refused(&request(&[0, usize::MAX]), one), RequestError::Beyond { step: usize::MAX, last: 60 });
     assert_eq!(refused(&request(&[0, 7, 5]), one), RequestError::Order { step: 5, before: 7 });
@@ -229,7 +230,7 @@ fn impossible_requests_are_refused() {
     assert_eq!(refused(&request(&[0, 3, 7]), three), RequestError::NotSampled { step: 7, every: 3 });
     // The last step is sampled whatever `every` is.
     let (problem, times) = impact();
-    let seven = Options { every: 7, ..Options::default() };
+    let seven = Options { every: Sampling::Every(7), ..Options::default() };
     assert!(Estimator::new(&problem, &times, seven).unwrap().keeping(&request(&[0, 56, 60])).is_ok());
 }
 
@@ -265,7 +266,7 @@ fn beginning(complete: &History<2>, times: &TimeGrid, count: usize) -> History<2
 fn an_early_end_has_the_maps_so_far() {
     let (problem, times) = impact();
     let complete = history(&problem, &times);
-    let options = Options { every: 4, threads: Some(1), ..Options::default() };
+    let options = Options { every: Sampling::Every(4), threads: Some(1), ..Options::default() };
     let steps = |e: &Estimate<2>| e.maps.iter().map(|m| m.step).collect::<Vec<_>>();
     for (count, last) in [(30, 28), (29, 28), (28, 24)] {
         let early = beginning(&complete, &times, count);
@@ -295,7 +296,7 @@ fn steps_are_spread_evenly() {
     let problem = Problem::builder(mesh).material(aluminium()).build().unwrap();
     for (count, every) in [(1, 1), (3, 1), (7, 3), (50, 7), (99, 1), (1000, 13)] {
         let request = Request::evenly(&times, count, every);
-        let options = Options { every, ..Options::default() };
+        let options = Options { every: Sampling::Every(every), ..Options::default() };
         assert!(Estimator::new(&problem, &times, options).unwrap().keeping(&request).is_ok(), "{count}, {every}");
     }
 }

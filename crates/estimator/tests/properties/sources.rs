@@ -4,7 +4,7 @@ use crate::bodies::{aluminium, bouncing_bar, plane_below, steps, thrown};
 use crate::estimating::{estimate, history};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
-use percute_estimator::{Ablation, Estimate, Options, Reconstruction, Separation};
+use percute_estimator::{Ablation, Estimate, Options, Reconstruction, Sampling, Separation};
 use percute_testkit::random_rectangle;
 
 fn block(tilt: f64) -> TriangleProblem {
@@ -35,7 +35,7 @@ fn they_add_up_to_the_error() {
     let bar = bouncing_bar(BarMesh::uniform_bar(0.1, 20).unwrap());
     let of_bar = history(&bar, &steps(&bar, 0.9, 200));
     for every in [1, 4] {
-        let options = Options { every, threads: Some(1), ..Options::default() };
+        let options = Options { every: Sampling::Every(every), threads: Some(1), ..Options::default() };
         check("bar", &estimate(&bar, &of_bar, options));
         for tilt in [0.0, 0.2] {
             let problem = block(tilt);

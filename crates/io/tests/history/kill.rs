@@ -6,7 +6,7 @@ use percute_core::history::Discard;
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, Request, estimate};
+use percute_estimator::{Options, Request, Sampling, estimate};
 use percute_io::Overwrite;
 use percute_io::history::{Plan, recover};
 use percute_testkit::Random;
@@ -91,7 +91,7 @@ fn check(runs: std::ops::Range<usize>, when: When) -> (usize, usize) {
         assert_eq!(replayed.len(), file.count());
         assert_same(&replayed, &undisturbed, file.count());
         if file.count() > 2 {
-            let options = Options { every: 50, ..Options::default() };
+            let options = Options { every: Sampling::Every(50), ..Options::default() };
             let source = file.source(&problem).unwrap();
             let (_, estimate) =
                 estimate(&problem, &source, options, &Request::default(), &mut Discard, &mut Unobserved).unwrap();

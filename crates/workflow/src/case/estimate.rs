@@ -2,8 +2,9 @@
 
 use super::source::CaseError;
 use super::table::Table;
+use super::value::Value;
 use crate::message::hint;
-use percute_estimator::{Options, UnknownName};
+use percute_estimator::{Options, Sampling, UnknownName};
 use std::str::FromStr;
 
 /// Reads the options; all have a default.
@@ -17,9 +18,17 @@ pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
         acceleration.check(options.reconstruction).map_err(|error| value.error(error.to_string()))?;
     }
     if let Some(every) = table.get("every") {
-        options.every = every.count(1)?;
+        options.every = sampling(&every)?;
     }
     Ok(options)
+}
+
+/// The steps at which the error is sampled: `"auto"`, or so many steps apart.
+fn sampling(value: &Value<'_>) -> Result<Sampling, CaseError> {
+    if value.text("a name").ok().and_then(|name| name.parse().ok()) == Some(Sampling::Auto) {
+        return Ok(Sampling::Auto);
+    }
+    value.count(1).map(Sampling::Every).map_err(|_| value.must_be("\"auto\" or a whole number, 1 or more"))
 }
 
 /// The value of an option of the estimator, by its name.

@@ -11,7 +11,7 @@ use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction}
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
-use percute_estimator::Options;
+use percute_estimator::{Options, Sampling};
 use thiserror::Error;
 
 /// The tables of a statement.
@@ -68,8 +68,12 @@ pub fn statement<const D: usize, const N: usize>(
         if let Some(acceleration) = options.acceleration {
             text.key("acceleration", quoted(&acceleration.to_string()));
         }
-        // Integers of TOML have 63 bits; no run has that many steps.
-        text.key("every", i64::try_from(options.every).unwrap_or(i64::MAX).to_string());
+        let every = match options.every {
+            Sampling::Auto => quoted(&Sampling::Auto.to_string()),
+            // Integers of TOML have 63 bits; no run has that many steps.
+            Sampling::Every(steps) => i64::try_from(steps).unwrap_or(i64::MAX).to_string(),
+        };
+        text.key("every", every);
     }
     Ok(text.finish())
 }

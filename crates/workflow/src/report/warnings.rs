@@ -4,7 +4,7 @@ use super::{LargestResidual, ProblemSummary};
 use crate::message::{counted, percent};
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
-use percute_estimator::Reconstruction;
+use percute_estimator::{Reconstruction, Sampling};
 use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
@@ -149,7 +149,8 @@ fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 /// An error that is sampled at the start and at the end only; told before the run, too.
-pub(crate) fn few_samples(every: usize, steps: usize) -> Option<Warning> {
+pub(crate) fn few_samples(every: Sampling, steps: usize) -> Option<Warning> {
+    let Sampling::Every(every) = every else { return None };
     if every <= 1 || every < steps {
         return None;
     }

@@ -42,7 +42,7 @@ impl Impulse {
 }
 
 /// Sum of the normal components of forces on the nodes of the contact surface (N).
-fn normal_sum<const D: usize, const N: usize>(problem: &Problem<D, N>, forces: &[[f64; D]]) -> f64 {
+pub(super) fn normal_sum<const D: usize, const N: usize>(problem: &Problem<D, N>, forces: &[[f64; D]]) -> f64 {
     let surface = problem.surface().nodes().iter().zip(forces);
     surface.map(|(contact, f)| problem.obstacles()[contact.obstacle].flat_frame().split(f).0).sum()
 }

@@ -24,7 +24,7 @@ fn run_with<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid, options: &Optio
     let maps = Maps::new(Request::default(), problem).unwrap();
     let window = LevelWindow::new(problem, times, options, maps);
     let mut levels = Vec::new();
-    while let Some(forces) = preparation.next_ready(true) {
+    while let Some(forces) = preparation.next_ready() {
         levels.push(forces);
     }
     Run { window, preparation, levels }
