@@ -62,7 +62,7 @@ class Setting:
         # Where a whole number of steps is due, rounding must not add one.
         count = math.ceil(WHOLE + self.fraction + self.after_impact * self.elements / self.ratio - 1e-6)
         history = pc.simulate(problem, end=count * self.step, step=self.step, progress=stop)
-        estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
+        estimates = [pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
         errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
         return Outcome((true.sup, true.mean), errors, [each.effectivity(true) for each in estimates])

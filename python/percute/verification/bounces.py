@@ -94,7 +94,7 @@ def _run(case: Case, stop: Stop) -> list[Bounces]:
         fine = case.problem(refinements, places, case.sizes[k]) if case.sizes else case.problem(refinements)
         errors.append(pc.true_errors(histories, fine, **steps_past(last, case.ratio, fine), progress=stop))
     return [
-        _compare(history, pc.estimate(history, threads=1, progress=stop), coarse, fine)
+        _compare(history, pc.estimate(history, every=1, threads=1, progress=stop), coarse, fine)
         for history, coarse, fine in zip(histories, *errors, strict=True)
     ]
 

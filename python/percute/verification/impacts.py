@@ -164,7 +164,7 @@ class Case:
                     raise
                 found.append(None)
                 continue
-            estimates = [pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices]
+            estimates = [pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
             count = history.touching.sum(axis=1)
             during = history.time[np.flatnonzero(count)]
             touching = (float(during[0]), float(during[-1])) if len(during) else None

@@ -45,7 +45,7 @@ def _run(bar: tuple[int, float], stop: Stop) -> tuple[float, float, float]:
     step = ratio * LENGTH / elements * math.sqrt(DENSITY / YOUNG)
     count = round(PERIODS * math.tau / FREQUENCY / step)
     history = pc.simulate(problem, end=step * count, step=step, progress=stop)
-    estimate = pc.estimate(history, threads=1, progress=stop)
+    estimate = pc.estimate(history, every=1, threads=1, progress=stop)
     # sin(ω_hΔt/2) = (cΔt/h) sin(kh/2): central differences on the lumped mass.
     discrete = 2.0 / step * math.asin(ratio * math.sin(0.5 * WAVE_NUMBER * LENGTH / elements))
     scale = 100.0 / math.sqrt(ENERGY)

@@ -119,7 +119,7 @@ def _halve(subject: Subject, stop: Stop) -> Halved:
     coarse, fine = subject.problem(subject.level), subject.problem(subject.level + 1)
     runs = [(coarse, STEP), (fine, STEP), (coarse, 0.5 * STEP)]
     histories = [pc.simulate(problem, **steps_past(subject.end, ratio, problem), progress=stop) for problem, ratio in runs]
-    whole, size, step = (pc.estimate(history, threads=1, progress=stop) for history in histories)
+    whole, size, step = (pc.estimate(history, every=1, threads=1, progress=stop) for history in histories)
     reference = subject.problem(subject.reference)
     last = max(float(history.time[-1]) for history in histories)
     true = [error.mean**2 for error in pc.true_errors(histories, reference, **steps_past(last, STEP, reference), progress=stop)]
@@ -152,7 +152,7 @@ def _locally(run: tuple[str, Case], stop: Stop) -> list[pc.Sources]:
     found = []
     for times in LAYERS:
         finer = case.on(_refined(problem.mesh, history, times))
-        estimate = pc.estimate(pc.simulate(finer, **steps_past(case.end, STEP, finer), progress=stop), threads=1, progress=stop)
+        estimate = pc.estimate(pc.simulate(finer, **steps_past(case.end, STEP, finer), progress=stop), every=1, threads=1, progress=stop)
         assert estimate.sources is not None
         found.append(estimate.sources.mean)
     return found

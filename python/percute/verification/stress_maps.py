@@ -32,7 +32,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     history = block.impact().simulate()
 
     def work(name: str, stop: Stop) -> pc.Estimate:
-        return pc.estimate(history, reconstruction=name, acceleration=DEFAULT, instants=INSTANTS + 1, threads=1, progress=stop)  # type: ignore[arg-type]
+        return pc.estimate(history, every=1, reconstruction=name, acceleration=DEFAULT, instants=INSTANTS + 1, threads=1, progress=stop)  # type: ignore[arg-type]
 
     estimates = dict(zip(RECONSTRUCTIONS, resolution.map(work, RECONSTRUCTIONS), strict=True))
     here = ", ".join(f"{percent(e.relative_sup)} and {percent(e.relative_mean)} with `{name}`" for name, e in estimates.items())

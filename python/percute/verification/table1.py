@@ -63,7 +63,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         impact = Block(**run).impact()
         history = impact.simulate(stop)
         choices = PLANE_CHOICES if len(run) == 1 else defaults
-        return tuple(pc.estimate(history, threads=1, progress=stop, **choice) for choice in choices)
+        return tuple(pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices)
 
     found = resolution.map(work, runs, lambda run: run["cells"][0] ** 3)
     own, others = found[: len(rows)], found[len(rows) :]

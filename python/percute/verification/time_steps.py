@@ -38,7 +38,7 @@ def _block(ratio: float, fraction: float, past: float = 12e-6) -> Block:
 
 def _estimate(run: Run, stop: Stop) -> tuple[pc.Estimate, Impact]:
     impact = run[2].impact()
-    return pc.estimate(impact.simulate(stop), reconstruction=run[0], threads=1, progress=stop), impact  # type: ignore[arg-type]
+    return pc.estimate(impact.simulate(stop), every=1, reconstruction=run[0], threads=1, progress=stop), impact  # type: ignore[arg-type]
 
 
 def _largest(estimate: pc.Estimate, keep: np.ndarray) -> tuple[float, float]:

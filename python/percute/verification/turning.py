@@ -55,7 +55,7 @@ class Body:
         times: dict[str, Any] = {"end": self.end, "courant": STEP, "progress": stop}
         history = pc.simulate(self.problem(refinements), **times)
         (error,) = pc.true_errors([history], self.problem(refinements + REFERENCE), **times)
-        estimates = (pc.estimate(history, acceleration=name, threads=1, progress=stop) for name in ACCELERATIONS)
+        estimates = (pc.estimate(history, every=1, acceleration=name, threads=1, progress=stop) for name in ACCELERATIONS)
         return [estimate.effectivity(error) for estimate in estimates]
 
 
