@@ -17,12 +17,6 @@ pub(crate) const LANES: usize = 8;
 pub(crate) struct Lanes(pub(crate) [f64; LANES]);
 
 impl Lanes {
-    /// Square roots.
-    #[inline(always)]
-    pub(crate) fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-
     /// The numbers of the levels before, that of the first level given.
     #[inline(always)]
     pub(crate) fn later(self, first: f64) -> Self {

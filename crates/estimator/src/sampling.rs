@@ -7,7 +7,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 /// With `auto`, so many elements for each step from sample to sample: on a mesh of few elements η fluctuates from step to step. The
-/// sup and the mean of all cases of the evidence then differ by less than 1 % from those of all steps (docs/verification.md).
+/// sup and the mean of all cases of the evidence then differ by less than 1 % from those of all steps (docs/speed.md).
 const ELEMENTS: usize = 1400;
 /// With `auto`, the most steps from sample to sample are the root of the number of elements over this. A wave crosses a plane mesh
 /// of that many elements in a number of steps near this root.

@@ -121,8 +121,11 @@ impl<const D: usize> Nodes<'_, D> {
             Motion::Advance { h, dt } => self.step(l, h, dt),
             Motion::Follow { h, displacement } => {
                 self.displacement.copy_from_slice(&displacement[numbers]);
-                // The displacement stays.
-                self.step(l, h.unwrap_or(0.0), 0.0);
+                match h {
+                    // The displacement stays.
+                    Some(h) => self.step(l, h, 0.0),
+                    None => self.force.fill([0.0; D]),
+                }
             }
             Motion::Combine(factors) => self.combine(l, factors, sums),
         }

@@ -55,7 +55,7 @@ pub(crate) trait Lanes: Copy {
 
 /// Work that is done with vectors.
 pub(crate) trait Task {
-    /// What it gives.
+    /// Its result.
     type Output;
 
     /// Does the work. All that it calls must be `#[inline(always)]`, to be compiled for the instruction set.

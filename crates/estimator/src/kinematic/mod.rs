@@ -37,6 +37,12 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
         }
     }
 
+    /// Any motion, for tests.
+    #[cfg(test)]
+    pub(crate) fn any(displacement: [[f64; D]; N], velocity: [[f64; D]; N]) -> Self {
+        Self { displacement, velocity }
+    }
+
     /// Puts the solution of P_CA in the place of the normal components at local node `i`.
     pub(crate) fn set_normal(&mut self, i: usize, frame: &Frame<D>, track: &ContactTrack, instant: usize) {
         settle(&mut self.displacement[i], &mut self.velocity[i], frame, track, instant);

@@ -411,3 +411,6 @@ fn product<T: Value, const D: usize>(a: &[[T; D]; D], b: &[[T; D]; D]) -> T {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

@@ -81,7 +81,7 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     /// The links by which the stars of their nodes enter and leave them, in order.
     near_links: Arc<[u32]>,
     far: FarSums,
-    /// η_E of far elements.
+    /// Far elements so far.
     courses: Vec<FarCourse<D, N>>,
     pub(super) maps: Maps<D>,
     residuals: Residuals,

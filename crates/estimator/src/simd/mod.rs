@@ -86,7 +86,7 @@ pub(crate) trait Registers: Copy {
 
 /// Work that is done with registers.
 pub(crate) trait Task {
-    /// What it gives.
+    /// Its result.
     type Output;
 
     /// Does the work. All functions of its loops must be `#[inline(always)]`.

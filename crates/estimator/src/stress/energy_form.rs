@@ -31,6 +31,9 @@ const COLUMNS: usize = 6;
 /// Edges that differ by less, relative to the smallest height, belong to triangles of the same shape: rounding of coordinates.
 const SAME: f64 = 1e-13;
 
+/// A pivot that is smaller, relative to its diagonal entry, is the rounding of some terms of this entry.
+const ROUNDING: f64 = 1e-15;
+
 /// The factors L of triangles side by side; above the diagonal, 0.
 type FactorLanes = [[Lanes; LOADS]; LOADS];
 
@@ -236,6 +239,7 @@ impl TriangleForm<'_> {
     /// The products of some columns of L with loads. Above the diagonal L is 0: a loop of fixed length is worth the products with it.
     #[inline(always)]
     fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
+        // A lane is below LANES; the compiler does not know.
         let (mut sums, lane) = ([T::ZERO; COLUMNS], self.lane % LANES);
         for i in FIRST..LOADS {
             let (load, row) = (loads[i], &self.factors[i]);
@@ -308,15 +312,23 @@ fn factor(shapes: &[TriangleShape], factors: &mut FactorLanes) {
     let (mut lower, mut inverse) = ([[Lanes::ZERO; MODES]; MODES], [Lanes::ZERO; MODES]);
     for i in 0..MODES {
         for j in 0..=i {
-            let mut rest = gram.entry(i, j, &weights);
+            let entry = gram.entry(i, j, &weights);
+            let mut rest = entry;
             for k in 0..j {
                 rest -= lower[i][k] * lower[j][k];
             }
-            // In a needle, rounding may leave less than nothing of a pivot: its column is then 0.
-            lower[i][j] = if i == j { rest.max(Lanes::ZERO).sqrt() } else { rest * inverse[j] };
+            if i > j {
+                lower[i][j] = rest * inverse[j];
+                continue;
+            }
+            for lane in 0..LANES {
+                // In needles that are almost incompressible, nothing but rounding may be left of a pivot: its column is then 0.
+                if rest.0[lane] > ROUNDING * entry.0[lane] {
+                    lower[i][i].0[lane] = rest.0[lane].sqrt();
+                    inverse[i].0[lane] = 1.0 / lower[i][i].0[lane];
+                }
+            }
         }
-        let pivot = lower[i][i];
-        inverse[i] = Lanes::at_levels(|lane| if pivot.0[lane] > 0.0 { 1.0 / pivot.0[lane] } else { 0.0 });
     }
     for i in 0..LOADS {
         for j in 0..=i {

@@ -6,7 +6,6 @@ use super::reference::{
     inner_edge, load_share, quadratic_gradients,
 };
 use super::{Loading, StressResiduals};
-use crate::lanes::Value;
 use crate::residual::worse;
 use nalgebra::{Matrix2, Matrix3};
 use percute_core::material::LinearLaw;
@@ -216,17 +215,15 @@ impl TriangleStress {
 }
 
 /// The loads on the reference triangle; `inverse` is B⁻¹, `jacobian` J.
-#[inline(always)]
-pub(super) fn pull_back<T: Value, const D: usize, const N: usize>(
+fn pull_back<const D: usize, const N: usize>(
     inverse: &Matrix2<f64>,
     jacobian: f64,
-    loading: &Loading<D, N, T>,
-) -> [T; LOADS] {
+    loading: &Loading<D, N>,
+) -> [f64; LOADS] {
     let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [inverse[(c, 0)], inverse[(c, 1)]]);
-    let own = |v: &[T; D]| [v[0] * xx + v[1] * xy, v[0] * yx + v[1] * yy];
-    let scaled = |v: &[T; D]| own(v).map(|v| v * jacobian);
+    let own = |v: &[f64; D]| [v[0] * xx + v[1] * xy, v[0] * yx + v[1] * yy];
+    let scaled = |v: &[f64; D]| own(v).map(|v| v * jacobian);
     let Loading { traction: t, volume: g } = loading;
-    // One by one: a loop over them would be compiled into one over their components.
     let [[a, b], [c, d], [e, f]] =
         [[own(&t[0][0]), own(&t[0][1])], [own(&t[1][0]), own(&t[1][1])], [own(&t[2][0]), own(&t[2][1])]];
     let [p, q, r] = [scaled(&g[0]), scaled(&g[1]), scaled(&g[2])];
@@ -234,11 +231,10 @@ pub(super) fn pull_back<T: Value, const D: usize, const N: usize>(
 }
 
 /// The slope in the tractions of the real triangle, from that in each load on the reference triangle.
-#[inline(always)]
-pub(super) fn push_forward<T: Value, const D: usize, const N: usize>(
+fn push_forward<const D: usize, const N: usize>(
     inverse: &Matrix2<f64>,
-    slope: impl Fn(usize) -> T,
-) -> [[[T; D]; D]; N] {
+    slope: impl Fn(usize) -> f64,
+) -> [[[f64; D]; D]; N] {
     let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [inverse[(0, c)], inverse[(1, c)]]);
     let own = |at: usize| {
         let (x, y) = (slope(at), slope(at + 1));

@@ -149,8 +149,11 @@ impl<'a, const D: usize> EquilibratedLevel<'a, D> {
     #[inline]
     fn moment(&self, link: usize) -> [f64; D] {
         match self.moments {
-            // A link that was not kept has no place.
-            Moments::Some(links, moments) => moments[links.partition_point(|&kept| (kept as usize) < link)],
+            Moments::Some(links, moments) => {
+                let at = links.partition_point(|&kept| (kept as usize) < link);
+                debug_assert_eq!(links[at] as usize, link, "only the links of near elements are kept");
+                moments[at]
+            }
             Moments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),
         }
     }

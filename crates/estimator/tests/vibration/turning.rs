@@ -102,8 +102,8 @@ fn bending(level: usize) -> [[f64; 2]; 2] {
     effectivities(&estimates, exact.sup, exact.mean)
 }
 
-/// Each index of `mixed` lies in the range and does not rise from mesh to mesh, but for 2 %: on coarse meshes, the descent to
-/// tractions of least energy goes a little farther.
+/// Each index of `mixed` lies in the range and does not rise from mesh to mesh, but for 2 %: on coarse meshes, the
+/// minimisation of the tractions gains a little more.
 fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
     for (k, [_, mixed]) in meshes.iter().enumerate() {
         assert!(mixed.iter().all(|x| (range[0]..=range[1]).contains(x)), "{name}, mesh {k}: {meshes:?}");

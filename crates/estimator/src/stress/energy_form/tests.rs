@@ -117,30 +117,32 @@ fn lanes_are_apart() {
     }
 }
 
-/// Triangles that differ by the rounding of their place share a form, others do not.
+/// Triangles of one law that differ by the rounding of their place share a form, others do not.
 #[test]
 fn shapes_are_shared() {
-    let law = Elastic::plane_stress(2.0, 0.3, 1.0, 0.5).unwrap();
+    let laws = [0.3, 0.4].map(|ratio| Elastic::plane_stress(2.0, ratio, 1.0, 0.5).unwrap());
     let mut forms = TriangleForms::new();
-    let at = |x: f64, stretch: f64| ([[x, 0.7], [x + 0.1, 0.7], [x, 0.7 + 0.1 * stretch]], &law);
-    let lanes = forms.prepare([at(0.0, 1.0), at(0.3, 1.0), at(0.6, 1.0 + 1e-9)].into_iter());
-    assert_eq!((lanes[0], lanes[1], forms.shapes.len()), (0, 0, 2));
+    let at = |x: f64, stretch: f64, law: usize| ([[x, 0.7], [x + 0.1, 0.7], [x, 0.7 + 0.1 * stretch]], &laws[law]);
+    let all = [at(0.0, 1.0, 0), at(0.3, 1.0, 0), at(0.6, 1.0 + 1e-9, 0), at(0.0, 1.0, 1), at(0.6, 1.0, 1)];
+    let lanes = forms.prepare(all.into_iter());
+    assert_eq!((&lanes[..5], forms.shapes.len()), (&[0, 0, 1, 2, 2][..], 3));
 }
 
-/// Needles, also almost incompressible, have the energy of the form that is not factored. Measured are at most 2e-14.
+/// Needles, also almost incompressible, have the energy of the form that is not factored: some of their pivots are rounding. Measured
+/// are at most 8e-12.
 #[test]
 fn needles() {
     let mut random = Random::new(5);
-    for ratio in [0.3, 0.499_999] {
+    for ratio in [0.3, 0.49, 0.499_999_9] {
         let law = Elastic::plane_strain(2.0, ratio, 1.0, 1.0).unwrap();
-        for aspect in [1e1, 1e2, 1e3, 1e4, 1e6] {
+        for aspect in [1e1, 1e2, 1e3, 3e3, 1e4, 1e5, 1e6] {
             let points = [[0.0, 0.0], [aspect, 0.1], [0.4 * aspect, 1.0]];
             let mut forms = TriangleForms::new();
             forms.prepare([(points, &law)].into_iter());
             let loading = fluctuating(&points, &mut random);
             let found = forms.of(0, &points).fluctuation(&loading).energy();
             let expected = TriangleStress::new(&points, &law).energy(&loading);
-            assert!((found - expected).abs() < 1e-12 * expected, "{ratio} {aspect:e}: {found} for {expected}");
+            assert!((found - expected).abs() < 1e-10 * expected, "{ratio} {aspect:e}: {found} for {expected}");
         }
     }
 }

@@ -218,7 +218,7 @@ mod tests {
                 for (stage, range) in all.into_iter().enumerate() {
                     range.clone().for_each(|turn| done[turn][stage] += 1);
                 }
-                // What a turn of a stage needs of the stages before, by the turns that its blocks share nodes with.
+                // A turn of a stage needs those turns of the stages before that its blocks share nodes with.
                 for (stage, needs, range) in [(2, 1, &part.second), (4, 3, &part.third)] {
                     for turn in range.clone() {
                         let needed = turn..(turn + 2).min(turns);

@@ -177,7 +177,7 @@ fn stable_up_to_the_critical_step() {
     }
 }
 
-/// What moves without strain keeps moving so, whatever the mesh.
+/// A motion without strain goes on without strain, on any mesh.
 #[test]
 fn a_translation_is_not_touched() {
     let mesh = random_rectangle(1.0, 0.8, 5, 1).unwrap();

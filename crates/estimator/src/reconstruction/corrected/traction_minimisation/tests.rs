@@ -2,6 +2,8 @@ mod case;
 
 use super::modes::MOMENTS;
 use super::*;
+use crate::kinematic::ElementMotion;
+use crate::measure::NodalBalance;
 use case::{Case, problem, problem_of};
 use percute_core::ids::FacetId;
 use percute_core::material::Elastic;
@@ -71,6 +73,41 @@ fn adding_slopes_is_the_transpose_of_adding_changes() {
         let same: f64 = modes.all().zip(gathered.all()).map(|(a, b)| a.0[lane] * b.0[lane]).sum();
         // Rounding of some thousand terms.
         assert!((work - same).abs() < 1e-14 * size, "{work} {same} of {size}");
+    }
+}
+
+/// The slopes of an element are differences of its energy, in a body that is not of unit thickness.
+#[test]
+fn slopes_are_differences_of_the_energy() {
+    let (case, mut random) = (Case::new(problem()), Random::new(8));
+    for (e, element) in case.elements.iter().enumerate() {
+        let (id, points) = (ElementId::new(e), case.problem.mesh().cell_points(ElementId::new(e)));
+        let measure = ElementMeasure::new(&case.problem, element, id, Acceleration::Closest);
+        let mut forms = EnergyForms::new(Shape::Triangle);
+        let [lane, ..] = forms.prepare(&case.problem, std::iter::once((id, points)));
+        let form = forms.of(&case.problem, id, &points, lane);
+        let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));
+        let fields = NodalBalance {
+            moments: [(); 3].map(|()| [vector(), vector()]),
+            acceleration: [(); 3].map(|()| vector()),
+            lumping_difference: None,
+            body_force: [0.0; 2],
+        };
+        let motion = ElementMotion::any([(); 3].map(|()| vector().map(|u| 1e-12 * u)), [[0.0; 2]; 3]);
+        let stress = hooke(case.problem.material(id), &element.gradient(motion.displacement()));
+        let slopes = moment_slope(&measure, &form, &fields, &stress);
+        let largest = slopes.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+        for (m, slope) in slopes.iter().enumerate() {
+            let energy = |step: f64| {
+                let mut fields = fields;
+                fields.moments[m / 4][m / 2 % 2][m % 2] += step;
+                let stress = measure.stress(&form, &measure.balanced(&fields));
+                measure.error(&stress, &[[0.0; 2]; 3], &motion, 0.0).elastic
+            };
+            // The energy is quadratic: differences of any step are exact.
+            let difference = 0.5 * (energy(1.0) - energy(-1.0));
+            assert!((slope - difference).abs() < 1e-12 * largest, "element {e}, moment {m}: {slope} {difference}");
+        }
     }
 }
 
