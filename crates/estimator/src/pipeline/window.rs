@@ -53,10 +53,9 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
     let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
     let steps = times.step_count() / spacing + 1;
-    let threads = options.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
     levels
         .saturating_mul(bytes_of_level(problem, options))
-        .saturating_add(reconstruction::new(problem, times, options).memory(levels, threads))
+        .saturating_add(reconstruction::new(problem, times, options).memory())
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))

@@ -77,8 +77,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     /// Prepares the maps of the elements.
     fn prepare(&mut self, _elements: &[Element<D, N>]) {}
 
-    /// About how much memory it takes (bytes), with so many levels in a window and so many threads.
-    fn memory(&self, _levels: usize, _threads: usize) -> usize {
+    /// About how much memory it takes (bytes).
+    fn memory(&self) -> usize {
         0
     }
 

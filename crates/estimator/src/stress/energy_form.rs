@@ -11,7 +11,8 @@
 //! the same shape share it.
 
 use super::bar::BarStress;
-use super::fluctuation::{FluctuationGram, MODES, START};
+use super::fluctuation::{MODES, START, gram};
+use super::reference::PAIRS;
 use super::triangle::reference_compliance;
 use super::{Fluctuation, Loading};
 use crate::lanes::{LANES, Lanes, Value};
@@ -307,8 +308,8 @@ fn factor(shapes: &[TriangleShape], factors: &mut FactorLanes) {
         let shape = shape(lane);
         (reference_compliance(&shape.map, shape.compliance), 0.5 / shape.map.determinant())
     });
-    let weights = FluctuationGram::weights(|a, b| Lanes::at_levels(|lane| own[lane].1 * own[lane].0[a][b]));
-    let gram = FluctuationGram::get();
+    let weights = PAIRS.map(|(a, b)| Lanes::at_levels(|lane| own[lane].1 * own[lane].0[a][b]));
+    let gram = gram();
     let (mut lower, mut inverse) = ([[Lanes::ZERO; MODES]; MODES], [Lanes::ZERO; MODES]);
     for i in 0..MODES {
         for j in 0..=i {

@@ -1,7 +1,8 @@
 //! The stress of an element without its mean.
 
-use super::reference::{ALL, FREE, LOADS, PAIRS, Reference};
-use crate::lanes::{Lanes, Value};
+use super::combined_gram::{CombinedGram, unit};
+use super::reference::{ALL, FREE, LOADS};
+use crate::lanes::Value;
 use std::sync::OnceLock;
 
 /// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares, two for each edge, which a
@@ -54,47 +55,13 @@ pub(super) const MODES: usize = FREE + 12;
 /// The first that belongs to a load: differences of tractions on the edges, then volume loads at the nodes.
 pub(super) const START: usize = FREE;
 
-/// ∫ of products of these stresses over the reference triangle, for each pair of components.
-#[derive(Debug)]
-pub(super) struct FluctuationGram(Vec<[f64; PAIRS.len()]>);
-
-impl FluctuationGram {
-    /// Those of the reference triangle, made at first use.
-    pub(super) fn get() -> &'static Self {
-        static GRAM: OnceLock<FluctuationGram> = OnceLock::new();
-        GRAM.get_or_init(Self::combine)
-    }
-
-    fn combine() -> Self {
-        let gram = &Reference::get().gram;
-        let free = |at: usize| std::array::from_fn(|i| f64::from(u8::from(i == LOADS + at)));
-        let columns: [[f64; ALL]; MODES] = std::array::from_fn(|i| if i < START { free(i) } else { loads(i - START) });
-        let mut products = Vec::with_capacity(MODES * (MODES + 1) / 2);
-        for (i, x) in columns.iter().enumerate() {
-            for y in &columns[..=i] {
-                products.push(gram.each_ref().map(|gram| {
-                    let row = |(x, row): (&f64, &[f64; ALL])| x * row.iter().zip(y).map(|(g, y)| g * y).sum::<f64>();
-                    x.iter().zip(gram).map(row).sum()
-                }));
-            }
-        }
-        Self(products)
-    }
-
-    /// The weight of each pair of components.
-    pub(super) fn weights(weight: impl Fn(usize, usize) -> Lanes) -> [Lanes; PAIRS.len()] {
-        PAIRS.map(|(a, b)| weight(a, b))
-    }
-
-    /// The product of two stresses, i ≥ j, with these weights.
-    #[inline(always)]
-    pub(super) fn entry(&self, i: usize, j: usize, weights: &[Lanes; PAIRS.len()]) -> Lanes {
-        let mut sum = Lanes::ZERO;
-        for (weight, product) in weights.iter().zip(&self.0[i * (i + 1) / 2 + j]) {
-            sum += *weight * *product;
-        }
-        sum
-    }
+/// The products of these stresses, made at first use.
+pub(super) fn gram() -> &'static CombinedGram {
+    static GRAM: OnceLock<CombinedGram> = OnceLock::new();
+    GRAM.get_or_init(|| {
+        let column = |i: usize| if i < START { unit(LOADS + i) } else { loads(i - START) };
+        CombinedGram::new(&std::array::from_fn::<_, MODES, _>(column))
+    })
 }
 
 /// The loads on the reference triangle that a unit of a load of a fluctuation brings about: those that put no force on any node.

@@ -2,6 +2,7 @@
 //! and with Γ_DA − f_d, exactly, and of least complementary energy among a family.
 
 mod bar;
+mod combined_gram;
 mod energy_form;
 mod fluctuation;
 mod piecewise;

@@ -5,7 +5,8 @@
 //! reference triangle, they are constant: products of the stresses are combined once for all triangles.
 
 use super::LOADS;
-use super::reference::{ALL, FREE, PAIRS, Reference};
+use super::combined_gram::{CombinedGram, unit};
+use super::reference::{ALL, FREE, PAIRS};
 use super::triangle::reference_compliance;
 use crate::lanes::{LANES, Lanes, Value};
 use nalgebra::Matrix2;
@@ -24,34 +25,18 @@ pub(crate) const EDGES: [[f64; 2]; 3] = [[-1.0, 1.0], [0.0, -1.0], [1.0, 0.0]];
 /// A form of the components of the basis in the frame of the reference triangle, on and below the diagonal.
 pub(crate) type BasisForm = [[Lanes; BASIS]; BASIS];
 
-/// For each pair of stress components, the entries on and below the diagonal of ∫ of products of the stresses of the basis.
+/// The products of the stresses of the basis and of the free stresses.
 #[derive(Debug)]
-pub(crate) struct TractionForms {
-    products: Vec<[f64; PAIRS.len()]>,
-}
+pub(crate) struct TractionForms(CombinedGram);
 
 impl TractionForms {
     /// Those of the reference triangle, made at first use.
     pub(crate) fn get() -> &'static Self {
         static FORMS: OnceLock<TractionForms> = OnceLock::new();
-        FORMS.get_or_init(Self::combine)
-    }
-
-    fn combine() -> Self {
-        let gram = &Reference::get().gram;
-        let unit = |at: usize| std::array::from_fn(|i| f64::from(u8::from(i == at)));
-        let columns: [_; COMBINED] =
-            std::array::from_fn(|i| if i < BASIS { loads(i) } else { unit(LOADS + i - BASIS) });
-        let mut products = Vec::with_capacity(COMBINED * (COMBINED + 1) / 2);
-        for (i, x) in columns.iter().enumerate() {
-            for y in &columns[..=i] {
-                products.push(gram.each_ref().map(|gram| {
-                    let row = |(x, row): (&f64, &[f64; ALL])| x * row.iter().zip(y).map(|(g, y)| g * y).sum::<f64>();
-                    x.iter().zip(gram).map(row).sum()
-                }));
-            }
-        }
-        Self { products }
+        FORMS.get_or_init(|| {
+            let column = |i: usize| if i < BASIS { loads(i) } else { unit(LOADS + i - BASIS) };
+            Self(CombinedGram::new(&std::array::from_fn::<_, COMBINED, _>(column)))
+        })
     }
 
     /// The second derivative of the energy (J) of each triangle in the components of the basis, from the edges (m) from node 0 to
@@ -63,14 +48,9 @@ impl TractionForms {
         let factor: [f64; LANES] = std::array::from_fn(|l| 1.0 / (laws[l].extent() * maps[l].determinant()));
         let weights = PAIRS.map(|(a, b)| Lanes::at_levels(|l| factor[l] * compliance[l][a][b]));
         let mut all = [[Lanes::ZERO; COMBINED]; COMBINED];
-        let mut products = self.products.iter();
         for i in 0..COMBINED {
-            for (j, products) in (0..=i).zip(&mut products) {
-                let mut sum = Lanes::ZERO;
-                for (weight, product) in weights.iter().zip(products) {
-                    sum += *weight * *product;
-                }
-                all[i][j] = sum;
+            for j in 0..=i {
+                all[i][j] = self.0.entry(i, j, &weights);
             }
         }
         // Minimises over the free stresses, one after the other.

@@ -166,7 +166,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         }
     }
 
-    fn memory(&self, _levels: usize, _threads: usize) -> usize {
+    fn memory(&self) -> usize {
         let mesh = self.problem.mesh();
         let concentration = self.concentration.as_ref().map_or(0, |concentration| concentration.memory(self.problem));
         TractionMinimisation::memory(mesh.simplex().shape(), mesh.element_count())
