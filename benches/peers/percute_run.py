@@ -44,7 +44,8 @@ class Percute:
             raise RuntimeError(f"{self.name} ended with code {self.process.wait()}")
         return line.strip()
 
-    def _ask(self, line: str) -> str:
+    def ask(self, line: str) -> str:
+        """The answer of the probe to a line."""
         assert self.process.stdin
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
@@ -53,7 +54,7 @@ class Percute:
     def block(self) -> Block:
         """The mesh and the time step, for the other programs."""
         with tempfile.NamedTemporaryFile() as file:
-            nodes = int(self._ask(f"mesh {file.name}"))
+            nodes = int(self.ask(f"mesh {file.name}"))
             numbers = np.fromfile(file.name)
         points, cells = np.split(numbers, [2 * nodes])
         return Block(points.reshape(-1, 2), cells.astype(np.int64).reshape(-1, 3), self.step, self.gap, self.contact)
@@ -61,22 +62,22 @@ class Percute:
     def displacement(self, steps: int) -> np.ndarray:
         """The displacement after so many steps (m)."""
         with tempfile.NamedTemporaryFile() as file:
-            self._ask(f"displacement {steps} {file.name}")
+            self.ask(f"displacement {steps} {file.name}")
             return np.fromfile(file.name).reshape(-1, 2)
 
     def parts(self, steps: int) -> np.ndarray:
         """Kinetic and elastic part of η at each sample (2, samples) (J)."""
         with tempfile.NamedTemporaryFile() as file:
-            self._ask(f"parts {steps} {file.name}")
+            self.ask(f"parts {steps} {file.name}")
             return np.fromfile(file.name).reshape(-1, 2).T
 
     def run(self, steps: int) -> tuple[float, None]:
         """Seconds of so many steps."""
-        return float(self._ask(f"run {steps}")), None
+        return float(self.ask(f"run {steps}")), None
 
     def product(self, count: int) -> float:
         """Seconds of so many products K·u in compressed sparse rows."""
-        return float(self._ask(f"product {count}"))
+        return float(self.ask(f"product {count}"))
 
     def close(self) -> None:
         """End the process."""

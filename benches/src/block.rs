@@ -96,7 +96,7 @@ mod tests {
     fn the_block_touches_in_the_second_step() {
         let block = Block::new([5, 4], Order::Structured, Motion::Impact).unwrap();
         let lowest = |steps| {
-            let (_, displacement) = simulated(&block, steps, wall).unwrap();
+            let (_, displacement) = simulated(&block, steps, Some(1), wall).unwrap();
             displacement.iter().map(|u| u[1]).fold(f64::INFINITY, f64::min)
         };
         // Rounding of the step in the sum of instants.

@@ -4,11 +4,13 @@ mod block;
 mod csr;
 mod order;
 mod run;
+mod setup;
 
 pub use block::{Block, Motion, SIZES, material, problem};
 pub use csr::Csr;
 pub use order::Order;
 pub use run::{Clock, estimated, processor, simulated, steps, wall};
+pub use setup::setup;
 
 /// Any failure of a measurement.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

@@ -1,7 +1,7 @@
 //! Timed runs on one problem: the clock starts with the first state, after the setup.
 
 use crate::{Block, Failure};
-use percute_core::dynamics::simulate;
+use percute_core::dynamics::simulate_threaded;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::observer::Unobserved;
 use percute_core::time::{TimeError, TimeGrid};
@@ -74,18 +74,23 @@ pub fn steps(step: f64, count: usize) -> Result<TimeGrid, TimeError> {
     TimeGrid::uniform(step * count as f64, count)
 }
 
-/// The time of a simulation of so many steps, and the displacement after them (m).
+/// The time of a simulation of so many steps on so many threads, and the displacement after them (m).
 ///
 /// # Errors
 /// A simulation that fails.
-pub fn simulated(block: &Block, count: usize, clock: Clock) -> Result<(Duration, Vec<[f64; 2]>), Failure> {
+pub fn simulated(
+    block: &Block,
+    count: usize,
+    threads: Option<usize>,
+    clock: Clock,
+) -> Result<(Duration, Vec<[f64; 2]>), Failure> {
     let mut sink = Timed::new(Last { step: count, displacement: Vec::new() }, clock);
-    simulate(&block.problem, &steps(block.step, count)?, &mut sink, &mut Unobserved)?;
+    simulate_threaded(&block.problem, &steps(block.step, count)?, threads, &mut sink, &mut Unobserved)?;
     let end = clock();
     Ok((end - sink.first.unwrap_or(end), sink.inner.displacement))
 }
 
-/// The time of a simulation of so many steps with its estimate, and the estimate.
+/// The time of a simulation of so many steps with its estimate, both on the threads of the options, and the estimate.
 ///
 /// # Errors
 /// A simulation or an estimate that fails.
@@ -98,7 +103,7 @@ pub fn estimated(
     let times = steps(block.step, count)?;
     let estimator = Estimator::new(&block.problem, &times, options)?;
     let mut sink = Timed::new(estimator, clock);
-    simulate(&block.problem, &times, &mut sink, &mut Unobserved)?;
+    simulate_threaded(&block.problem, &times, options.threads, &mut sink, &mut Unobserved)?;
     let start = sink.first;
     let estimate = sink.inner.finish()?;
     let end = clock();

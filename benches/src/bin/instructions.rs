@@ -22,7 +22,7 @@ fn main() -> Result<(), Failure> {
         estimated(&block, count, options, wall).map(|_| ())
     };
     match stage.as_str() {
-        "integrator" => simulated(&block, count, wall).map(|_| ()),
+        "integrator" => simulated(&block, count, Some(1), wall).map(|_| ()),
         "consistent" => sampled(Reconstruction::Consistent, 1),
         "corrected" => sampled(Reconstruction::Corrected, 1),
         // Only the first and the last instant are sampled.

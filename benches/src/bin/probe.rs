@@ -2,12 +2,14 @@
 //! between. Times are processor times, with `--wall` those on the wall.
 //!
 //! `probe NX NY [--order NAME] [--free] [--estimate NAME] [--every K] [--threads N] [--wall]` answers `mesh FILE` (points and elements),
-//! `run STEPS`, `product COUNT` (of K·u), `displacement STEPS FILE` and `parts STEPS FILE` (kinetic and elastic part of each sample); numbers in files are raw, of 8 bytes each.
+//! `setup`, `run STEPS`, `product COUNT` (of K·u), `memory STEPS` (predicted, in bytes, of the estimate), `samples STEPS` (number of
+//! sampled steps), `displacement STEPS FILE` and `parts STEPS FILE` (kinetic and elastic part of each sample). Numbers in files are raw, of 8
+//! bytes each.
 
 #![allow(clippy::print_stdout, reason = "the answers are its purpose")]
 
-use percute_benches::{Block, Clock, Csr, Failure, Motion, Order, estimated, processor, simulated, wall};
-use percute_estimator::{Options, Reconstruction, Sampling};
+use percute_benches::{Block, Clock, Csr, Failure, Motion, Order, estimated, processor, setup, simulated, steps, wall};
+use percute_estimator::{Options, Reconstruction, Sampling, memory};
 use std::cell::OnceCell;
 use std::hint::black_box;
 use std::io::{BufRead, Write};
@@ -19,6 +21,7 @@ struct Request {
     motion: Motion,
     /// With an estimate.
     options: Option<Options>,
+    threads: Option<usize>,
     clock: Clock,
 }
 
@@ -37,8 +40,14 @@ fn main() -> Result<(), Failure> {
 fn read(mut arguments: impl Iterator<Item = String>) -> Result<Request, Failure> {
     let mut next = || arguments.next().ok_or("an argument is missing");
     let cells = [next()?.parse()?, next()?.parse()?];
-    let mut request =
-        Request { cells, order: Order::Structured, motion: Motion::Impact, options: None, clock: processor };
+    let mut request = Request {
+        cells,
+        order: Order::Structured,
+        motion: Motion::Impact,
+        options: None,
+        threads: Some(1),
+        clock: processor,
+    };
     let mut options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     while let Ok(name) = next() {
         match name.as_str() {
@@ -54,23 +63,35 @@ fn read(mut arguments: impl Iterator<Item = String>) -> Result<Request, Failure>
             other => return Err(format!("unknown argument {other}").into()),
         }
     }
+    request.threads = options.threads;
     request.options = request.options.map(|_| options);
     Ok(request)
 }
 
-/// The answer to one line: seconds since the first state, or a word when a file is written.
+/// The answer to one line: seconds, those of runs since the first state; a number; or a word when a file is written.
 fn answer(block: &Block, csr: &OnceCell<Csr>, request: &Request, line: &str) -> Result<String, Failure> {
-    let Request { options, clock, .. } = *request;
+    let Request { options, threads, clock, .. } = *request;
+    let estimate = || options.ok_or("this line needs --estimate");
     let words: Vec<_> = line.split_whitespace().collect();
     match *words.as_slice() {
         ["run", count] => {
             let count = count.parse()?;
             let time = match options {
                 Some(options) => estimated(block, count, options, clock)?.0,
-                None => simulated(block, count, clock)?.0,
+                None => simulated(block, count, threads, clock)?.0,
             };
             Ok(format!("{:e}", time.as_secs_f64()))
         }
+        ["setup"] => {
+            let start = clock();
+            setup(request.cells, request.order, block, options)?;
+            Ok(format!("{:e}", (clock() - start).as_secs_f64()))
+        }
+        ["memory", count] => {
+            let times = steps(block.step, count.parse()?)?;
+            Ok(memory(&block.problem, &times, &estimate()?).to_string())
+        }
+        ["samples", count] => Ok(samples(block, count.parse()?, estimate()?)?.to_string()),
         ["product", count] => {
             let csr = csr.get_or_init(|| Csr::assemble(&block.problem));
             let x: Vec<f64> = (0..2 * block.problem.mesh().node_count()).map(|i| (i as f64).sin()).collect();
@@ -80,28 +101,39 @@ fn answer(block: &Block, csr: &OnceCell<Csr>, request: &Request, line: &str) -> 
             (0..count.parse::<usize>()?).for_each(|_| csr.multiply(black_box(&x), black_box(&mut y)));
             Ok(format!("{:e}", (clock() - start).as_secs_f64()))
         }
-        ["displacement", count, file] => {
-            let (_, displacement) = simulated(block, count.parse()?, clock)?;
-            std::fs::write(file, bytes(displacement.as_flattened().iter().map(|u| u.to_le_bytes())))?;
-            Ok("written".into())
-        }
-        ["parts", count, file] => {
-            let (_, estimate) = estimated(block, count.parse()?, options.ok_or("parts need --estimate")?, clock)?;
-            let samples = estimate.over_time.iter().flat_map(|sample| [sample.parts.kinetic, sample.parts.elastic]);
-            std::fs::write(file, bytes(samples.map(f64::to_le_bytes)))?;
-            Ok("written".into())
-        }
-        ["mesh", file] => {
-            let mesh = block.problem.mesh();
-            let nodes = mesh.cells().as_flattened().iter().map(|node| node.index() as f64);
-            let points = mesh.points().as_flattened().iter().copied();
-            std::fs::write(file, bytes(points.chain(nodes).map(f64::to_le_bytes)))?;
-            Ok(mesh.node_count().to_string())
-        }
+        [_, .., file] => write(block, request, &words, file),
         _ => Err(format!("unknown line: {line}").into()),
     }
 }
 
-fn bytes(numbers: impl Iterator<Item = [u8; 8]>) -> Vec<u8> {
-    numbers.flatten().collect()
+/// The number of steps that an estimate samples.
+fn samples(block: &Block, count: usize, options: Options) -> Result<usize, Failure> {
+    let (times, (_, estimate)) = (steps(block.step, count)?, estimated(block, count, options, wall)?);
+    let sampled = |time: &&f64| estimate.over_time.iter().any(|sample| sample.time == **time);
+    Ok(times.instants().iter().filter(sampled).count())
+}
+
+/// Answers a line that ends with a file.
+fn write(block: &Block, request: &Request, words: &[&str], file: &str) -> Result<String, Failure> {
+    let (numbers, answer) = match *words {
+        ["displacement", count, _] => {
+            let (_, displacement) = simulated(block, count.parse()?, request.threads, request.clock)?;
+            (displacement.into_flattened(), "written".into())
+        }
+        ["parts", count, _] => {
+            let options = request.options.ok_or("parts need --estimate")?;
+            let (_, estimate) = estimated(block, count.parse()?, options, request.clock)?;
+            let parts = estimate.over_time.iter().flat_map(|sample| [sample.parts.kinetic, sample.parts.elastic]);
+            (parts.collect(), "written".into())
+        }
+        ["mesh", _] => {
+            let mesh = block.problem.mesh();
+            let nodes = mesh.cells().as_flattened().iter().map(|node| node.index() as f64);
+            (mesh.points().as_flattened().iter().copied().chain(nodes).collect(), mesh.node_count().to_string())
+        }
+        _ => return Err(format!("unknown line: {}", words.join(" ")).into()),
+    };
+    let bytes: Vec<u8> = numbers.into_iter().flat_map(f64::to_le_bytes).collect();
+    std::fs::write(file, bytes)?;
+    Ok(answer)
 }

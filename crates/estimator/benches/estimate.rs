@@ -19,7 +19,7 @@ fn alone(case: &Block, iterations: u64, options: Options) -> Duration {
     let mut time = Duration::ZERO;
     for _ in 0..iterations {
         let both = estimated(case, STEPS, options, wall).expect("an estimate").0;
-        let integrator = simulated(case, STEPS, wall).expect("a stable run").0;
+        let integrator = simulated(case, STEPS, options.threads, wall).expect("a stable run").0;
         // criterion refuses no time at all.
         time += both.saturating_sub(integrator).max(Duration::from_nanos(1)) / STEPS as u32;
     }

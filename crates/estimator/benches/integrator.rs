@@ -27,7 +27,7 @@ fn integrator(criterion: &mut Criterion) {
             b.iter(|| dynamics.forces(0, black_box(&u), black_box(&mut force)));
         });
         group.bench_function(format!("integrator/{name}"), |b| {
-            b.iter_custom(|count| simulated(case, count as usize, wall).expect("a stable run").0);
+            b.iter_custom(|count| simulated(case, count as usize, Some(1), wall).expect("a stable run").0);
         });
     });
 }
