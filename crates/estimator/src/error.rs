@@ -2,6 +2,7 @@
 
 use crate::options::{MOST_THREADS, UnsuitableAcceleration};
 use crate::request::RequestError;
+use crate::scratch_file::ScratchError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{SinkError, StepError};
 use thiserror::Error;
@@ -53,6 +54,9 @@ pub enum EstimateError {
          below a gap of {smallest_gap:.6e} m"
     )]
     StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },
+    /// A temporary file that failed.
+    #[error(transparent)]
+    Scratch(#[from] ScratchError),
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
         "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the history are too long \

@@ -1,6 +1,7 @@
 //! Hats: tractions of a node on one of its edges that fall to zero within a part of the edge.
 
 use crate::concentrated::EdgeTraction;
+use crate::numbers::Reader;
 
 /// A hat that is narrower than its edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,19 @@ pub(crate) struct NarrowHat<const D: usize> {
 }
 
 impl<const D: usize> NarrowHat<D> {
+    /// Appends it to numbers.
+    pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
+        let counts = [self.node, self.facet, self.end, self.edge, self.halvings];
+        numbers.extend(counts.map(|count| count as f64));
+        numbers.extend_from_slice(&self.resultant);
+    }
+
+    /// A hat that was appended.
+    pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
+        let [node, facet, end, edge, halvings] = [(); 5].map(|()| numbers.count());
+        Self { node, facet, end, edge, halvings, resultant: numbers.take() }
+    }
+
     /// Half of each of two tractions: both shapes, superposed. Sorted by nodes, if they are.
     pub(crate) fn mean(start: &[Self], end: &[Self]) -> Vec<Self> {
         let half = |hat: &Self| Self { resultant: hat.resultant.map(|f| 0.5 * f), ..*hat };

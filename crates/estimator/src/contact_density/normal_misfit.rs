@@ -9,6 +9,7 @@
 
 use super::{Densities, NarrowHat, along};
 use crate::kinematic::ContactTrack;
+use crate::numbers::Reader;
 use percute_core::problem::Problem;
 use percute_core::simplex::Simplex;
 use percute_core::time::TimeGrid;
@@ -33,6 +34,24 @@ impl<const D: usize> NormalForce<D> {
             all[hat.facet].hats.push((*hat, normal(hat.facet, &hat.resultant)));
         }
         all
+    }
+
+    fn is_zero(&self) -> bool {
+        self.linear == [0.0; D] && self.hats.is_empty()
+    }
+
+    fn append(&self, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(&self.linear);
+        numbers.push(self.hats.len() as f64);
+        for (hat, force) in &self.hats {
+            hat.append(numbers);
+            numbers.push(*force);
+        }
+    }
+
+    fn read(numbers: &mut Reader<'_>) -> Self {
+        let (linear, hats) = (numbers.take(), numbers.count());
+        Self { linear, hats: (0..hats).map(|_| (NarrowHat::read(numbers), numbers.number())).collect() }
     }
 
     /// ∫F_n gap (J).
@@ -110,6 +129,27 @@ impl<const D: usize> FacetPressures<D> {
     /// Those of one facet over consecutive steps.
     pub(crate) fn gather(facet: usize, first: usize, steps: &[OffContact<D>]) -> Self {
         Self { facet, first, steps: steps.iter().map(|step| step.0[facet].clone()).collect() }
+    }
+
+    /// Whether there is no force.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.steps.as_flattened().iter().all(|normal| normal.acting.is_zero() && normal.sudden.is_zero())
+    }
+
+    /// Appends them to numbers.
+    pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
+        numbers.extend([self.facet, self.first, self.steps.len()].map(|count| count as f64));
+        for normal in self.steps.as_flattened() {
+            normal.acting.append(numbers);
+            normal.sudden.append(numbers);
+        }
+    }
+
+    /// Pressures that were appended.
+    pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
+        let [facet, first, steps] = [(); 3].map(|()| numbers.count());
+        let mut end = || Normal { acting: NormalForce::read(numbers), sudden: NormalForce::read(numbers) };
+        Self { facet, first, steps: (0..steps).map(|_| [end(), end()]).collect() }
     }
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step

@@ -1,20 +1,29 @@
 //! The normal motion of a candidate node over the whole run: contact phases and the windows
 //! between them.
 
+use super::normal_motions::{NormalMotions, Pair};
 use super::shape::solve;
 use super::window::{FlightWindow, Path, least_of_parabola};
 use crate::residual::{Residuals, worse};
+use crate::scratch_file::ScratchError;
 
 /// Normal velocity (m/s) and gap (m) of a candidate node at the half-step instants known so far.
+///
+/// They are stored with those of the other nodes. Since the last known instant the store has the target velocity instead, and
+/// the half step that ends there (s).
 #[derive(Clone, Debug)]
 pub(crate) struct ContactTrack {
+    /// Its number in the store.
+    node: usize,
     undeformed_gap: f64,
     /// Body size (m), which the residuals of distances refer to.
     size: f64,
-    known: Vec<(f64, f64)>,
-    /// Half steps and target velocities since the last known instant.
-    lengths: Vec<f64>,
-    target: Vec<f64>,
+    /// Number of known instants, and the motion at the last one.
+    known: usize,
+    last: (f64, f64),
+    /// The first of the instants at which the motion is at hand, and the motion there.
+    shown_from: usize,
+    shown: Vec<Pair>,
     touching: bool,
     /// The first instant whose motion is not that of the simulation.
     first_altered: usize,
@@ -37,14 +46,23 @@ pub(crate) struct NormalStep {
 }
 
 impl ContactTrack {
-    /// A node with this gap (m) and normal velocity (m/s) at t = 0.
-    pub(crate) fn new(undeformed_gap: f64, size: f64, free: bool, start: (f64, f64), touching: bool) -> Self {
+    /// The node of this number, with this gap (m) and normal velocity (m/s) at t = 0, where it is at hand.
+    pub(super) fn new(
+        node: usize,
+        (undeformed_gap, size): (f64, f64),
+        free: bool,
+        start: (f64, f64),
+        touching: bool,
+    ) -> Self {
+        let (gap, velocity) = start;
         Self {
+            node,
             undeformed_gap,
             size,
-            known: vec![(start.1, start.0)],
-            lengths: Vec::new(),
-            target: Vec::new(),
+            known: 1,
+            last: (velocity, gap),
+            shown_from: 0,
+            shown: vec![[velocity, gap]],
             touching,
             first_altered: usize::MAX,
             free,
@@ -54,81 +72,101 @@ impl ContactTrack {
         }
     }
 
-    /// Takes in the step from t_{n−1} to t_n.
-    pub(crate) fn push(&mut self, step: &NormalStep, tolerance: f64) {
+    /// A node that has this motion at an instant, other than in the simulation.
+    #[cfg(test)]
+    pub(crate) fn altered(undeformed_gap: f64, instant: usize, motion: Pair) -> Self {
+        let track = Self::new(0, (undeformed_gap, 1.0), false, (0.0, 0.0), false);
+        Self { shown_from: instant, shown: vec![motion], first_altered: 0, ..track }
+    }
+
+    /// Takes in the step from t_{n−1} to t_n, for which the store has place.
+    pub(super) fn push(
+        &mut self,
+        store: &mut NormalMotions,
+        step: &NormalStep,
+        tolerance: f64,
+    ) -> Result<(), ScratchError> {
         let arrives = step.touching && !self.touching && self.free;
-        if step.touching && self.touching && self.free {
-            // Within a phase: at rest on the plane.
-            let (_, gap) = self.last();
-            self.first_altered = self.first_altered.min(self.known.len());
-            self.known.extend([(0.0, gap); 2]);
-        } else {
-            self.lengths.extend([step.half; 2]);
-            self.target.extend(step.velocity);
-            if arrives || !self.free {
-                self.close(arrives, tolerance);
-            }
-        }
+        let rests = step.touching && self.touching && self.free;
         self.touching = step.touching;
+        let from = store.count() - 2;
+        if rests {
+            // Within a phase: at rest on the plane.
+            let (_, gap) = self.last;
+            self.first_altered = self.first_altered.min(self.known);
+            self.last = (0.0, gap);
+            self.known += 2;
+            return store.write(self.node, from, &[[0.0, gap]; 2]);
+        }
+        store.write(self.node, from, &step.velocity.map(|velocity| [velocity, step.half]))?;
+        if arrives || !self.free { self.close(store, arrives, tolerance) } else { Ok(()) }
     }
 
     /// Solves the last window, which ends with the run.
-    pub(crate) fn finish(&mut self, tolerance: f64) {
-        if !self.lengths.is_empty() {
-            self.close(false, tolerance);
-        }
+    pub(super) fn finish(&mut self, store: &mut NormalMotions, tolerance: f64) -> Result<(), ScratchError> {
+        if self.known < store.count() { self.close(store, false, tolerance) } else { Ok(()) }
     }
 
     /// Solves the window since the last known instant.
-    fn close(&mut self, arrives: bool, tolerance: f64) {
-        let (velocity, gap) = self.last();
-        let window = FlightWindow { start: (gap, velocity), lengths: &self.lengths, target: &self.target, arrives };
+    fn close(&mut self, store: &mut NormalMotions, arrives: bool, tolerance: f64) -> Result<(), ScratchError> {
+        let mut steps = Vec::with_capacity(store.count() - self.known);
+        store.read(self.node, self.known..store.count(), &mut steps)?;
+        let (target, lengths): (Vec<f64>, Vec<f64>) = steps.iter().map(|[velocity, half]| (*velocity, *half)).unzip();
+        let (velocity, gap) = self.last;
+        let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives };
         // A prescribed node cannot be moved out of the way.
-        let path = if self.free { solve(&window, tolerance) } else { window.integrate(&self.target) };
-        self.record(path, arrives);
+        let path = if self.free { solve(&window, tolerance) } else { window.integrate(&target) };
+        self.record(&window, &path);
+        for (stored, (velocity, gap)) in steps.iter_mut().zip(path) {
+            *stored = [velocity, gap];
+        }
+        store.write(self.node, self.known - steps.len(), &steps)
     }
 
     /// Takes the motion over the window as known and checks it.
-    fn record(&mut self, path: Path, arrives: bool) {
-        let (velocity, gap) = self.last();
+    fn record(&mut self, window: &FlightWindow<'_>, path: &Path) {
+        let FlightWindow { start: (gap, velocity), lengths, target, arrives } = *window;
         if arrives {
             // Also the way that the simulation would go: where nothing but rest is admissible, the
             // motion itself is its rounding.
             let way = |h: &f64, v: f64| h * v.abs();
-            let least = self.lengths.iter().zip(&self.target).map(|(h, v)| way(h, *v)).sum::<f64>();
-            let travelled = self.lengths.iter().zip(&path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(least);
+            let least = lengths.iter().zip(target).map(|(h, v)| way(h, *v)).sum::<f64>();
+            let travelled = lengths.iter().zip(path).map(|(h, (v, _))| way(h, *v)).sum::<f64>().max(least);
             let (_, end) = path[path.len() - 1];
             self.onset = worse(self.onset, end.abs() / (gap.abs() + travelled).max(f64::MIN_POSITIVE));
         }
-        if arrives || !self.free || path.iter().zip(&self.target).any(|((v, _), target)| v != target) {
-            self.first_altered = self.first_altered.min(self.known.len());
+        if arrives || !self.free || path.iter().zip(target).any(|((v, _), target)| v != target) {
+            self.first_altered = self.first_altered.min(self.known);
         }
         let mut before = (velocity, gap);
         for (m, &after) in path.iter().enumerate() {
-            let (_, least) = least_of_parabola(before, after, self.lengths[m], m);
+            let (_, least) = least_of_parabola(before, after, lengths[m], m);
             self.at_instants = worse(self.at_instants, -after.1 / self.size);
             self.between_instants = worse(self.between_instants, -least / self.size);
             before = after;
         }
-        self.known.extend(path);
-        self.lengths.clear();
-        self.target.clear();
+        self.last = before;
+        self.known += path.len();
     }
 
-    fn last(&self) -> (f64, f64) {
-        self.known[self.known.len() - 1]
+    /// Has the motion at hand at known instants, from the first to the last one.
+    pub(super) fn show(&mut self, store: &mut NormalMotions, [first, last]: [usize; 2]) -> Result<(), ScratchError> {
+        self.shown_from = first;
+        self.shown.clear();
+        store.read(self.node, first..last + 1, &mut self.shown)
     }
 
     /// Number of instants known so far.
     #[inline]
     pub(crate) fn known(&self) -> usize {
-        self.known.len()
+        self.known
     }
 
-    /// Normal velocity (m/s) and gap (m) at a known instant.
+    /// Normal velocity (m/s) and gap (m) at an instant at which they are at hand.
     #[inline]
     pub(crate) fn at(&self, instant: usize) -> (f64, f64) {
-        self.known[instant]
+        let [velocity, gap] = self.shown[instant - self.shown_from];
+        (velocity, gap)
     }
 
     /// Whether the motion at a known instant differs from that of the simulation.

@@ -8,14 +8,18 @@
 //! Half-step instant k of a run is t_{k/2}: t_n for k = 2n, the middle of a step for odd k.
 
 mod contact_track;
+mod contact_tracks;
 mod free_motion;
+mod normal_motions;
 mod shape;
 mod window;
 
 pub(crate) use contact_track::{ContactTrack, NormalStep};
+pub(crate) use contact_tracks::ContactTracks;
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
 use crate::lanes::{Lanes, Value, gather};
+use crate::numbers::Reader;
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 
@@ -35,6 +39,17 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
             displacement: nodes.map(|n| motion.displacement()[n.index()]),
             velocity: nodes.map(|n| motion.velocity()[n.index()]),
         }
+    }
+
+    /// Appends it to numbers.
+    pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(self.displacement.as_flattened());
+        numbers.extend_from_slice(self.velocity.as_flattened());
+    }
+
+    /// A motion that was appended.
+    pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
+        Self { displacement: numbers.vectors(), velocity: numbers.vectors() }
     }
 
     /// Any motion, for tests.

@@ -205,6 +205,18 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         motion: &ElementMotion<D, N, T>,
         beside: T,
     ) -> ElementError<T> {
+        self.error_of((&stress.mean, stress.fluctuation.energy()), increment, motion, beside)
+    }
+
+    /// The same, from the mean of σ_DA and the energy of its fluctuation (J per unit of section or thickness).
+    #[inline(always)]
+    pub(crate) fn error_of<T: Value>(
+        &self,
+        (admissible, fluctuation): (&[[T; D]; D], T),
+        increment: &[[T; D]; N],
+        motion: &ElementMotion<D, N, T>,
+        beside: T,
+    ) -> ElementError<T> {
         let mass = N as f64 * self.element.nodal_mass;
         let (mut dynamic, mut misfit) = (*increment, [[T::ZERO; D]; N]);
         for i in 0..N {
@@ -221,12 +233,12 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let mut work = T::ZERO;
         for a in 0..D {
             for b in 0..D {
-                work += stress.mean[a][b] * gradient[a][b];
-                mean[a][b] = stress.mean[a][b] - mean[a][b];
+                work += admissible[a][b] * gradient[a][b];
+                mean[a][b] = admissible[a][b] - mean[a][b];
             }
         }
         let elastic = product(&mean, &self.strain(&mean)) * (0.5 * self.element.volume)
-            + (stress.fluctuation.energy() + beside) * self.law.extent();
+            + (fluctuation + beside) * self.law.extent();
         // |a + b|² = |a − b|² + 4 a·b.
         let products = mass_product(mass, &dynamic, motion.velocity()) + work * self.element.volume;
         ElementError { kinetic, elastic, reference: (kinetic + elastic) * 2.0 + products * 4.0 }
@@ -256,9 +268,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     }
 
     /// The loading of the stress beside which other stresses stand: that of σ_DA less the tractions of the constant σ_CA.
-    pub(crate) fn difference(&self, balanced: &Balanced<D, N>, motion: &ElementMotion<D, N>) -> Loading<D, N> {
+    pub(crate) fn difference(&self, loading: &Loading<D, N>, motion: &ElementMotion<D, N>) -> Loading<D, N> {
         let stress = hooke(self.law, &self.element.gradient(motion.displacement()));
-        let mut difference = balanced.loading;
+        let mut difference = *loading;
         self.subtract_tractions(&stress, &mut difference);
         difference
     }

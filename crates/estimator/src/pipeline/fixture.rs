@@ -104,8 +104,8 @@ fn prepare<'p>(
     for n in 0..=last {
         let step = history.step(n).unwrap();
         preparation.check(&step).unwrap();
-        preparation.push(&evaluation.advance(&step).unwrap());
+        preparation.push(&evaluation.advance(&step).unwrap()).unwrap();
     }
-    preparation.finish();
+    preparation.finish().unwrap();
     preparation
 }

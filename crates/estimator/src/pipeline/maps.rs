@@ -1,5 +1,5 @@
 //! The maps that were requested, as they fill: nodal motion and element fields when their level is
-//! worked on, contributions as elements get there, the motion at contact when the run is over.
+//! worked on, contributions as elements get there, the motion at contact when it is known.
 
 use crate::blocks::BLOCK;
 use crate::element::Element;
@@ -32,6 +32,8 @@ pub(crate) struct Contribution {
 pub(crate) struct Maps<const D: usize> {
     request: Request,
     made: Vec<ElementMap<D>>,
+    /// How many of them have the motion at contact.
+    settled: usize,
 }
 
 impl<const D: usize> Maps<D> {
@@ -42,7 +44,7 @@ impl<const D: usize> Maps<D> {
         let steps = request.steps.len();
         let bytes = (4 * elements + fields).saturating_mul(size_of::<f64>()).saturating_mul(steps);
         match Vec::<u8>::new().try_reserve_exact(bytes) {
-            Ok(()) => Ok(Self { request, made: Vec::new() }),
+            Ok(()) => Ok(Self { request, made: Vec::new(), settled: 0 }),
             Err(_) => Err(RequestError::Memory { bytes, steps }),
         }
     }
@@ -90,19 +92,27 @@ impl<const D: usize> Maps<D> {
         }
     }
 
-    /// The maps, once the normal motion of all contact nodes is known.
-    pub(crate) fn finish<const N: usize>(
-        mut self,
-        problem: &Problem<D, N>,
-        elements: &[Element<D, N>],
-        tracks: &[ContactTrack],
-    ) -> Vec<ElementMap<D>> {
-        for map in &mut self.made {
+    /// Puts the motion at contact into the maps of steps up to this one, at which it is at hand.
+    pub(crate) fn settle<const N: usize>(&mut self, problem: &Problem<D, N>, tracks: &[ContactTrack], last: usize) {
+        let count = self.made.partition_point(|map| map.step <= last);
+        for map in &mut self.made[self.settled..count] {
             let Some(fields) = &mut map.fields else { continue };
             for (contact, track) in problem.surface().nodes().iter().zip(tracks) {
                 let (i, frame) = (contact.node.index(), problem.obstacles()[contact.obstacle].flat_frame());
                 settle(&mut fields.displacement[i], &mut fields.velocity[i], &frame, track, 2 * map.step);
             }
+        }
+        self.settled = count;
+    }
+
+    /// The maps, once all have the motion at contact.
+    pub(crate) fn finish<const N: usize>(
+        mut self,
+        problem: &Problem<D, N>,
+        elements: &[Element<D, N>],
+    ) -> Vec<ElementMap<D>> {
+        for map in &mut self.made {
+            let Some(fields) = &mut map.fields else { continue };
             let displacement = &fields.displacement;
             let compatible = |(e, element): (usize, &Element<D, N>)| {
                 problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(displacement)))

@@ -1,18 +1,23 @@
 //! From steps to an estimate: steps are prepared one after the other ([`prepare`]), gathered in
 //! windows, worked on in parallel ([`window`]), and summed in a fixed order ([`totals`]).
 
+mod backlog;
 mod far;
 #[cfg(test)]
 mod fixture;
 mod maps;
 mod near;
+mod near_elements;
 mod prepare;
 mod sampled_interval;
 mod sampled_levels;
 mod sampling;
 mod schedule;
 mod separation;
+#[cfg(test)]
+mod tests;
 mod totals;
+mod waiting;
 mod window;
 
 use crate::error::EstimateError;
@@ -35,9 +40,10 @@ const THREADED: usize = 20_000;
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
-/// windows; memory does not grow with their number, but for the elements around candidate nodes
-/// of contact, which wait until their nodes' next contact is known, and for the maps that were
-/// requested.
+/// windows, and memory does not grow with their number, but for some 400 bytes of each sample and the maps that were requested.
+/// Elements around candidate nodes of contact wait until the next contact of all these nodes is known, which may be the end of
+/// the run. Some kilobytes for each node wait in memory, and the rest in a temporary file, in the folder that `TMPDIR` names or in
+/// `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
 ///
 /// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it returns, and so
 /// does [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: about a second on one core for a
@@ -102,17 +108,18 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         if self.preparation.count() < 2 {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
         }
-        self.preparation.finish();
-        self.pass_on();
-        let estimate = self.window.finish(&self.pool, &self.preparation);
+        self.preparation.finish()?;
+        self.pass_on()?;
+        let estimate = self.window.finish(&self.pool, &mut self.preparation)?;
         if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
     }
 
     /// Hands the levels that are ready to the window.
-    fn pass_on(&mut self) {
+    fn pass_on(&mut self) -> Result<(), EstimateError> {
         while let Some(level) = self.preparation.next_ready() {
-            self.window.push(&self.pool, level, &self.preparation);
+            self.window.push(&self.pool, level, &mut self.preparation)?;
         }
+        Ok(())
     }
 }
 
@@ -121,11 +128,10 @@ impl<const D: usize, const N: usize> StateSink<D> for Estimator<'_, D, N> {
         self.preparation.check(state.step())?;
         let preparation = &mut self.preparation;
         if self.pool.current_num_threads() > 1 && self.problem.mesh().element_count() >= THREADED {
-            self.pool.install(|| preparation.push(state));
+            self.pool.install(|| preparation.push(state)).map_err(EstimateError::from)?;
         } else {
-            preparation.push(state);
+            preparation.push(state).map_err(EstimateError::from)?;
         }
-        self.pass_on();
-        Ok(())
+        Ok(self.pass_on()?)
     }
 }

@@ -4,13 +4,15 @@
 use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
 use super::sampling::{
-    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling,
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledStress, Sampling,
 };
+use super::waiting::{ContactInstant, Waiting, WaitingSample};
 use crate::concentrated::HatStress;
 use crate::contact_density::{FacetPressures, NarrowHat, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
 use crate::measure::Balanced;
+use crate::numbers::Reader;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
@@ -18,36 +20,9 @@ use crate::traction::EquilibratedLevel;
 
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-use std::collections::VecDeque;
 
 /// The pointwise equilibrium of σ_DA is checked at every level of so many, more often than away from contact.
 const CHECK: usize = 4;
-
-/// An element at a half-step instant; until contact is solved for, its normal components are those of the simulation.
-#[derive(Clone, Copy, Debug)]
-struct ContactInstant<const D: usize, const N: usize> {
-    instant: usize,
-    velocities: ElementVelocities<D, N>,
-    /// The part of friction in the contact part of η (J).
-    friction: f64,
-}
-
-/// An interval whose motion is not known yet.
-#[derive(Clone, Debug)]
-struct Waiting<const D: usize, const N: usize> {
-    start: Balanced<D, N>,
-    end: Balanced<D, N>,
-    /// Whether its beginning has to be sampled: the first one, or one after a jump.
-    begins: bool,
-    mid: Option<ContactInstant<D, N>>,
-    stop: ContactInstant<D, N>,
-    /// Which nodes touch at the beginning and at the end.
-    touching: [[bool; N]; 2],
-    /// Pressures on its candidate facets, where they may act off contact.
-    pressures: Vec<FacetPressures<D>>,
-    /// Narrow hats of its nodes at the beginning and the end, sorted by nodes.
-    hats: [Vec<NarrowHat<D>>; 2],
-}
 
 /// One such element.
 #[derive(Clone, Debug)]
@@ -57,13 +32,10 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     contact: [Option<usize>; N],
     /// Candidate facets that the element owns.
     facets: Vec<usize>,
-    /// Where the next interval begins.
+    /// Where the next interval to be sampled begins.
     start: Option<ContactInstant<D, N>>,
-    queue: VecDeque<Waiting<D, N>>,
     /// ∫∫F_n|w_n| so far (J).
     normal_work: f64,
-    /// At the beginning, in the middle and at the end of each interval between sampled levels.
-    pub(super) samples: Vec<[ElementSample; 3]>,
     pub(super) course: Course,
     /// Its contributions at the steps requested.
     pub(super) kept: Vec<Contribution>,
@@ -88,9 +60,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             contact,
             facets,
             start: None,
-            queue: VecDeque::new(),
             normal_work: 0.0,
-            samples: Vec::new(),
             course: Course::default(),
             kept: Vec::new(),
             residuals: Residuals::default(),
@@ -104,106 +74,117 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
 pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
     pub(super) shared: &'a Sampling<'a, 'p, D, N>,
     pub(super) reconstruction: &'a dyn ReconstructionMethod<D, N>,
+    /// Those of the contact nodes, with the motion at hand over the intervals that are sampled.
     pub(super) tracks: &'a [ContactTrack],
 }
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
-    /// Takes in the intervals between consecutive levels, then samples those whose motion is known.
-    pub(super) fn advance(&mut self, context: &ContactSampling<'_, '_, D, N>, levels: &SampledLevels<'_, D>) {
-        let sampler = ElementSampler::new(context.shared, self.element);
-        if self.start.is_none() {
-            let mut first = self.at(&sampler, &levels.levels.forces()[0].now, 0, 0.0);
-            self.settle(context, &mut first);
-            self.check_start(context, sampler.element, &first.velocities);
-            self.start = Some(first);
+    /// Appends the intervals between consecutive levels to numbers.
+    pub(super) fn append(
+        &mut self,
+        shared: &Sampling<'_, '_, D, N>,
+        levels: &SampledLevels<'_, D>,
+        numbers: &mut Vec<f64>,
+    ) {
+        let sampler = ElementSampler::new(shared, self.element);
+        if levels.before.is_none() {
+            self.start = Some(self.at(&sampler, &levels.levels.forces()[0].now, 0.0));
         }
-        for [from, to] in levels.intervals() {
-            self.queue_interval(&sampler, &from, &to);
-        }
-        self.sample_known(context, &sampler);
+        sampler.with_stress(|stress| {
+            for interval in levels.intervals() {
+                self.interval(&sampler, interval, stress).append(numbers);
+            }
+        });
     }
 
-    fn queue_interval(
+    fn interval(
         &mut self,
         sampler: &ElementSampler<'_, '_, D, N>,
-        from: &EquilibratedLevel<'_, D>,
-        to: &EquilibratedLevel<'_, D>,
-    ) {
-        let start = sampler.balanced(from, &self.contact, Side::After);
-        let end = sampler.balanced(to, &self.contact, Side::Before);
-        let first = self.samples.is_empty() && self.queue.is_empty();
-        let begins = first || from.forces().before.is_some();
+        [from, to]: [EquilibratedLevel<'_, D>; 2],
+        stress: &dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>,
+    ) -> Waiting<D, N> {
+        let start = sampler.balanced(&from, &self.contact, Side::After);
+        let end = sampler.balanced(&to, &self.contact, Side::Before);
+        let begins = from.index() == 0 || from.forces().before.is_some();
         if begins {
-            sampler.check(&start, from, CHECK, &mut self.residuals);
+            sampler.check(&start, &from, CHECK, &mut self.residuals);
         }
-        sampler.check(&end, to, CHECK, &mut self.residuals);
+        sampler.check(&end, &to, CHECK, &mut self.residuals);
         let forces = to.forces();
         let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
-        let single = to.index() == from.index() + 1;
-        let mid = forces.mid.as_ref().filter(|_| single);
-        let mid = mid.map(|mid| self.at(sampler, mid, 2 * to.index() - 1, friction(0)));
-        let stop = self.at(sampler, &forces.now, 2 * to.index(), friction(1));
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
-        let touching = [from, to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
+        let touching = [&from, &to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
-        let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact)).collect();
-        let hats = [from, to].map(|level| {
+        let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
+        let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
+        let hats: [Vec<_>; 2] = [&from, &to].map(|level| {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
-        self.queue.push_back(Waiting { start, end, begins, mid, stop, touching, pressures, hats });
+        let loaded = Waiting::<D, N>::has_hats(&hats);
+        let single = to.index() == from.index() + 1;
+        let mid = forces.mid.as_ref().filter(|_| single).map(|mid| WaitingSample {
+            at: self.at(sampler, mid, friction(0)),
+            stress: stress(&Balanced::middle(&start, &end), loaded),
+        });
+        let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };
+        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, hats }
     }
 
     fn at(
         &self,
         sampler: &ElementSampler<'_, '_, D, N>,
         velocities: &Velocities<D>,
-        instant: usize,
         friction: f64,
     ) -> ContactInstant<D, N> {
-        ContactInstant { instant, velocities: sampler.velocities(velocities), friction }
-    }
-
-    /// Number of half-step instants at which the motion of all contact nodes is known.
-    fn known(&self, tracks: &[ContactTrack]) -> usize {
-        self.contact.iter().flatten().map(|&at| tracks[at].known()).min().unwrap_or(0)
+        ContactInstant { velocities: sampler.velocities(velocities), friction }
     }
 
     /// Replaces the normal components by those of problem P_CA.
-    fn settle(&self, context: &ContactSampling<'_, '_, D, N>, at: &mut ContactInstant<D, N>) {
+    fn settle(&self, context: &ContactSampling<'_, '_, D, N>, at: &mut ContactInstant<D, N>, instant: usize) {
         let problem = context.shared.problem;
         for (i, node) in self.contact.iter().enumerate() {
             if let Some(node) = *node {
                 let frame = problem.obstacles()[problem.surface().nodes()[node].obstacle].flat_frame();
-                at.velocities.motion.set_normal(i, &frame, &context.tracks[node], at.instant);
+                at.velocities.motion.set_normal(i, &frame, &context.tracks[node], instant);
             }
         }
     }
 
-    fn sample_known(&mut self, context: &ContactSampling<'_, '_, D, N>, sampler: &ElementSampler<'_, '_, D, N>) {
-        let known = self.known(context.tracks);
-        while self.queue.front().is_some_and(|waiting| waiting.stop.instant < known) {
-            let (Some(mut waiting), Some(start)) = (self.queue.pop_front(), self.start.take()) else { break };
-            if let Some(mid) = &mut waiting.mid {
-                self.settle(context, mid);
-                let [before, after] = waiting.touching;
-                self.check_contact(context, &mid.velocities, &std::array::from_fn(|i| before[i] && after[i]));
-            }
-            self.settle(context, &mut waiting.stop);
-            self.check_contact(context, &waiting.stop.velocities, &waiting.touching[1]);
-            let [from, to] = &waiting.hats;
-            let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
-            let interval = ElementInterval {
-                steps: [start.instant / 2, waiting.stop.instant / 2],
-                balanced: [&waiting.start, &waiting.end],
-                start: waiting.begins.then_some(&start.velocities),
-                mid: waiting.mid.as_ref().map(|mid| &mid.velocities),
-                end: &waiting.stop.velocities,
-                contact: self.contact_part(context, &waiting, start.friction),
-                hats: [&hats[0], &hats[1], &hats[2]],
-            };
-            self.samples.push(sampler.sample(&interval, &mut self.course, &mut self.kept));
-            self.start = Some(waiting.stop);
+    /// Samples the next interval that was appended, between these steps, at its beginning, in the middle and at its end.
+    pub(super) fn sample(
+        &mut self,
+        context: &ContactSampling<'_, '_, D, N>,
+        steps: [usize; 2],
+        numbers: &mut Reader<'_>,
+    ) -> [ElementSample; 3] {
+        let mut waiting = Waiting::read(numbers);
+        let sampler = ElementSampler::new(context.shared, self.element);
+        let Some(mut start) = self.start.take() else { return Default::default() };
+        if steps[0] == 0 {
+            self.settle(context, &mut start, 0);
+            self.check_start(context, sampler.element, &start.velocities);
         }
+        let stop = 2 * steps[1];
+        if let Some(mid) = &mut waiting.mid {
+            self.settle(context, &mut mid.at, stop - 1);
+            let [before, after] = waiting.touching;
+            self.check_contact(context, &mid.at.velocities, &std::array::from_fn(|i| before[i] && after[i]));
+        }
+        self.settle(context, &mut waiting.stop.at, stop);
+        self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1]);
+        let [from, to] = &waiting.hats;
+        let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
+        let interval = ElementInterval {
+            steps,
+            start: waiting.start.as_ref().map(|stress| (stress, &start.velocities)),
+            mid: waiting.mid.as_ref().map(|mid| (&mid.stress, &mid.at.velocities)),
+            end: (&waiting.stop.stress, &waiting.stop.at.velocities),
+            contact: self.contact_part(context, &waiting, start.friction),
+            hats: [&hats[0], &hats[1], &hats[2]],
+        };
+        let samples = sampler.sample(&interval, &mut self.course, &mut self.kept);
+        self.start = Some(waiting.stop.at);
+        samples
     }
 
     /// The stress of hats in the element.
@@ -224,7 +205,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         for pressures in &waiting.pressures {
             normal.add(&context.reconstruction.normal_misfit(pressures, context.tracks));
         }
-        let frictions = [friction, waiting.mid.as_ref().map_or(0.0, |mid| mid.friction), waiting.stop.friction];
+        let frictions = [friction, waiting.mid.as_ref().map_or(0.0, |mid| mid.at.friction), waiting.stop.at.friction];
         let so_far = self.normal_work;
         self.normal_work += normal.work[2];
         std::array::from_fn(|k| {

@@ -9,12 +9,13 @@ use crate::contact_density::OffContact;
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
-use crate::kinematic::{ContactTrack, FreeMotion, NodalMotion, NormalStep};
+use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep};
 use crate::loaded::LoadedFacets;
 use crate::nodal_field::FieldPool;
 use crate::options::Options;
 use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, SimulatedStep};
 use crate::residual::{Residuals, worse};
+use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, SurfaceStep, TimeLevel};
 pub(crate) use impulse::Impulse;
 use impulse::normal_sum;
@@ -36,7 +37,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     schedule: Schedule,
     motion: FreeMotion<D>,
     pool: FieldPool<D>,
-    tracks: Vec<ContactTrack>,
+    tracks: ContactTracks,
     supports: SupportCheck,
     /// The step before `current`.
     before: Option<SurfaceStep<D>>,
@@ -69,7 +70,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
             motion: FreeMotion::new(problem, &pool),
             pool,
-            tracks: Vec::new(),
+            tracks: ContactTracks::new(problem.surface().nodes().len(), ScratchFile::default()),
             supports: SupportCheck::default(),
             before: None,
             current: None,
@@ -108,18 +109,24 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.schedule.request(steps);
     }
 
-    /// The steps that are sampled, as far as they are known.
-    pub(super) fn sampled(&self) -> &[usize] {
-        self.schedule.steps()
-    }
-
     /// Whether the middles of intervals between samples are estimated.
     pub(super) fn estimates_middles(&self) -> bool {
         self.schedule.is_automatic()
     }
 
-    pub(super) fn tracks(&self) -> &[ContactTrack] {
+    pub(super) fn tracks(&self) -> &ContactTracks {
         &self.tracks
+    }
+
+    /// The tracks, for tests.
+    #[cfg(test)]
+    pub(super) fn tracks_mut(&mut self) -> &mut ContactTracks {
+        &mut self.tracks
+    }
+
+    /// Has the normal motion of the candidate nodes at hand from one known instant to another.
+    pub(super) fn show(&mut self, instants: [usize; 2]) -> Result<(), ScratchError> {
+        self.tracks.show(instants)
     }
 
     /// Refuses a step that does not fit.
@@ -161,7 +168,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let Some(start) = &self.current else { return Ok(()) };
         for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
             if step.touching[at] && !start.forces.level.surface.touching[at] {
-                let (velocity, gap) = self.tracks[at].at(0);
+                let (velocity, gap) = self.tracks.all()[at].at(0);
                 let smallest_gap = -0.25 * velocity * self.times.step(0);
                 if gap < smallest_gap {
                     return Err(EstimateError::StartsTooNear { node: contact.node.index(), gap, smallest_gap });
@@ -172,7 +179,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Takes in one step.
-    pub(super) fn push(&mut self, state: &State<'_, D>) {
+    pub(super) fn push(&mut self, state: &State<'_, D>) -> Result<(), ScratchError> {
         let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
         self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
@@ -181,7 +188,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             self.differ_at_last();
         }
         let (mid, now) = self.motion.advance(problem, self.times, state);
-        self.track_contact(step, mid.as_ref(), &now);
+        self.track_contact(step, mid.as_ref(), &now)?;
         let miss = self.supports.advance(problem, self.times, n, &now);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
@@ -212,16 +219,17 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         if n == 0 {
             self.check_initial(&motion.now);
             self.current = Some(self.first(motion));
-            return;
+            return Ok(());
         }
         self.motions.push_back(motion);
         if n >= 2 {
             self.complete_interval();
         }
+        Ok(())
     }
 
     /// Takes in that no more steps come.
-    pub(super) fn finish(&mut self) {
+    pub(super) fn finish(&mut self) -> Result<(), ScratchError> {
         // The last level of an interrupted run is sampled as well.
         if self.schedule.finish(self.count - 1) {
             self.differ_at_last();
@@ -232,8 +240,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             self.impulse.add_last(self.problem, self.times, last.level.index, &last.level.surface.reaction);
             self.ready.push_back(last);
         }
-        let tolerance = self.problem.contact_tolerance();
-        self.tracks.iter_mut().for_each(|track| track.finish(tolerance));
+        self.tracks.finish(self.problem.contact_tolerance())
     }
 
     /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities off
@@ -257,23 +264,28 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Hands the normal motion of the candidate nodes to their tracks.
-    fn track_contact(&mut self, step: &Step<'_, D>, mid: Option<&NodalMotion<D>>, now: &NodalMotion<D>) {
-        let tolerance = self.problem.contact_tolerance();
-        let size = self.problem.mesh().size();
-        for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
-            let (i, frame) = (contact.node.index(), self.problem.obstacles()[contact.obstacle].flat_frame());
-            let normal = |motion: &NodalMotion<D>| frame.split(&motion.velocity()[i]).0;
-            let Some(mid) = mid else {
-                let gap = self.problem.surface().gap(at, &now.displacement()[i]);
-                let start = (gap, normal(now));
-                let track = ContactTrack::new(contact.undeformed_gap, size, contact.free, start, step.touching[at]);
-                self.tracks.push(track);
-                continue;
+    fn track_contact(
+        &mut self,
+        step: &Step<'_, D>,
+        mid: Option<&NodalMotion<D>>,
+        now: &NodalMotion<D>,
+    ) -> Result<(), ScratchError> {
+        let (problem, tolerance) = (self.problem, self.problem.contact_tolerance());
+        let normal = |at: usize, motion: &NodalMotion<D>| {
+            let contact = &problem.surface().nodes()[at];
+            problem.obstacles()[contact.obstacle].flat_frame().split(&motion.velocity()[contact.node.index()]).0
+        };
+        let Some(mid) = mid else {
+            let gap = |at: usize| {
+                let node = problem.surface().nodes()[at].node.index();
+                problem.surface().gap(at, &now.displacement()[node])
             };
-            let half = 0.5 * self.times.step(step.index - 1);
-            let normal_step = NormalStep { half, velocity: [normal(mid), normal(now)], touching: step.touching[at] };
-            self.tracks[at].push(&normal_step, tolerance);
-        }
+            return self.tracks.begin(problem, |at| ((gap(at), normal(at, now)), step.touching[at]));
+        };
+        let half = 0.5 * self.times.step(step.index - 1);
+        let normal_step =
+            |at| NormalStep { half, velocity: [normal(at, mid), normal(at, now)], touching: step.touching[at] };
+        self.tracks.push(normal_step, tolerance)
     }
 
     /// The initial conditions hold by construction; checked all the same.

@@ -1,14 +1,13 @@
 //! Far and near elements together, interval by interval.
 
-use super::far::FarSums;
-use super::near::NearElement;
-use super::sampling::trapezoid;
+use super::sampling::{ElementSample, trapezoid};
 use crate::estimate::{Parts, Sample};
 use crate::measure::ElementError;
 use crate::sources::NearParts;
 use percute_core::time::TimeGrid;
 
 /// One interval between sampled levels.
+#[derive(Debug)]
 pub(super) struct SampledInterval {
     /// Times of its beginning and end (s).
     pub(super) times: [f64; 2],
@@ -16,13 +15,42 @@ pub(super) struct SampledInterval {
     pub(super) levels: [usize; 2],
     /// Whether its middle has values: it is a single step, or they were estimated.
     has_middle: bool,
-    /// Parts and d at beginning, middle, end.
+    /// Parts and d at beginning, middle, end; d without the contact part until the interval is complete.
     pub(super) samples: [(Parts, f64); 3],
     /// The near elements there.
     pub(super) near: [NearParts; 3],
 }
 
 impl SampledInterval {
+    /// An interval between these steps, with the sums over far elements at its beginning, middle and end.
+    pub(super) fn new(times: &TimeGrid, levels: [usize; 2], far: [ElementError; 3]) -> Self {
+        let parts = |far: ElementError| Parts { kinetic: far.kinetic, elastic: far.elastic, contact: 0.0 };
+        Self {
+            times: levels.map(|n| times.instants()[n]),
+            levels,
+            has_middle: levels[1] == levels[0] + 1,
+            samples: far.map(|far| (parts(far), far.reference)),
+            near: [NearParts::default(); 3],
+        }
+    }
+
+    /// Adds a near element.
+    pub(super) fn add(&mut self, samples: &[ElementSample; 3]) {
+        for (((parts, reference), near), sample) in self.samples.iter_mut().zip(&mut self.near).zip(samples) {
+            parts.kinetic += sample.error.kinetic;
+            parts.elastic += sample.error.elastic;
+            *reference += sample.error.reference;
+            parts.contact += sample.contact.total;
+            near.misfit += sample.error.total();
+            near.front += sample.contact.normal_work;
+        }
+    }
+
+    /// Takes in that there are no more near elements.
+    pub(super) fn complete(&mut self) {
+        self.samples.iter_mut().for_each(|(parts, reference)| *reference += parts.contact);
+    }
+
     /// Whether its middle is sampled.
     pub(super) fn is_single(&self) -> bool {
         self.levels[1] == self.levels[0] + 1
@@ -44,38 +72,6 @@ impl SampledInterval {
     pub(super) fn weights(&self) -> [f64; 3] {
         std::array::from_fn(|k| self.integral(|at| f64::from(u8::from(at == k))))
     }
-}
-
-/// All intervals, far and near elements together.
-pub(super) fn intervals<const D: usize, const N: usize>(
-    times: &TimeGrid,
-    levels: &[usize],
-    far: &FarSums,
-    near: &[NearElement<D, N>],
-) -> Vec<SampledInterval> {
-    let interval = |k: usize| {
-        let mut samples = [far.levels[k], far.mids[k], far.levels[k + 1]].map(|far| (far, 0.0));
-        let mut parts_of_near = [NearParts::default(); 3];
-        for element in near {
-            for ((sum, near), sample) in samples.iter_mut().zip(&mut parts_of_near).zip(&element.samples[k]) {
-                sum.0.add(&sample.error);
-                sum.1 += sample.contact.total;
-                near.misfit += sample.error.total();
-                near.front += sample.contact.normal_work;
-            }
-        }
-        let parts = |(error, contact): (ElementError, f64)| {
-            (Parts { kinetic: error.kinetic, elastic: error.elastic, contact }, error.reference + contact)
-        };
-        SampledInterval {
-            times: [times.instants()[levels[k]], times.instants()[levels[k + 1]]],
-            levels: [levels[k], levels[k + 1]],
-            has_middle: levels[k + 1] == levels[k] + 1,
-            samples: samples.map(parts),
-            near: parts_of_near,
-        }
-    };
-    (0..levels.len() - 1).map(interval).collect()
 }
 
 /// η in the middle of a step differs from the mean of both ends by at most this part of it: where only the steps of an onset are

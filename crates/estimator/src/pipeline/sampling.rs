@@ -4,10 +4,11 @@ use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::kinematic::ElementMotion;
-use crate::measure::{Balanced, ElementError, ElementMeasure, hat_energy};
+use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy};
+use crate::numbers::Reader;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
-use crate::stress::EnergyForms;
+use crate::stress::{EnergyForms, Loading};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
@@ -95,17 +96,62 @@ pub(super) struct ElementVelocities<const D: usize, const N: usize> {
     increment: [[f64; D]; N],
 }
 
+impl<const D: usize, const N: usize> ElementVelocities<D, N> {
+    /// Appends them to numbers.
+    pub(super) fn append(&self, numbers: &mut Vec<f64>) {
+        self.motion.append(numbers);
+        numbers.extend_from_slice(self.increment.as_flattened());
+    }
+
+    /// Those that were appended.
+    pub(super) fn read(numbers: &mut Reader<'_>) -> Self {
+        Self { motion: ElementMotion::read(numbers), increment: numbers.vectors() }
+    }
+}
+
+/// The part of σ_DA of an element in η at one sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SampledStress<const D: usize, const N: usize> {
+    /// Its mean (Pa).
+    mean: [[f64; D]; D],
+    /// The energy of the rest (J per unit of section or thickness).
+    fluctuation: f64,
+    /// The loading that it balances, where hats need it.
+    loading: Option<Loading<D, N>>,
+}
+
+impl<const D: usize, const N: usize> SampledStress<D, N> {
+    /// Appends it to numbers.
+    pub(super) fn append(&self, numbers: &mut Vec<f64>) {
+        numbers.extend_from_slice(self.mean.as_flattened());
+        numbers.push(self.fluctuation);
+        if let Some(loading) = &self.loading {
+            numbers.extend_from_slice(loading.traction.as_flattened().as_flattened());
+            numbers.extend_from_slice(loading.volume.as_flattened());
+        }
+    }
+
+    /// One that was appended, with its loading or without.
+    pub(super) fn read(numbers: &mut Reader<'_>, loaded: bool) -> Self {
+        let (mean, fluctuation) = (numbers.vectors(), numbers.number());
+        let mut loading = || Loading { traction: [(); N].map(|()| numbers.vectors()), volume: numbers.vectors() };
+        Self { mean, fluctuation, loading: loaded.then(&mut loading) }
+    }
+}
+
+/// The fields of an element at one sample.
+pub(super) type SampledFields<'i, const D: usize, const N: usize> =
+    (&'i SampledStress<D, N>, &'i ElementVelocities<D, N>);
+
 /// One interval between sampled levels.
 pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     /// The steps at its beginning and its end.
     pub(super) steps: [usize; 2],
-    /// The fields that balance there, inside the interval.
-    pub(super) balanced: [&'i Balanced<D, N>; 2],
     /// Its beginning, unless the sample at the end of the interval before is the same.
-    pub(super) start: Option<&'i ElementVelocities<D, N>>,
+    pub(super) start: Option<SampledFields<'i, D, N>>,
     /// Its middle, if it is one step long.
-    pub(super) mid: Option<&'i ElementVelocities<D, N>>,
-    pub(super) end: &'i ElementVelocities<D, N>,
+    pub(super) mid: Option<SampledFields<'i, D, N>>,
+    pub(super) end: SampledFields<'i, D, N>,
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [ContactPart; 3],
     /// The stress of hats at its beginning, middle and end.
@@ -128,16 +174,27 @@ pub(super) struct ElementSampler<'a, 'p, const D: usize, const N: usize> {
     id: ElementId,
     pub(super) element: &'a Element<D, N>,
     measure: ElementMeasure<'a, D, N>,
-    forms: EnergyForms,
-    lane: usize,
 }
 
 impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     pub(super) fn new(shared: &'a Sampling<'a, 'p, D, N>, id: ElementId) -> Self {
         let (problem, element) = (shared.problem, &shared.equilibration.elements[id.index()]);
+        Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice) }
+    }
+
+    /// Hands over a function that makes σ_DA of the fields that balance, with its loading or without.
+    pub(super) fn with_stress<R>(
+        &self,
+        work: impl FnOnce(&dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>) -> R,
+    ) -> R {
+        let (problem, points) = (self.shared.problem, self.shared.problem.mesh().cell_points(self.id));
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-        let [lane, ..] = forms.prepare(problem, std::iter::once((id, problem.mesh().cell_points(id))));
-        Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice), forms, lane }
+        let [lane, ..] = forms.prepare(problem, std::iter::once((self.id, points)));
+        let form = forms.of(problem, self.id, &points, lane);
+        work(&|balanced, loaded| {
+            let AdmissibleStress { mean, fluctuation } = self.measure.stress(&form, balanced);
+            SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
+        })
     }
 
     /// The fields of the element at a half-step instant.
@@ -182,25 +239,22 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) -> [ElementSample; 3] {
-        let points = self.shared.problem.mesh().cell_points(self.id);
-        let form = self.forms.of(self.shared.problem, self.id, &points, self.lane);
-        let at = |balanced: &Balanced<D, N>, at: &ElementVelocities<D, N>, k: usize| {
-            let beside = match interval.hats[k] {
-                [] => 0.0,
-                hats => hat_energy(&self.measure.difference(balanced, &at.motion), hats),
+        let at = |(stress, at): SampledFields<'_, D, N>, k: usize| {
+            let beside = match (interval.hats[k], &stress.loading) {
+                ([], _) | (_, None) => 0.0,
+                (hats, Some(loading)) => hat_energy(&self.measure.difference(loading, &at.motion), hats),
             };
-            let stress = self.measure.stress(&form, balanced);
-            let error = self.measure.error(&stress, &at.increment, &at.motion, beside);
+            let stress = (&stress.mean, stress.fluctuation);
+            let error = self.measure.error_of(stress, &at.increment, &at.motion, beside);
             ElementSample { error, contact: interval.contact[k] }
         };
-        let [before, after] = interval.balanced;
         if let Some(start) = interval.start {
-            course.last = at(before, start, 0);
+            course.last = at(start, 0);
             self.keep(interval.steps[0], course, kept);
         }
         let start = course.last;
-        let middle = interval.mid.map(|mid| at(&Balanced::middle(before, after), mid, 1));
-        let end = at(after, interval.end, 2);
+        let middle = interval.mid.map(|mid| at(mid, 1));
+        let end = at(interval.end, 2);
         let [from, to] = interval.steps.map(|n| self.shared.times.instants()[n]);
         course.integral += trapezoid(to - from, start.total(), middle.map(|m| m.total()), end.total());
         course.last = end;

@@ -86,6 +86,7 @@ impl Schedule {
     }
 
     /// All samples so far.
+    #[cfg(test)]
     pub(super) fn steps(&self) -> &[usize] {
         &self.sampled
     }

@@ -1,9 +1,8 @@
 //! Sums over elements and time, in a fixed order.
 
-use super::far::FarSums;
 use super::near::NearElement;
 use super::prepare::{Impulse, Preparation};
-use super::sampled_interval::{SampledInterval, estimate_middles, intervals, samples};
+use super::sampled_interval::{SampledInterval, estimate_middles, samples};
 use super::separation::separation;
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
 use crate::map::ElementMap;
@@ -13,34 +12,33 @@ use percute_core::ratio;
 use percute_core::time::TimeGrid;
 
 /// The results of all windows.
-pub(crate) struct Worked<const D: usize, const N: usize> {
-    pub(crate) far: FarSums,
-    pub(crate) near: Vec<NearElement<D, N>>,
+pub(super) struct Worked<const D: usize, const N: usize> {
+    pub(super) intervals: Vec<SampledInterval>,
+    pub(super) near: Vec<NearElement<D, N>>,
     /// ∫η_E dt of far elements (J s).
-    pub(crate) integrals: Vec<f64>,
-    pub(crate) residuals: Residuals,
-    pub(crate) maps: Vec<ElementMap<D>>,
+    pub(super) integrals: Vec<f64>,
+    pub(super) residuals: Residuals,
+    pub(super) maps: Vec<ElementMap<D>>,
 }
 
 /// The estimate, from everything that was summed.
-pub(crate) fn estimate<const D: usize, const N: usize>(
+pub(super) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,
 ) -> Estimate<D> {
-    let Worked { far, near, integrals: mut integral, mut residuals, mut maps } = worked;
+    let Worked { mut intervals, near, integrals: mut integral, mut residuals, mut maps } = worked;
     let last = preparation.count() - 1;
     let end = times.instants()[last];
     for element in &near {
         integral[element.element.index()] = element.course.integral;
         residuals.merge(&element.residuals);
     }
-    preparation.tracks().iter().for_each(|track| track.report(&mut residuals));
+    preparation.tracks().report(&mut residuals);
     residuals.merge(&preparation.residuals);
     preparation.reconstruction().concentration().into_iter().for_each(|stars| stars.add_residuals(&mut residuals));
 
-    let mut intervals = intervals(times, preparation.sampled(), &far, &near);
     if preparation.estimates_middles() {
         let factor = estimate_middles(&mut intervals);
         let accumulated = maps.iter_mut().flat_map(|map| &mut map.accumulated);

@@ -5,24 +5,25 @@
 
 use super::far::{self, FarCourse, FarSums};
 use super::maps::{Balance, Maps};
-use super::near::{ContactSampling, NearElement, near_elements};
+use super::near::ContactSampling;
+use super::near_elements::{self, NearElements};
 use super::prepare::Preparation;
+use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
 use super::sampling::Sampling;
 use super::totals::{self, Worked};
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
 use crate::lanes::{LANES, Lanes};
-use crate::measure::ElementError;
 use crate::options::{Acceleration, Options};
 use crate::reconstruction;
 use crate::residual::{Residuals, worse};
+use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::time_level::ForcesKnown;
 use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -41,7 +42,7 @@ fn size(options: &Options) -> usize {
 }
 
 /// About how much memory (bytes) an estimate takes beside its problem: its levels and the data that it keeps of
-/// each element and sample. The queues of elements around contact nodes are not foreseen.
+/// each element and sample.
 #[must_use]
 pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
     let levels = size(options).min(times.step_count()).saturating_add(OTHER_LEVELS);
@@ -50,7 +51,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     // Moments of a window.
     let link = size_of::<[Lanes; D]>();
     // At the level and half way to the next.
-    let step = 2 * (size_of::<Sample>() + size_of::<ElementError>());
+    let step = size_of::<SampledInterval>() + 2 * size_of::<Sample>() + size_of::<usize>();
     let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
     let steps = times.step_count() / spacing + 1;
     levels
@@ -59,6 +60,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))
+        .saturating_add(near_elements::memory(problem, steps, spacing == 1))
 }
 
 /// Levels in work, and the sums so far.
@@ -75,11 +77,14 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     levels: Vec<ForcesKnown<D>>,
     /// Memory of the levels at work.
     equilibrated: EquilibratedLevels<D>,
-    near: Vec<NearElement<D, N>>,
+    near: NearElements<D, N>,
     is_near: Vec<bool>,
     /// The links by which the stars of their nodes enter and leave them, in order.
     near_links: Arc<[u32]>,
+    /// Sums over far elements from the last level on.
     far: FarSums,
+    /// All intervals so far; the last ones lack the near elements that wait.
+    intervals: Vec<SampledInterval>,
     /// Far elements so far.
     courses: Vec<FarCourse<D, N>>,
     pub(super) maps: Maps<D>,
@@ -88,11 +93,11 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options, maps: Maps<D>) -> Self {
-        let near = near_elements(problem);
+        let near = NearElements::new(problem, ScratchFile::default());
         let mut is_near = vec![false; problem.mesh().element_count()];
-        near.iter().for_each(|n| is_near[n.element.index()] = true);
+        near.all.iter().for_each(|n| is_near[n.element.index()] = true);
         let equilibration = Equilibration::new(problem);
-        let links = near.iter().flat_map(|n| equilibration.elements[n.element.index()].links);
+        let links = near.all.iter().flat_map(|n| equilibration.elements[n.element.index()].links);
         let near_links: BTreeSet<u32> = links.flat_map(|link| [link, link + 1]).collect();
         Self {
             problem,
@@ -107,57 +112,101 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             near,
             is_near,
             far: FarSums::default(),
+            intervals: Vec::new(),
             courses: vec![FarCourse::default(); problem.mesh().element_count()],
             maps,
             residuals: Residuals::default(),
         }
     }
 
+    /// The near elements, for tests.
+    #[cfg(test)]
+    pub(super) fn near_mut(&mut self) -> &mut NearElements<D, N> {
+        &mut self.near
+    }
+
     /// Takes in a level; works when the window is full.
-    pub(super) fn push(&mut self, pool: &ThreadPool, level: ForcesKnown<D>, preparation: &Preparation<'p, D, N>) {
+    pub(super) fn push(
+        &mut self,
+        pool: &ThreadPool,
+        level: ForcesKnown<D>,
+        preparation: &mut Preparation<'p, D, N>,
+    ) -> Result<(), ScratchError> {
         self.levels.push(level);
-        if self.levels.len() >= self.size {
-            pool.install(|| self.work(preparation));
-        }
+        if self.levels.len() >= self.size { pool.install(|| self.work(preparation)) } else { Ok(()) }
     }
 
     /// Works on the levels that are left and sums up.
-    pub(super) fn finish(mut self, pool: &ThreadPool, preparation: &Preparation<'p, D, N>) -> Estimate<D> {
-        pool.install(|| self.work(preparation));
-        self.near.iter().for_each(|near| self.maps.put(&near.kept));
-        let Self { problem, times, far, near, courses, residuals, .. } = self;
-        let maps = self.maps.finish(problem, &self.equilibration.elements, preparation.tracks());
+    pub(super) fn finish(
+        mut self,
+        pool: &ThreadPool,
+        preparation: &mut Preparation<'p, D, N>,
+    ) -> Result<Estimate<D>, ScratchError> {
+        pool.install(|| self.work(preparation).and_then(|()| self.catch_up(preparation)))?;
+        let Self { problem, times, intervals, near, courses, residuals, .. } = self;
+        let maps = self.maps.finish(problem, &self.equilibration.elements);
         let integrals = courses.iter().map(|course| course.course.integral).collect();
-        totals::estimate(problem, times, preparation, Worked { far, near, integrals, residuals, maps })
+        let worked = Worked { intervals, near: near.all, integrals, residuals, maps };
+        Ok(totals::estimate(problem, times, preparation, worked))
     }
 
     /// Works on the levels of the window and keeps the last for the next one.
-    fn work(&mut self, preparation: &Preparation<'p, D, N>) {
+    fn work(&mut self, preparation: &mut Preparation<'p, D, N>) -> Result<(), ScratchError> {
         if self.levels.is_empty() {
-            return;
+            return Ok(());
         }
         let mut levels = std::mem::take(&mut self.equilibrated);
         let miss = self.equilibration.solve(std::mem::take(&mut self.levels), &mut levels);
         self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
         preparation.reconstruction().improve(&self.equilibration, self.choice, &mut levels);
-        self.sample(preparation, &levels);
+        self.sample(preparation, &levels)?;
         self.carried = levels.keep_last(&self.near_links);
         self.equilibrated = levels;
+        self.catch_up(preparation)
     }
 
     /// Samples all elements at some levels.
-    fn sample(&mut self, preparation: &Preparation<'p, D, N>, levels: &EquilibratedLevels<D>) {
+    fn sample(
+        &mut self,
+        preparation: &Preparation<'p, D, N>,
+        levels: &EquilibratedLevels<D>,
+    ) -> Result<(), ScratchError> {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
-        let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks());
-        let balance = Balance { problem, equilibration, choice, concentration: reconstruction.concentration() };
+        let concentration = preparation.reconstruction().concentration();
+        let balance = Balance { problem, equilibration, choice, concentration };
         self.maps.begin(times.instants(), &balance, levels);
         let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
         let sampled = SampledLevels { before: self.carried.as_ref().map(KeptLevel::level), levels };
         let (residuals, kept) = far::sample(&shared, &sampled, &self.is_near, &mut self.courses, &mut self.far);
-        let context = ContactSampling { shared: &shared, reconstruction, tracks };
-        self.near.par_iter_mut().for_each(|near| near.advance(&context, &sampled));
+        let before = self.intervals.len();
+        for (k, interval) in sampled.intervals().enumerate() {
+            let far = [self.far.levels[k], self.far.mids[k], self.far.levels[k + 1]];
+            self.intervals.push(SampledInterval::new(times, interval.map(|level| level.index()), far));
+        }
+        self.far.levels.drain(..self.intervals.len() - before);
+        self.far.mids.clear();
+        self.near.append(&shared, &sampled, before..self.intervals.len())?;
         self.residuals.merge(&residuals);
         self.maps.put(&kept);
+        Ok(())
+    }
+
+    /// Samples near elements as far as the motion of all contact nodes is known.
+    fn catch_up(&mut self, preparation: &mut Preparation<'p, D, N>) -> Result<(), ScratchError> {
+        let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
+        while let Some(known) = self.near.first_known(preparation.tracks(), &self.intervals) {
+            let intervals = &mut self.intervals[known];
+            if let [first, ..] = intervals {
+                let (from, to) = (first.levels[0], intervals[intervals.len() - 1].levels[1]);
+                preparation.show([2 * from, 2 * to])?;
+                self.maps.settle(problem, preparation.tracks().all(), to);
+            }
+            let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
+            let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks().all());
+            self.near.sample(&ContactSampling { shared: &shared, reconstruction, tracks }, intervals)?;
+            self.near.put(&mut self.maps);
+        }
+        Ok(())
     }
 }
 

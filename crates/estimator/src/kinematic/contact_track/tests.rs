@@ -1,14 +1,63 @@
 //! Contact phases of one node, at their shortest too, and residuals that rise when the motion is changed.
 
 use super::*;
+use crate::scratch_file::ScratchFile;
+use std::ops::Deref;
 
 /// Half steps of 1 s.
 const HALF: f64 = 1.0;
 const TOLERANCE: f64 = 1e-12;
 
+/// A track with its store, its motion at hand at all known instants.
+struct Alone {
+    track: ContactTrack,
+    store: NormalMotions,
+}
+
+impl Alone {
+    fn new(gap: f64, velocity: f64, touching: bool) -> Self {
+        let mut store = NormalMotions::new(1, ScratchFile::default());
+        store.extend().unwrap();
+        store.write(0, 0, &[[velocity, gap]]).unwrap();
+        Self { track: ContactTrack::new(0, (gap, 1.0), true, (gap, velocity), touching), store }
+    }
+
+    fn push(&mut self, step: &NormalStep, tolerance: f64) {
+        self.store.extend().unwrap();
+        self.store.extend().unwrap();
+        self.track.push(&mut self.store, step, tolerance).unwrap();
+        self.show();
+    }
+
+    fn finish(&mut self, tolerance: f64) {
+        self.track.finish(&mut self.store, tolerance).unwrap();
+        self.show();
+    }
+
+    fn show(&mut self) {
+        self.track.show(&mut self.store, [0, self.track.known() - 1]).unwrap();
+    }
+}
+
+impl Deref for Alone {
+    type Target = ContactTrack;
+
+    fn deref(&self) -> &ContactTrack {
+        &self.track
+    }
+}
+
 /// A track of a body of size 1 that starts at this gap with this velocity, not touching.
-fn track(gap: f64, velocity: f64) -> ContactTrack {
-    ContactTrack::new(gap, 1.0, true, (gap, velocity), false)
+fn track(gap: f64, velocity: f64) -> Alone {
+    Alone::new(gap, velocity, false)
+}
+
+/// The residuals of a motion from this gap and velocity over half steps of 1 s.
+fn recorded(start: (f64, f64), path: Path, arrives: bool) -> Residuals {
+    let mut track = track(start.0, start.1).track;
+    let (lengths, target) = (vec![HALF; path.len()], path.iter().map(|(v, _)| *v).collect::<Vec<_>>());
+    track.record(&FlightWindow { start, lengths: &lengths, target: &target, arrives }, &path);
+    residuals(&track)
 }
 
 fn step(velocity: [f64; 2], touching: bool) -> NormalStep {
@@ -23,7 +72,7 @@ fn residuals(track: &ContactTrack) -> Residuals {
 
 /// From gap 4 at −1 to the plane at step 2. The target velocities −1 at all instants cover 3.5 m, half a
 /// half step less than 4 because the last is 0: the three free ones become −1 − ½/3.
-fn arriving() -> ContactTrack {
+fn arriving() -> Alone {
     let mut track = track(4.0, -1.0);
     track.push(&step([-1.0, -1.0], false), TOLERANCE);
     track.push(&step([-1.0, -1.0], true), TOLERANCE);
@@ -94,7 +143,7 @@ fn touching_at_step_one() {
 /// Touching from the start: at rest at once, without a window.
 #[test]
 fn touching_at_the_start() {
-    let mut track = ContactTrack::new(0.0, 1.0, true, (0.0, 0.0), true);
+    let mut track = Alone::new(0.0, 0.0, true);
     track.push(&step([-1e-3, 1e-3], true), TOLERANCE);
     track.finish(TOLERANCE);
     assert_eq!((track.known(), track.at(1), track.at(2)), (3, (0.0, 0.0), (0.0, 0.0)));
@@ -113,11 +162,8 @@ fn open_at_the_end() {
 /// motion stays outside.
 #[test]
 fn a_missed_onset_shows() {
-    let mut track = track(4.0, -1.0);
-    track.lengths = vec![HALF; 4];
     // 3.5 + 0.49 m instead of 4.
-    track.record(vec![(-1.0, 2.5 + 0.5), (-1.0, 2.0), (-1.49, 0.755), (0.0, 0.01)], true);
-    let found = residuals(&track);
+    let found = recorded((4.0, -1.0), vec![(-1.0, 2.5 + 0.5), (-1.0, 2.0), (-1.49, 0.755), (0.0, 0.01)], true);
     assert!(found.onset > 1e-3);
     assert_eq!(found, Residuals { onset: found.onset, ..Residuals::default() });
 }
@@ -125,10 +171,7 @@ fn a_missed_onset_shows() {
 /// A gap 1 % of the body's size behind the plane.
 #[test]
 fn penetration_at_an_instant_shows() {
-    let mut track = track(1.0, -1.0);
-    track.lengths = vec![HALF; 2];
-    track.record(vec![(-1.0, -0.01), (1.0, -0.01)], false);
-    let found = residuals(&track);
+    let found = recorded((1.0, -1.0), vec![(-1.0, -0.01), (1.0, -0.01)], false);
     assert_eq!(found.penetration_at_instants, 0.01);
     // The parabola between the instants is deeper still, by v²h/(2·2) = ¼.
     assert!((found.penetration_between_instants - 0.26).abs() < 1e-15);
@@ -137,18 +180,12 @@ fn penetration_at_an_instant_shows() {
 /// Down to −¼ and back between two instants on the plane.
 #[test]
 fn penetration_between_instants_shows() {
-    let mut track = track(0.0, -1.0);
-    track.lengths = vec![HALF];
-    track.record(vec![(1.0, 0.0)], false);
-    let found = residuals(&track);
+    let found = recorded((0.0, -1.0), vec![(1.0, 0.0)], false);
     assert_eq!(found, Residuals { penetration_between_instants: 0.25, ..Residuals::default() });
 }
 
 /// What is no number must not pass as small.
 #[test]
 fn nan_shows() {
-    let mut track = track(1.0, 0.0);
-    track.lengths = vec![HALF];
-    track.record(vec![(f64::NAN, f64::NAN)], false);
-    assert!(residuals(&track).largest().is_nan());
+    assert!(recorded((1.0, 0.0), vec![(f64::NAN, f64::NAN)], false).largest().is_nan());
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::increment::Increment;
-use crate::kinematic::{FreeMotion, NormalStep};
+use crate::kinematic::FreeMotion;
 use crate::nodal_field::FieldPool;
 use crate::options::{Acceleration, Options};
 use crate::pipeline::fixture::{SHOWS, impact};
@@ -44,21 +44,18 @@ fn checked(track: &ContactTrack) -> Residuals {
     let pool = FieldPool::new(problem.mesh().node_count());
     let (_, motion) = FreeMotion::new(&problem, &pool).advance(&problem, &times, &evaluation.advance(&step).unwrap());
     let velocities = Velocities { motion, increment: Increment::zero(&pool), lumping_increment: None };
-    let mut stop = near.at(&sampler, &velocities, 2, 0.0);
-    near.settle(&context, &mut stop);
+    let mut stop = near.at(&sampler, &velocities, 0.0);
+    near.settle(&context, &mut stop, 2);
     let touching = near.contact.map(|at| at.is_some());
     near.check_contact(&context, &stop.velocities, &touching);
     near.residuals
 }
 
+/// A track with this normal velocity (m/s) and gap (m) at the end of the first step.
 fn track(velocity: f64, gap: f64) -> ContactTrack {
     // The undeformed gap of the fixture's flat bottom.
     let (problem, _) = impact();
-    let undeformed = problem.surface().nodes()[0].undeformed_gap;
-    let mut track = ContactTrack::new(undeformed, 1.0, false, (gap, 0.0), false);
-    // A prescribed node keeps what it is told: the gap stays to rounding.
-    track.push(&NormalStep { half: 1e-12, velocity: [0.0, velocity], touching: true }, 0.0);
-    track
+    ContactTrack::altered(problem.surface().nodes()[0].undeformed_gap, 2, [velocity, gap])
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn wrong_initial_conditions_show() {
         let mut preparation = Preparation::new(&problem, &times, &Options::default());
         preparation.motion = FreeMotion::new(other, &FieldPool::new(other.mesh().node_count()));
         let mut evaluation = Evaluation::new(&problem, &times);
-        preparation.push(&evaluation.advance(&step).unwrap());
+        preparation.push(&evaluation.advance(&step).unwrap()).unwrap();
         let found = preparation.residuals;
         assert_eq!(found.initial_conditions > SHOWS, shows, "{found:?}");
         assert_eq!(Residuals { initial_conditions: 0.0, ..found }, Residuals::default());

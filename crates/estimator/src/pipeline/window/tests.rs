@@ -49,11 +49,12 @@ impl Run<'_> {
     /// All residuals of these levels.
     fn residuals(mut self, levels: Vec<EquilibratedLevels<2>>) -> Residuals {
         for mut some in levels {
-            self.window.sample(&self.preparation, &some);
+            self.window.sample(&self.preparation, &some).unwrap();
             self.window.carried = some.keep_last(&self.window.near_links);
+            self.window.catch_up(&mut self.preparation).unwrap();
         }
         let mut residuals = self.window.residuals;
-        self.window.near.iter().for_each(|near| residuals.merge(&near.residuals));
+        self.window.near.all.iter().for_each(|near| residuals.merge(&near.residuals));
         residuals
     }
 

@@ -1,0 +1,161 @@
+//! What near elements keep of intervals until the motion of all contact nodes is known, in order of time.
+//!
+//! Memory takes a limited part of it. The rest waits in a temporary file, written and read once and in order.
+
+use crate::scratch_file::{ScratchError, ScratchFile};
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// Memory (bytes) that may always be taken, and for each contact node.
+const HELD: usize = 4 << 20;
+const HELD_PER_NODE: usize = 8 << 10;
+
+/// Intervals of all elements, block after block.
+#[derive(Debug)]
+struct Batch {
+    intervals: Range<usize>,
+    /// Numbers of each block.
+    lengths: Vec<u32>,
+    place: Place,
+}
+
+#[derive(Debug)]
+enum Place {
+    Memory(Vec<f64>),
+    /// From this number of the file on.
+    File(u64),
+}
+
+/// Batches in order of time.
+#[derive(Debug)]
+pub(super) struct Backlog {
+    batches: VecDeque<Batch>,
+    /// Numbers that may be in memory, and those that are.
+    most: usize,
+    held: usize,
+    /// Numbers of the last batch: about those of the next one.
+    last: usize,
+    /// Where the file ends.
+    end: u64,
+    file: ScratchFile,
+    /// Memory of a batch that is gone.
+    spare: Vec<f64>,
+    /// Numbers that were read.
+    read: Vec<f64>,
+}
+
+/// The most bytes in memory, with so many contact nodes.
+pub(super) fn most_bytes(nodes: usize) -> usize {
+    HELD.max(nodes.saturating_mul(HELD_PER_NODE))
+}
+
+impl Backlog {
+    /// An empty one, for so many contact nodes.
+    pub(super) fn new(nodes: usize, file: ScratchFile) -> Self {
+        Self {
+            batches: VecDeque::new(),
+            most: most_bytes(nodes) / size_of::<f64>(),
+            held: 0,
+            last: 0,
+            end: 0,
+            file,
+            spare: Vec::new(),
+            read: Vec::new(),
+        }
+    }
+
+    /// Begins a batch of these intervals.
+    pub(super) fn begin(&mut self, intervals: Range<usize>) {
+        let place = if self.held + self.last <= self.most {
+            let mut numbers = std::mem::take(&mut self.spare);
+            numbers.reserve_exact(self.last);
+            Place::Memory(numbers)
+        } else {
+            self.spare = Vec::new();
+            if !self.batches.iter().rev().any(|batch| matches!(batch.place, Place::File(_))) {
+                self.end = 0;
+            }
+            Place::File(self.end)
+        };
+        self.last = 0;
+        self.batches.push_back(Batch { intervals, lengths: Vec::new(), place });
+    }
+
+    /// Appends a block to the last batch.
+    pub(super) fn push(&mut self, block: &[f64]) -> Result<(), ScratchError> {
+        let Some(batch) = self.batches.back_mut() else { return Ok(()) };
+        batch.lengths.push(block.len() as u32);
+        self.last += block.len();
+        match &mut batch.place {
+            Place::Memory(numbers) => {
+                self.held += block.len();
+                numbers.extend_from_slice(block);
+                Ok(())
+            }
+            Place::File(_) => {
+                let place = self.end;
+                self.end += block.len() as u64;
+                self.file.write(place, block)
+            }
+        }
+    }
+
+    /// The intervals of the first batch.
+    pub(super) fn first(&self) -> Option<Range<usize>> {
+        self.batches.front().map(|batch| batch.intervals.clone())
+    }
+
+    /// Some blocks of the first batch.
+    pub(super) fn blocks(&mut self, blocks: Range<usize>) -> Result<Vec<&[f64]>, ScratchError> {
+        let Some(batch) = self.batches.front() else { return Ok(Vec::new()) };
+        let numbers = |lengths: &[u32]| lengths.iter().map(|&length| length as usize).sum::<usize>();
+        let (start, count) = (numbers(&batch.lengths[..blocks.start]), numbers(&batch.lengths[blocks.clone()]));
+        let mut left = match &batch.place {
+            Place::Memory(numbers) => &numbers[start..][..count],
+            Place::File(place) => {
+                self.read.resize(count, 0.0);
+                self.file.read(place + start as u64, &mut self.read)?;
+                &self.read[..]
+            }
+        };
+        let next = |length: &u32| {
+            let (block, rest) = left.split_at(*length as usize);
+            left = rest;
+            block
+        };
+        Ok(batch.lengths[blocks].iter().map(next).collect())
+    }
+
+    /// Forgets the first batch.
+    pub(super) fn pop(&mut self) {
+        if let Some(Batch { place: Place::Memory(mut numbers), .. }) = self.batches.pop_front() {
+            self.held -= numbers.len();
+            numbers.clear();
+            self.spare = numbers;
+        }
+    }
+
+    /// Bytes in memory.
+    #[cfg(test)]
+    pub(super) fn held(&self) -> usize {
+        (self.held + self.spare.capacity() + self.read.capacity()) * size_of::<f64>()
+    }
+
+    /// Takes any memory.
+    #[cfg(test)]
+    pub(super) fn lift_limit(&mut self) {
+        self.most = usize::MAX;
+    }
+
+    /// Waits in this file.
+    #[cfg(test)]
+    pub(super) fn wait_in(&mut self, file: ScratchFile) {
+        self.file = file;
+    }
+
+    /// Whether some of it has been in the file.
+    #[cfg(test)]
+    pub(super) fn has_been_in_file(&self) -> bool {
+        self.file.is_used()
+    }
+}

@@ -1,0 +1,92 @@
+//! Intervals that wait: their memory is limited, and the temporary file changes no result.
+
+use super::*;
+use crate::options::Reconstruction;
+use crate::scratch_file::ScratchFile;
+use percute_core::contact::Obstacle;
+use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::observer::Unobserved;
+use percute_core::problem::{Initial, TriangleProblem};
+
+/// A low, wide block that strikes a plane and flies off: most nodes never touch again.
+fn rebound() -> TriangleProblem {
+    Problem::builder(TriangleMesh::rectangle(0.04, 0.001, 40, 1).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .initial_velocity(Initial::Uniform([2.0, -10.0]))
+        .obstacle(Obstacle::plane([0.0, -1e-5], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())
+        .build()
+        .unwrap()
+}
+
+fn instants(problem: &TriangleProblem, steps: usize) -> TimeGrid {
+    TimeGrid::uniform(steps as f64 * 0.9 * critical_time_step(problem), steps).unwrap()
+}
+
+/// An estimate of every step, and the most bytes that have waited in memory.
+struct Watched<'p> {
+    estimator: Estimator<'p, 2, 3>,
+    most: usize,
+}
+
+impl<'p> Watched<'p> {
+    fn new(problem: &'p TriangleProblem, times: &'p TimeGrid) -> Self {
+        let options = Options {
+            reconstruction: Reconstruction::Consistent,
+            every: Sampling::Every(1),
+            threads: Some(1),
+            ..Options::default()
+        };
+        Self { estimator: Estimator::new(problem, times, options).unwrap(), most: 0 }
+    }
+
+    fn run(&mut self) -> Result<(), SimulationError> {
+        let (problem, times) = (self.estimator.problem, self.estimator.times);
+        simulate(problem, times, self, &mut Unobserved).map(|_| ())
+    }
+}
+
+impl StateSink<2> for Watched<'_> {
+    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+        self.estimator.accept(state)?;
+        let Estimator { preparation, window, .. } = &mut self.estimator;
+        self.most = self.most.max(preparation.tracks().held() + window.near_mut().held());
+        Ok(())
+    }
+}
+
+/// Four times as many steps take the same memory within 10 %; without the limit they take almost four times as much, and both
+/// estimates have the same bits.
+#[test]
+fn memory_does_not_grow_with_the_steps() {
+    let problem = rebound();
+    let run = |steps: usize, limited: bool| {
+        let times = instants(&problem, steps);
+        let mut watched = Watched::new(&problem, &times);
+        if !limited {
+            watched.estimator.preparation.tracks_mut().lift_limit();
+            watched.estimator.window.near_mut().backlog_mut().lift_limit();
+        }
+        watched.run().unwrap();
+        assert_eq!(watched.estimator.window.near_mut().backlog_mut().has_been_in_file(), limited);
+        (watched.most, watched.estimator.finish().unwrap())
+    };
+    let [(short, _), (long, estimate)] = [1000, 4000].map(|steps| run(steps, true));
+    let [(_, _), (unlimited, same)] = [1000, 4000].map(|steps| run(steps, false));
+    assert!(10 * long < 11 * short, "{long} bytes instead of {short}");
+    assert!(unlimited > 3 * short, "{unlimited} bytes without limit, {short} with it");
+    assert_eq!(estimate, same);
+}
+
+/// A file that cannot be made ends the run with an error.
+#[test]
+fn a_file_that_fails_is_an_error() {
+    let problem = rebound();
+    let times = instants(&problem, 1000);
+    let mut watched = Watched::new(&problem, &times);
+    watched.estimator.window.near_mut().backlog_mut().wait_in(ScratchFile::within("/no/such/folder".into()));
+    let Err(SimulationError::Sink { cause, step }) = watched.run() else { panic!("no error") };
+    assert!(step > 10, "{step}");
+    assert!(matches!(cause.downcast_ref(), Some(EstimateError::Scratch(_))), "{cause}");
+}
