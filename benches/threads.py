@@ -17,12 +17,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
 
-from child import CELLS, Percute, build, table
+from child import CELLS, ESTIMATED, LENGTHS, Percute, build, step, table
 
-LENGTHS = {640: (400, 4400), 40960: (50, 550), 655360: (8, 40), 5000000: (4, 12)}
-"""Steps of the two runs of the integrator whose difference counts."""
-ESTIMATED = {640: (32, 288), 40960: (16, 48), 655360: (8, 24), 5000000: (8, 16)}
-"""The same of runs with an estimate: full windows of eight levels."""
 STAGES: dict[str, tuple[str, ...]] = {
     "integrator": (),
     "consistent": ("--estimate", "consistent"),
@@ -55,12 +51,6 @@ def busy(core: int) -> Iterator[None]:
     finally:
         process.kill()
         process.communicate()
-
-
-def step(run: Percute, lengths: tuple[int, int]) -> float:
-    """Nanoseconds per element and step."""
-    short, long = lengths
-    return (run.run(long)[0] - run.run(short)[0]) * 1e9 / ((long - short) * run.elements)
 
 
 def rounds(probe: Path, size: int, stage: str, count: int, core: int) -> list[tuple[float, float, float]]:

@@ -19,11 +19,16 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def build() -> Path:
     """Build the probe; give its path."""
-    command = ["cargo", "build", "--release", "--locked", "-p", "percute-benches", "--bin", "probe"]
+    return program("probe")
+
+
+def program(name: str) -> Path:
+    """Build one of the programs of `benches/src/bin`; give its path."""
+    command = ["cargo", "build", "--release", "--locked", "-p", "percute-benches", "--bin", name]
     subprocess.run(command, cwd=ROOT, check=True)
     command = ["cargo", "metadata", "--format-version=1", "--no-deps"]
     metadata = json.loads(subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout)
-    return Path(metadata["target_directory"]) / "release" / "probe"
+    return Path(metadata["target_directory"]) / "release" / name
 
 
 class Percute:
