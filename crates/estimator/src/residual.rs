@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// not admissible. All are taken at every sampled instant, but for those of stresses that are
 /// a constant linear map of tractions and Γ_DA (`divergence`, `edge_tractions`, `inner_tractions`): each
 /// element is checked in its turn, at one instant of 4 at contact and of 64 elsewhere. `hat_resultants`
-/// and `hat_stress` are those of unit hats, taken once for each star.
+/// and `hat_stress` are those of unit hats, taken once for each star in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].

@@ -2,7 +2,7 @@
 
 use super::cut_star::Arc;
 use super::panel::Panel;
-use nalgebra::{DMatrix, Matrix4};
+use nalgebra::{DMatrix, Dim, Matrix, Matrix4, StorageMut, U4};
 
 /// A chain of sub-triangles. Similar rings have one layer in common: their forms are equal in forces.
 ///
@@ -12,9 +12,9 @@ pub(super) struct Layer {
     pub(super) panels: Vec<Panel>,
     /// Arcs on one side.
     sectors: usize,
-    /// Of the elimination along the chain: pivots, inverted; and the products of neighbours.
-    pivots: Vec<Matrix4<f64>>,
-    coupling: Vec<Matrix4<f64>>,
+    /// Of the elimination along the chain: pivots, and the rows of the factor beside them.
+    pivots: Vec<Pivot>,
+    beside: Vec<Matrix4<f64>>,
     /// Displacements of the chain under unit displacements of the arcs, with the other sign.
     response: DMatrix<f64>,
     /// Stiffness of the arcs, the outer ones first.
@@ -44,7 +44,7 @@ impl Layer {
             panels,
             sectors,
             pivots: Vec::new(),
-            coupling: Vec::new(),
+            beside: Vec::new(),
             response: DMatrix::zeros(0, 0),
             stiffness: DMatrix::zeros(0, 0),
         };
@@ -52,20 +52,24 @@ impl Layer {
             let arc = layer.arc(k);
             diagonal[k] += block(panel, 0, 0);
             diagonal[k + 1] += block(panel, 1, 1);
-            layer.coupling.push(block(panel, 0, 1));
             response.fixed_view_mut::<4, 4>(4 * k, 4 * arc).copy_from(&block(panel, 0, 2));
             response.fixed_view_mut::<4, 4>(4 * (k + 1), 4 * arc).copy_from(&block(panel, 1, 2));
             stiffness.fixed_view_mut::<4, 4>(4 * arc, 4 * arc).copy_from(&block(panel, 2, 2));
         }
         let last = edges - 1;
         for (k, mut pivot) in diagonal.into_iter().enumerate() {
-            if k > 0 {
-                let coupling = layer.coupling[k - 1];
-                pivot -= coupling.transpose() * layer.pivots[k - 1] * coupling;
+            if let Some(beside) = layer.beside.last() {
+                pivot -= beside.transpose() * beside;
             }
             let held = [(0, supported[0]), (last, supported[1])];
             let held = held.into_iter().filter(|(at, _)| *at == k).flat_map(|(_, of)| [of[0], of[1]]);
-            layer.pivots.push(inverse(pivot, &held.collect::<Vec<_>>()));
+            let pivot = Pivot::new(pivot, &held.collect::<Vec<_>>());
+            if let Some(panel) = layer.panels.get(k) {
+                let mut beside = block(panel, 0, 1);
+                pivot.forward(&mut beside);
+                layer.beside.push(beside);
+            }
+            layer.pivots.push(pivot);
         }
         layer.solve(&mut response);
         for (k, panel) in layer.panels.iter().enumerate() {
@@ -86,17 +90,19 @@ impl Layer {
 
     /// From forces on the edges of the chain to their displacements, with the arcs at rest.
     fn solve(&self, all: &mut DMatrix<f64>) {
-        for (k, coupling) in self.coupling.iter().enumerate() {
-            let (here, mut next) = all.rows_range_pair_mut(4 * k..4 * k + 4, 4 * k + 4..4 * k + 8);
-            next -= (coupling.transpose() * self.pivots[k]) * here;
+        for (k, pivot) in self.pivots.iter().enumerate() {
+            pivot.forward(&mut all.fixed_rows_mut::<4>(4 * k));
+            if let Some(beside) = self.beside.get(k) {
+                let (here, mut next) = all.rows_range_pair_mut(4 * k..4 * k + 4, 4 * k + 4..4 * k + 8);
+                next -= beside.transpose() * here;
+            }
         }
         for (k, pivot) in self.pivots.iter().enumerate().rev() {
-            let rows = all.fixed_rows::<4>(4 * k);
-            let mut own = rows.into_owned();
-            if let Some(coupling) = self.coupling.get(k) {
-                own -= coupling * all.fixed_rows::<4>(4 * k + 4);
+            if let Some(beside) = self.beside.get(k) {
+                let (mut here, next) = all.rows_range_pair_mut(4 * k..4 * k + 4, 4 * k + 4..4 * k + 8);
+                here -= beside * next;
             }
-            all.fixed_rows_mut::<4>(4 * k).copy_from(&(pivot * own));
+            pivot.lower.tr_solve_lower_triangular_unchecked_mut(&mut all.fixed_rows_mut::<4>(4 * k));
         }
     }
 
@@ -170,16 +176,35 @@ pub(super) fn block(panel: &Panel, row: usize, column: usize) -> Matrix4<f64> {
     panel.stiffness.fixed_view::<4, 4>(4 * row, 4 * column).into_owned()
 }
 
-/// The inverse of a pivot, with no displacement of the components that are held, at both nodes of the edge.
-fn inverse(mut pivot: Matrix4<f64>, held: &[bool]) -> Matrix4<f64> {
-    let held: Vec<usize> = (0..4).filter(|k| held.get(k % 2).is_some_and(|held| *held)).collect();
-    for &k in &held {
-        pivot.row_mut(k).fill(0.0);
-        pivot.column_mut(k).fill(0.0);
-        pivot[(k, k)] = 1.0;
+/// The factor of a pivot, with no displacement of the components that are held.
+///
+/// In an almost incompressible or slender sub-triangle the pivot is almost singular: products with its inverse would lose twice as many
+/// digits as solutions with its factor.
+#[derive(Clone, Debug)]
+struct Pivot {
+    lower: Matrix4<f64>,
+    free: [bool; 4],
+}
+
+impl Pivot {
+    /// `held` are components at both nodes of the edge.
+    fn new(mut pivot: Matrix4<f64>, held: &[bool]) -> Self {
+        let free = std::array::from_fn(|k| held.get(k % 2).is_none_or(|held| !held));
+        for k in (0..4).filter(|&k| !free[k]) {
+            pivot.row_mut(k).fill(0.0);
+            pivot.column_mut(k).fill(0.0);
+            pivot[(k, k)] = 1.0;
+        }
+        // Forms are definite where the arcs are at rest.
+        match pivot.cholesky() {
+            Some(factor) => Self { lower: factor.unpack(), free },
+            None => Self { lower: Matrix4::identity(), free: [false; 4] },
+        }
     }
-    // Forms are definite where the arcs are at rest.
-    let mut inverse = pivot.cholesky().map_or_else(Matrix4::zeros, |factor| factor.inverse());
-    held.iter().for_each(|&k| inverse[(k, k)] = 0.0);
-    inverse
+
+    /// Solves with the lower factor.
+    fn forward<C: Dim, S: StorageMut<f64, U4, C>>(&self, forces: &mut Matrix<f64, U4, C, S>) {
+        (0..4).filter(|&k| !self.free[k]).for_each(|k| forces.row_mut(k).fill(0.0));
+        self.lower.solve_lower_triangular_unchecked_mut(forces);
+    }
 }

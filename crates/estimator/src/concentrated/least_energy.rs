@@ -194,9 +194,13 @@ fn add_outline(stiffness: &mut DMatrix<f64>, outline: &[Panel], free: &[usize]) 
         for row in springs.iter().map(|&motion| panel.resultants.row(motion).into_owned()) {
             panel.stiffness += row.transpose() * row * (panel.stiffness.trace() / LOADS as f64);
         }
-        let inverse = block(&panel, 2, 2).try_inverse().unwrap_or_default();
-        let moved: SMatrix<f64, 4, 8> = panel.stiffness.fixed_view::<4, 8>(8, 0).into_owned();
-        let own = panel.stiffness.fixed_view::<8, 8>(0, 0) - moved.transpose() * inverse * moved;
+        let mut moved: SMatrix<f64, 4, 8> = panel.stiffness.fixed_view::<4, 8>(8, 0).into_owned();
+        // Definite: the side is free.
+        match block(&panel, 2, 2).cholesky() {
+            Some(factor) => factor.l_dirty().solve_lower_triangular_unchecked_mut(&mut moved),
+            None => moved.fill(0.0),
+        }
+        let own = panel.stiffness.fixed_view::<8, 8>(0, 0) - moved.transpose() * moved;
         let mut view = stiffness.view_mut((8 * k, 8 * k), (8, 8));
         view += own;
     }

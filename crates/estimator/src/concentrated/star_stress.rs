@@ -59,6 +59,18 @@ pub(crate) struct StarResiduals {
     pub(crate) stress: StressResiduals,
 }
 
+/// Rounding that one refinement can balance leaves less, at most 2e-13, and forms that are definite. From 1e-11 on, some energies are
+/// negative.
+const BALANCED: f64 = 1e-12;
+
+impl StarResiduals {
+    /// Whether rounding leaves stresses that balance: the closer ν is to ½, and the more slender elements are, the more digits are lost.
+    pub(crate) fn balanced(&self) -> bool {
+        let StressResiduals { divergence, edges, inner } = self.stress;
+        [self.resultants, divergence, edges, inner].iter().all(|residual| *residual <= BALANCED)
+    }
+}
+
 /// One element of a star.
 pub(crate) struct StarElement<'a, L> {
     /// Its other corners, from the node of the star (m), counterclockwise.

@@ -1,9 +1,12 @@
 //! Admissible fields whatever the mesh, the plane's angle and the body's shape.
 
 use crate::bodies::{aluminium, plane_below, steps, swinging, thrown};
-use crate::estimating::check;
+use crate::estimating::{assert_admissible, check, estimate, history, reactions};
+use percute_core::contact::Obstacle;
+use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, Problem};
+use percute_estimator::Options;
 use percute_testkit::{Random, disc, random_rectangle, rotated};
 
 /// Distance from the plane at the start (m). At 400 m/s it is more than a quarter of any step here,
@@ -54,6 +57,30 @@ fn tilted_blocks() {
     for degrees in [3.0_f64, 10.0, 133.0] {
         let mesh = rotated(&random_rectangle(0.05, 0.04, 6, 3).unwrap(), degrees.to_radians()).unwrap();
         impact(&format!("block tilted by {degrees}°"), mesh, 0.0, 0.2, 71);
+    }
+}
+
+/// Almost incompressible blocks, also of needles, strike the plane flat and with a corner: rounding in the stress of hats is largest.
+#[test]
+fn almost_incompressible_blocks() {
+    for aspect in [1.0, 1e1, 1e2, 1e3, 1e4] {
+        for ratio in [0.3, 0.49, 0.4999, 0.499_99, 0.499_999, 0.499_999_99] {
+            for tilt in [0.0, 0.1_f64] {
+                let mesh = TriangleMesh::rectangle(0.01 * aspect, 0.0075, 4, 3).unwrap();
+                let build = |plane: Option<Obstacle<2>>| {
+                    let builder = Problem::builder(mesh.clone())
+                        .material(Elastic::plane_strain(70e9, ratio, 2700.0, 1.0).unwrap())
+                        .initial_velocity(Initial::Uniform([4.0, -4.0]));
+                    plane.into_iter().fold(builder, percute_core::problem::Builder::obstacle).build().unwrap()
+                };
+                let times = steps(&build(None), 0.9, 60);
+                let gap = 20.0 * times.step(0);
+                let problem = build(Some(plane_below(&mesh, tilt, gap, 0.2, None)));
+                let (what, history) = (format!("{aspect:e}, ν = {ratio}, {tilt}"), history(&problem, &times));
+                assert!(reactions(&history) > 3, "{what}");
+                assert_admissible(&what, &estimate(&problem, &history, Options::default()));
+            }
+        }
     }
 }
 

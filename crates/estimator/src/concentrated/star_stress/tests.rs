@@ -32,6 +32,55 @@ fn every_sub_triangle_is_in_equilibrium() {
     }
 }
 
+/// 1 − 2ν of almost incompressible bodies.
+const COMPRESSIBILITIES: [f64; 5] = [2e-5, 2e-6, 2e-7, 2e-8, 2e-9];
+
+/// Energies of unit hats, with their residuals, in plane strain with this 1 − 2ν.
+fn in_plane_strain(fan: &[[f64; 2]], compressibility: f64) -> StarStress {
+    let law = Elastic::plane_strain(70e9, 0.5 * (1.0 - compressibility), 2700.0, 1.0).unwrap();
+    StarStress::new(&elements(fan, &law), &[0, 1], FREE)
+}
+
+/// An almost incompressible body has the energies of one that is a little more compressible.
+#[test]
+fn incompressible_stars() {
+    let square = vec![[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]];
+    for fan in [square, fan(std::f64::consts::FRAC_PI_2, 1, 0.7), fan(4.7, 5, 0.7)] {
+        let expected = in_plane_strain(&fan, 2e-4).energy;
+        for compressibility in COMPRESSIBILITIES {
+            let made = in_plane_strain(&fan, compressibility);
+            assert!(made.residuals.balanced(), "{compressibility:e}: {:?}", made.residuals);
+            for hat in 0..4 * HATS {
+                // The energy is linear in 1 − 2ν: measured are 1.4e-4.
+                let part = made.energy.at(hat, hat) / expected.at(hat, hat);
+                assert!((part - 1.0).abs() < 2e-4, "{compressibility:e}, {hat}: {part}");
+            }
+        }
+    }
+}
+
+/// The energies of needles are those of a stress, or they do not balance and show it.
+#[test]
+fn needles_balance_or_show() {
+    let mut balanced = 0;
+    for aspect in [1.0, 1e1, 1e2, 1e3, 1e4] {
+        let upper = [[0.0, 1.0], [-aspect, 0.0]];
+        for fan in [vec![[aspect, 0.0], [aspect, 1.0], upper[0], upper[1]], vec![[aspect, 0.0], upper[0]]] {
+            for compressibility in [0.4, 0.02, 2e-4, 2e-6, 2e-8] {
+                let made = in_plane_strain(&fan, compressibility);
+                if made.residuals.balanced() {
+                    balanced += 1;
+                    let form = DMatrix::from_fn(4 * HATS, 4 * HATS, |i, j| 70e9 * made.energy.at(i, j));
+                    let least = form.symmetric_eigenvalues().min();
+                    assert!(least > 0.0, "{aspect:e} {compressibility:e}: {least}");
+                }
+            }
+        }
+    }
+    // Ten of cells as long as wide, eight of cells 10 times as long, four of cells 100 times as long.
+    assert!(balanced >= 22, "{balanced}");
+}
+
 /// Each residual of a star shows a force that is wrong on one side of one sub-triangle: it is in no equilibrium, and no
 /// stress balances it.
 #[test]

@@ -7,7 +7,7 @@
 mod own_forces;
 mod star;
 
-use crate::concentrated::{HatStress, ShapeCosts, StarStress, TractionShape, place};
+use crate::concentrated::{HatStress, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 use crate::stress::StressResiduals;
@@ -45,7 +45,8 @@ impl<const D: usize> Concentration<D> {
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane.
+    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane, or rounding
+    /// spoils the stress of hats.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
@@ -56,7 +57,7 @@ impl<const D: usize> Concentration<D> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
         let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
-        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps).shape(normal))
+        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps)?.shape(normal))
     }
 
     /// Gaps at the far ends of the edges of a node less its own; none where no edge leaves the plane.
@@ -66,17 +67,20 @@ impl<const D: usize> Concentration<D> {
         gaps.iter().any(|gap| *gap > self.tolerance).then_some(gaps)
     }
 
-    /// The cost of shapes under a force with this direction, its normal part 1.
+    /// The cost of shapes under a force with this direction, its normal part 1; none if rounding spoils the stress of hats.
     fn costs<'a, const N: usize>(
         &'a self,
         problem: &Problem<D, N>,
         at: usize,
         direction: &[f64; D],
         gaps: &'a [f64],
-    ) -> ShapeCosts<'a> {
-        let star = &self.nodes[at];
+    ) -> Option<ShapeCosts<'a>> {
+        let (star, stress) = (&self.nodes[at], self.stress(problem, at));
+        if !stress.residuals.balanced() {
+            return None;
+        }
         let direction = star.frame.own([direction[0], direction[D - 1]]);
-        ShapeCosts::new(direction, star.compliance, gaps, &star.tributary, &self.stress(problem, at).energy)
+        Some(ShapeCosts::new(direction, star.compliance, gaps, &star.tributary, &stress.energy))
     }
 
     fn stress<const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> &StarStress {
@@ -188,9 +192,10 @@ impl<const D: usize> Concentration<D> {
         })
     }
 
-    /// Takes in the residuals of all stresses that have been made.
+    /// Takes in the residuals of all stresses that have been made and are in use.
     pub(crate) fn add_residuals(&self, residuals: &mut Residuals) {
-        for made in self.stresses.iter().filter_map(OnceLock::get).map(|stress| stress.residuals) {
+        let made = self.stresses.iter().filter_map(OnceLock::get).map(|stress| stress.residuals);
+        for made in made.filter(StarResiduals::balanced) {
             residuals.hat_resultants = worse(residuals.hat_resultants, made.resultants);
             let StressResiduals { divergence, edges, inner } = made.stress;
             residuals.hat_stress = [divergence, edges, inner].into_iter().fold(residuals.hat_stress, worse);

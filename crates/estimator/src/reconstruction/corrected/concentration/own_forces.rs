@@ -76,7 +76,7 @@ impl<const D: usize> OwnForces<D> {
                 approach,
             };
             let direction = last.map_or(*own.frame.normal(), |last| last.direction);
-            let costs = concentration.costs(problem, at, &direction, &gaps);
+            let Some(costs) = concentration.costs(problem, at, &direction, &gaps) else { continue };
             if last.is_none() && !alone(&costs.shape(if simulated > 0.0 { simulated } else { largest })) {
                 continue;
             }
