@@ -339,6 +339,8 @@ def estimate(
         An argument is wrong.
     EstimateError
         The history cannot be estimated: fewer than two instants, or steps that do not fit the problem.
+    StorageError
+        The temporary file of a long flight cannot be written: no space in the folder ``TMPDIR`` or in ``/var/tmp``.
     """
     stated = instance("history", history, History)._data.options()
     options = (

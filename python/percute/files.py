@@ -88,7 +88,7 @@ def run(
         The case is wrong; the message has the line. Or two of its files and the case are one.
     ExistingFileError, MissingFileError, StorageError
         A file exists already; the case cannot be read, or the files of history and estimate cannot be written. All of them are
-        checked before any work.
+        checked before any work. Or the temporary file of the estimate cannot be written, as for `estimate`.
     SimulationError, EstimateError, KeyboardInterrupt
         As for `simulate` and `estimate`.
     """

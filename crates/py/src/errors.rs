@@ -116,6 +116,7 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
             | EstimateError::Acceleration(_)
             | EstimateError::Request(_),
         ) => input(py, error),
+        RunError::Estimate(EstimateError::Scratch(_)) => exception(py, "StorageError", &error.to_string()),
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),
     }

@@ -10,7 +10,7 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Options, RunError};
+use percute_estimator::{EstimateError, Options, RunError};
 use percute_io::Case;
 use percute_io::history::{HistoryFile, Plan};
 use std::path::Path;
@@ -85,6 +85,8 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     pub fn estimate(&self, analysis: &Analysis, observer: &mut dyn Observer) -> Result<Results<D>, Failure> {
         let source = self.file.source(&self.problem)?;
         run::estimate(&self.problem, &source, analysis, observer).map_err(|failure| match failure {
+            // The history is good.
+            failure @ Failure::Run(RunError::Estimate(EstimateError::Scratch(_))) => failure,
             Failure::Run(RunError::Estimate(cause)) => Failure::History { file: self.file.path().to_path_buf(), cause },
             other => other,
         })

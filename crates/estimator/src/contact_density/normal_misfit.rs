@@ -23,34 +23,25 @@ struct NormalForce<const D: usize> {
 }
 
 impl<const D: usize> NormalForce<D> {
-    /// Those of a density on all facets.
-    fn all<const N: usize>(problem: &Problem<D, N>, densities: &Densities<D>) -> Vec<Self> {
-        let normal = |facet: usize, force: &[f64; D]| {
-            problem.obstacles()[problem.surface().facets()[facet].obstacle].flat_frame().split(force).0
-        };
-        let linear = densities.wide().iter().enumerate().map(|(f, values)| values.map(|force| normal(f, &force)));
-        let mut all: Vec<Self> = linear.map(|linear| Self { linear, hats: Vec::new() }).collect();
-        for hat in densities.hats() {
-            all[hat.facet].hats.push((*hat, normal(hat.facet, &hat.resultant)));
-        }
-        all
-    }
+    const NONE: Self = Self { linear: [0.0; D], hats: Vec::new() };
 
     fn is_zero(&self) -> bool {
         self.linear == [0.0; D] && self.hats.is_empty()
     }
 
-    fn append(&self, numbers: &mut Vec<f64>) {
+    fn append(&self, numbers: &mut Vec<f64>, has_hats: bool) {
         numbers.extend_from_slice(&self.linear);
-        numbers.push(self.hats.len() as f64);
+        if has_hats {
+            numbers.push(self.hats.len() as f64);
+        }
         for (hat, force) in &self.hats {
             hat.append(numbers);
             numbers.push(*force);
         }
     }
 
-    fn read(numbers: &mut Reader<'_>) -> Self {
-        let (linear, hats) = (numbers.take(), numbers.count());
+    fn read(numbers: &mut Reader<'_>, has_hats: bool) -> Self {
+        let (linear, hats) = (numbers.take(), if has_hats { numbers.count() } else { 0 });
         Self { linear, hats: (0..hats).map(|_| (NarrowHat::read(numbers), numbers.number())).collect() }
     }
 
@@ -77,9 +68,66 @@ struct Normal<const D: usize> {
     sudden: NormalForce<D>,
 }
 
-/// Normal forces on each candidate facet at the beginning and the end of one step.
+/// The part of a normal force that is linear on a facet: at the beginning and the end of a step, at the nodes (Pa).
 #[derive(Clone, Debug)]
-pub(crate) struct OffContact<const D: usize>(Vec<[Normal<D>; 2]>);
+struct LinearForce<const D: usize> {
+    facet: usize,
+    ends: [[f64; D]; 2],
+}
+
+/// A hat at the beginning or the end of a step, with its normal force (N).
+#[derive(Clone, Debug)]
+struct HatForce<const D: usize> {
+    end: usize,
+    hat: NarrowHat<D>,
+    force: f64,
+}
+
+/// Normal forces at the beginning and the end of one step, where there are any, in the order of the facets.
+#[derive(Clone, Debug)]
+struct NormalForces<const D: usize> {
+    linear: Vec<LinearForce<D>>,
+    hats: Vec<HatForce<D>>,
+}
+
+impl<const D: usize> NormalForces<D> {
+    const NONE: Self = Self { linear: Vec::new(), hats: Vec::new() };
+
+    /// Those of the densities at both ends of a step.
+    fn new<const N: usize>(problem: &Problem<D, N>, densities: [&Densities<D>; 2]) -> Self {
+        let normal = |facet: usize, force: &[f64; D]| {
+            problem.obstacles()[problem.surface().facets()[facet].obstacle].flat_frame().split(force).0
+        };
+        let linear = (0..problem.surface().facets().len()).filter_map(|facet| {
+            let ends = densities.map(|density| density.wide()[facet].map(|force| normal(facet, &force)));
+            (ends != [[0.0; D]; 2]).then_some(LinearForce { facet, ends })
+        });
+        let mut linear: Vec<_> = linear.collect();
+        linear.shrink_to_fit();
+        let hats = |end: usize| {
+            let hats = densities[end].hats().iter();
+            hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.facet, &hat.resultant) })
+        };
+        Self { linear, hats: hats(0).chain(hats(1)).collect() }
+    }
+
+    /// Those on one facet.
+    fn on(&self, facet: usize) -> [NormalForce<D>; 2] {
+        let linear = self.linear.binary_search_by_key(&facet, |linear| linear.facet);
+        let ends = linear.map_or([[0.0; D]; 2], |at| self.linear[at].ends);
+        let hats = |end: usize| self.hats.iter().filter(move |hat| hat.end == end && hat.hat.facet == facet);
+        [0, 1].map(|k| NormalForce { linear: ends[k], hats: hats(k).map(|hat| (hat.hat, hat.force)).collect() })
+    }
+}
+
+/// Normal forces on the candidate facets at the beginning and the end of one step.
+#[derive(Clone, Debug)]
+pub(crate) struct OffContact<const D: usize> {
+    /// Of the density.
+    acting: NormalForces<D>,
+    /// Of the density that the reactions alone give.
+    sudden: NormalForces<D>,
+}
 
 impl<const D: usize> OffContact<D> {
     /// Those of the densities at both ends of a step, and of those that the reactions alone give.
@@ -88,11 +136,21 @@ impl<const D: usize> OffContact<D> {
         acting: [&Densities<D>; 2],
         sudden: [&Densities<D>; 2],
     ) -> Self {
-        let end = |k: usize| {
-            let (acting, sudden) = (NormalForce::all(problem, acting[k]), NormalForce::all(problem, sudden[k]));
-            acting.into_iter().zip(sudden).map(|(acting, sudden)| Normal { acting, sudden })
-        };
-        Self(end(0).zip(end(1)).map(|(start, end)| [start, end]).collect())
+        Self { acting: NormalForces::new(problem, acting), sudden: NormalForces::new(problem, sudden) }
+    }
+
+    /// Adds a step to those of an interval. Energies are measured at the ends of the interval and in the middle of its first step:
+    /// steps between do not need the acting force.
+    pub(crate) fn add_to(self, steps: &mut Vec<Self>) {
+        if let [_, .., last] = &mut steps[..] {
+            last.acting = NormalForces::NONE;
+        }
+        steps.push(self);
+    }
+
+    /// About how many bytes a step takes while all of so many facets touch.
+    pub(crate) const fn memory(facets: usize) -> usize {
+        size_of::<Self>() + facets * size_of::<LinearForce<D>>()
     }
 }
 
@@ -103,6 +161,7 @@ pub(crate) struct FacetPressures<const D: usize> {
     facet: usize,
     /// First step of the interval.
     first: usize,
+    /// At the beginning and the end of each step; the acting force is that of the first and the last one only.
     steps: Vec<[Normal<D>; 2]>,
 }
 
@@ -128,7 +187,11 @@ impl NormalMisfit {
 impl<const D: usize> FacetPressures<D> {
     /// Those of one facet over consecutive steps.
     pub(crate) fn gather(facet: usize, first: usize, steps: &[OffContact<D>]) -> Self {
-        Self { facet, first, steps: steps.iter().map(|step| step.0[facet].clone()).collect() }
+        let both = |step: &OffContact<D>| {
+            let ([a, b], [c, d]) = (step.acting.on(facet), step.sudden.on(facet));
+            [Normal { acting: a, sudden: c }, Normal { acting: b, sudden: d }]
+        };
+        Self { facet, first, steps: steps.iter().map(both).collect() }
     }
 
     /// Whether there is no force.
@@ -138,18 +201,29 @@ impl<const D: usize> FacetPressures<D> {
 
     /// Appends them to numbers.
     pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
-        numbers.extend([self.facet, self.first, self.steps.len()].map(|count| count as f64));
-        for normal in self.steps.as_flattened() {
-            normal.acting.append(numbers);
-            normal.sudden.append(numbers);
+        let hats = |normal: &Normal<D>| normal.acting.hats.len() + normal.sudden.hats.len();
+        let has_hats = self.steps.as_flattened().iter().any(|normal| hats(normal) > 0);
+        numbers.extend([self.facet, self.first, self.steps.len(), usize::from(has_hats)].map(|count| count as f64));
+        for (k, step) in self.steps.iter().enumerate() {
+            for normal in step {
+                if k == 0 || k + 1 == self.steps.len() {
+                    normal.acting.append(numbers, has_hats);
+                }
+                normal.sudden.append(numbers, has_hats);
+            }
         }
     }
 
     /// Pressures that were appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
-        let [facet, first, steps] = [(); 3].map(|()| numbers.count());
-        let mut end = || Normal { acting: NormalForce::read(numbers), sudden: NormalForce::read(numbers) };
-        Self { facet, first, steps: (0..steps).map(|_| [end(), end()]).collect() }
+        let [facet, first, steps, has_hats] = [(); 4].map(|()| numbers.count());
+        let has_hats = has_hats == 1;
+        let mut end = |k: usize| {
+            let outer = k == 0 || k + 1 == steps;
+            let acting = if outer { NormalForce::read(numbers, has_hats) } else { NormalForce::NONE };
+            Normal { acting, sudden: NormalForce::read(numbers, has_hats) }
+        };
+        Self { facet, first, steps: (0..steps).map(|k| [end(k), end(k)]).collect() }
     }
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step

@@ -247,7 +247,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// contact.
     pub(super) fn next_ready(&mut self) -> Option<ForcesKnown<D>> {
         while let Some(mut level) = self.ready.pop_front() {
-            self.off_contact.append(&mut level.off_contact);
+            level.off_contact.drain(..).for_each(|step| step.add_to(&mut self.off_contact));
             if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
                 return Some(level);

@@ -36,7 +36,7 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
 
 /// Numbers of an interval of several steps without pressures and hats.
 pub(super) const fn shortest<const D: usize, const N: usize>() -> usize {
-    5 + sample::<D, N>()
+    4 + sample::<D, N>()
 }
 
 /// Numbers of a sample.

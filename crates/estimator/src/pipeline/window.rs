@@ -12,13 +12,16 @@ use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
 use super::sampling::Sampling;
 use super::totals::{self, Worked};
+use crate::contact_density::OffContact;
+use crate::difference::Difference;
 use crate::element::Element;
 use crate::estimate::{Estimate, Sample};
 use crate::lanes::{LANES, Lanes};
-use crate::options::{Acceleration, Options};
+use crate::options::{Acceleration, Options, Reconstruction};
 use crate::reconstruction;
 use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
+use crate::sources::Sources;
 use crate::time_level::ForcesKnown;
 use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel};
 use percute_core::problem::Problem;
@@ -34,6 +37,18 @@ const OTHER_LEVELS: usize = 4;
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
     let fields = if options.acceleration(D) == Acceleration::Mixed { 11 } else { 8 };
     size_of::<[f64; D]>() * fields * problem.mesh().node_count()
+}
+
+/// About how much memory (bytes) the steps between samples take, and what is kept of each sample beside the intervals.
+fn bytes_of_auxiliary<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    steps: usize,
+    samples: usize,
+    pending: usize,
+) -> usize {
+    let facets = problem.surface().facets().len();
+    let auxiliary = steps.saturating_mul(size_of::<Difference>()) + 2 * samples * size_of::<Sources>();
+    pending.saturating_mul(OffContact::<D>::memory(facets)).saturating_add(auxiliary)
 }
 
 /// Number of levels worked on at once.
@@ -54,6 +69,11 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let step = size_of::<SampledInterval>() + 2 * size_of::<Sample>() + size_of::<usize>();
     let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
     let steps = times.step_count() / spacing + 1;
+    let auxiliary = if options.reconstruction == Reconstruction::Corrected {
+        bytes_of_auxiliary(problem, times.step_count(), steps, levels * spacing)
+    } else {
+        0
+    };
     levels
         .saturating_mul(bytes_of_level(problem, options))
         .saturating_add(reconstruction::new(problem, times, options).memory())
@@ -61,6 +81,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))
         .saturating_add(near_elements::memory(problem, steps, spacing == 1))
+        .saturating_add(auxiliary)
 }
 
 /// Levels in work, and the sums so far.
