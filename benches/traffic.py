@@ -2,7 +2,8 @@
 
 A pass over the mesh moves each of its arrays once: one that is read counts once, one that is written twice, because a line of the cache is
 read before it is written. In a triangulation a node goes with two elements, three edges too, and three links of stars with each element. What is the
-same for eight levels counts an eighth. Elements around contact nodes are left out.
+same for eight levels counts an eighth. Slopes and measure find the moments in the cache: they follow part by part. Elements around contact nodes
+are left out.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ LEVELS = 8
 Part = tuple[str, float, float]
 """What, bytes per node, bytes per element."""
 
-MOTION: Part = ("u_CA and its rate, now and half a step before", 4 * VECTOR + NUMBER + WRITE * 4 * VECTOR, 0)
+MOTION: Part = ("u_CA and its rate, and the rate half a step before", 4 * VECTOR + NUMBER + WRITE * 3 * VECTOR, 0)
 ACCELERATION: Part = ("ã", WRITE * VECTOR + NUMBER, 0)
-INCREMENT: Part = ("∫ã dt, now and half a step before", 3 * VECTOR + WRITE * 2 * VECTOR, 0)
+INCREMENT: Part = ("∫ã dt", 3 * VECTOR + WRITE * VECTOR, 0)
 LUMPING_INCREMENT: Part = ("the same of the lumping difference", *INCREMENT[1:])
 BALANCED: Part = ("displacement and forces that are balanced", 2 * VECTOR + WRITE * 2 * VECTOR, 0)
 PASS: Part = (
@@ -30,12 +31,12 @@ UNMEASURED: Part = ("copy of the displacement", VECTOR + WRITE * VECTOR, 0)
 DIFFERENCE: Part = ("energies of the differences of the motions", MOTIONS + WRITE * 2 * MOTIONS + 2 * VECTOR + NUMBER, 104 / 2)
 STARS: Part = ("stars: displacement, ã, moments on links, maps", 2 * VECTOR, WRITE * 3 * VECTOR + (88 + 32) / LEVELS)
 MEASURE: Part = (
-    "measure: ã, motion and ∫ã now and half a step before, moments, maps, course of each element",
-    7 * VECTOR,
-    3 * VECTOR + (88 + 12 + WRITE * 200 + 16) / LEVELS,
+    "measure: ã, motion, its rate half a step before, ∫ã, maps, course of each element",
+    5 * VECTOR,
+    (88 + 12 + WRITE * 200 + 16) / LEVELS,
 )
-LUMPING: Part = ("lumping difference and its integrals", 4 * VECTOR, 0)
-SLOPES: Part = ("slopes: displacement, ã, lumping difference, moments, maps", 3 * VECTOR, 3 * VECTOR + WRITE * 3 * NUMBER + (88 + 12 + 16) / LEVELS)
+LUMPING: Part = ("lumping difference, twice, and its integral", 3 * VECTOR, 0)
+SLOPES: Part = ("slopes: displacement, ã, lumping difference, maps", 3 * VECTOR, WRITE * 3 * NUMBER + (88 + 12 + 16) / LEVELS)
 MINIMISATION: Part = (
     "minimisation: slopes, change, coefficients of nodes and edges, matrix",
     WRITE * 3 * NUMBER,

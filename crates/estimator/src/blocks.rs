@@ -4,7 +4,7 @@
 //! threads.
 
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::mesh::Mesh;
+use percute_core::mesh::{Mesh, Strips};
 use std::ops::Range;
 
 /// Elements or stars in a block: small enough for the cache, large enough to be worth a task.
@@ -34,6 +34,36 @@ pub(crate) struct StarBlocks<const N: usize> {
     around: Vec<u32>,
     /// Where the elements of each star begin there.
     first: Vec<u32>,
+}
+
+/// A part of a mesh that goes through the stages of the work together, while its moments are in the cache.
+#[derive(Clone, Debug)]
+pub(crate) struct MeshPart {
+    /// Blocks of stars: with those of the parts before, they hold all nodes of the elements of this part.
+    pub(crate) stars: Range<usize>,
+    /// Blocks of elements.
+    pub(crate) elements: Range<usize>,
+    /// Strips of elements; the blocks lack some of the last elements, which belong to the next part.
+    pub(crate) strips: Range<usize>,
+}
+
+/// Strips of a part: enough for the threads of a processor, few enough for its cache.
+const STRIPS: usize = 4;
+
+/// The parts of a mesh with these strips, in order.
+pub(crate) fn parts<const D: usize, const N: usize>(mesh: &Mesh<D, N>, strips: &Strips) -> Vec<MeshPart> {
+    let all = [mesh.node_count().div_ceil(BLOCK), mesh.element_count().div_ceil(BLOCK)];
+    let ends = |strip: usize| match strip {
+        0 => [0, 0],
+        _ if strip == strips.count() => all,
+        _ => [strips.nodes(strip - 1).end.div_ceil(BLOCK), strips.elements(strip).start / BLOCK],
+    };
+    let part = |first: usize| {
+        let next = (first + STRIPS).min(strips.count());
+        let ([stars, elements], [stars_end, elements_end]) = (ends(first), ends(next));
+        MeshPart { stars: stars..stars_end, elements: elements..elements_end, strips: first..next }
+    };
+    (0..strips.count()).step_by(STRIPS).map(part).collect()
 }
 
 /// The numbers that belong to each block, one block after the other.
@@ -136,11 +166,6 @@ impl<const N: usize> StarBlocks<N> {
             blocks.nodes.close(&mut node_places);
         }
         blocks
-    }
-
-    /// Number of blocks.
-    pub(crate) fn count(&self) -> usize {
-        self.count.div_ceil(BLOCK)
     }
 
     /// The nodes whose stars make up a block.

@@ -52,7 +52,7 @@ impl<const D: usize, const N: usize> Element<D, N> {
     #[inline(always)]
     pub(crate) fn gradient<T: Value>(&self, u: &[[T; D]; N]) -> [[T; D]; D] {
         let inverse = 1.0 / self.volume;
-        let mut gradient = [[T::ZERO; D]; D];
+        let mut gradient = [[u[0][0].zero(); D]; D];
         for i in 1..N {
             for a in 0..D {
                 let difference = (u[i][a] - u[0][a]) * inverse;
@@ -73,7 +73,7 @@ impl<const D: usize, const N: usize> Element<D, N> {
     /// Vσ∇φ_i of node `i`.
     #[inline(always)]
     pub(crate) fn internal_force<T: Value>(&self, i: usize, stress: &[[T; D]; D]) -> [T; D] {
-        let mut force = [T::ZERO; D];
+        let mut force = [stress[0][0].zero(); D];
         for a in 0..D {
             for b in 0..D {
                 force[a] += stress[a][b] * self.gradients[i][b];

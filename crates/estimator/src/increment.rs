@@ -1,7 +1,18 @@
 //! ∫₀ᵗ dt of ã and of the lumping difference, of which u̇_DA is made \[13\].
 
+use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
 use percute_core::ids::NodeId;
+
+/// The integral in the middle of a step of this length (s), from that at its end and the field at its start and its end (m/s²).
+#[inline(always)]
+pub(crate) fn half_way<T: Value, const D: usize>(length: T, last: &[T; D], [start, end]: [&[T; D]; 2]) -> [T; D] {
+    let mut middle = *last;
+    for c in 0..D {
+        middle[c] -= length * (start[c] * 0.125 + end[c] * 0.375);
+    }
+    middle
+}
 
 /// The integral of such a nodal field (m/s).
 #[derive(Clone, Debug)]
@@ -13,17 +24,16 @@ impl<const D: usize> Increment<D> {
         Self(pool.zeros())
     }
 
-    /// In the middle and at the end of a step of this length (s), over which the field goes linearly from `start` to `end` (m/s²).
-    pub(crate) fn advance(&self, length: f64, start: &[[f64; D]], end: &[[f64; D]]) -> [Self; 2] {
-        let [mut middle, mut last] = [self.0.another(), self.0.another()];
+    /// At the end of a step of this length (s), over which the field goes linearly from `start` to `end` (m/s²).
+    pub(crate) fn advance(&self, length: f64, start: &[[f64; D]], end: &[[f64; D]]) -> Self {
+        let mut last = self.0.another();
         let fields = self.0.iter().zip(start.iter().zip(end));
-        for ((middle, last), (w, (x, y))) in middle.iter_mut().zip(last.iter_mut()).zip(fields) {
+        for (last, (w, (x, y))) in last.iter_mut().zip(fields) {
             for c in 0..D {
-                middle[c] = w[c] + length * (0.375 * x[c] + 0.125 * y[c]);
                 last[c] = w[c] + length * (0.5 * x[c] + 0.5 * y[c]);
             }
         }
-        [Self(middle), Self(last)]
+        Self(last)
     }
 
     /// Its values at all nodes.

@@ -131,7 +131,7 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
 /// The mean over the nodes.
 #[inline(always)]
 fn mean<T: Value, const D: usize, const N: usize>(nodal: &[[T; D]; N]) -> [T; D] {
-    let mut mean = [T::ZERO; D];
+    let mut mean = [nodal[0][0].zero(); D];
     for value in nodal {
         for c in 0..D {
             mean[c] += value[c] * (1.0 / N as f64);
@@ -144,7 +144,7 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
     /// Σ of the products with another nodal field.
     #[inline(always)]
     fn work_on<T: Value>(&self, nodal: &[[T; D]; N]) -> T {
-        let mut work = T::ZERO;
+        let mut work = nodal[0][0].zero();
         for i in 0..N {
             for c in 0..D {
                 work += nodal[i][c] * self.field[i][c];
@@ -166,9 +166,10 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.
 #[inline(always)]
 pub(crate) fn mass_product<T: Value, const D: usize, const N: usize>(mass: f64, a: &[[T; D]; N], b: &[[T; D]; N]) -> T {
-    let mut product = T::ZERO;
+    let zero = a[0][0].zero();
+    let mut product = zero;
     for c in 0..D {
-        let (mut sum_a, mut sum_b) = (T::ZERO, T::ZERO);
+        let (mut sum_a, mut sum_b) = (zero, zero);
         for i in 0..N {
             product += a[i][c] * b[i][c];
             sum_a += a[i][c];

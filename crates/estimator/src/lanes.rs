@@ -17,11 +17,19 @@ pub(crate) const LANES: usize = 8;
 pub(crate) struct Lanes(pub(crate) [f64; LANES]);
 
 impl Lanes {
-    /// The numbers of the levels before, that of the first level given.
+    /// 0 at each level.
+    pub(crate) const ZERO: Self = Self([0.0; LANES]);
+
+    /// The number at each level, by its position.
     #[inline(always)]
-    pub(crate) fn later(self, first: f64) -> Self {
-        let [a, b, c, d, e, f, g, _] = self.0;
-        Self([first, a, b, c, d, e, f, g])
+    pub(crate) fn at_levels(number: impl FnMut(usize) -> f64) -> Self {
+        Self(from_fn(number))
+    }
+
+    /// The same number at all levels.
+    #[inline(always)]
+    pub(crate) fn constant(number: f64) -> Self {
+        Self([number; LANES])
     }
 
     /// The numbers of these levels, 0 at the others.
@@ -34,7 +42,6 @@ impl Lanes {
 /// A number at one or more levels.
 pub(crate) trait Value:
     Copy
-    + std::fmt::Debug
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -44,14 +51,23 @@ pub(crate) trait Value:
     + AddAssign
     + SubAssign
 {
-    /// 0 at each level.
-    const ZERO: Self;
+    /// Its form in memory.
+    type Stored: Copy;
 
-    /// The number at each level, by its position.
-    fn at_levels(number: impl FnMut(usize) -> f64) -> Self;
+    /// The number in memory, in the form of this one.
+    fn load(self, stored: &Self::Stored) -> Self;
 
-    /// The same number at all levels.
-    fn constant(number: f64) -> Self;
+    /// To memory.
+    fn store(self) -> Self::Stored;
+
+    /// The same number at all levels, in the form of this one.
+    fn fill(self, number: f64) -> Self;
+
+    /// 0 at all levels, in the form of this one.
+    #[inline(always)]
+    fn zero(self) -> Self {
+        self.fill(0.0)
+    }
 
     /// Absolute values.
     fn abs(self) -> Self;
@@ -64,15 +80,20 @@ pub(crate) trait Value:
 }
 
 impl Value for f64 {
-    const ZERO: Self = 0.0;
+    type Stored = Self;
 
     #[inline(always)]
-    fn at_levels(mut number: impl FnMut(usize) -> f64) -> Self {
-        number(0)
+    fn load(self, stored: &Self) -> Self {
+        *stored
     }
 
     #[inline(always)]
-    fn constant(number: f64) -> Self {
+    fn store(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn fill(self, number: f64) -> Self {
         number
     }
 
@@ -94,16 +115,21 @@ impl Value for f64 {
 }
 
 impl Value for Lanes {
-    const ZERO: Self = Self([0.0; LANES]);
+    type Stored = Self;
 
     #[inline(always)]
-    fn at_levels(number: impl FnMut(usize) -> f64) -> Self {
-        Self(from_fn(number))
+    fn load(self, stored: &Self) -> Self {
+        *stored
     }
 
     #[inline(always)]
-    fn constant(number: f64) -> Self {
-        Self([number; LANES])
+    fn store(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn fill(self, number: f64) -> Self {
+        Self::constant(number)
     }
 
     #[inline(always)]
@@ -174,63 +200,22 @@ impl SubAssign for Lanes {
     }
 }
 
-/// Takes the values of a nodal field at these nodes into their records, at each level that has the field; at the others, any values.
+/// A vector in memory, in the form of a number.
 #[inline(always)]
-pub(crate) fn gather<'f, R, const D: usize>(
-    records: &mut [R],
-    nodes: &[u32],
-    levels: impl Iterator<Item = Option<&'f [[f64; D]]>> + Clone,
-    place: impl Fn(&mut R) -> &mut [Lanes; D],
-) {
-    let Some(some) = levels.clone().flatten().next() else { return };
-    let mut fields = [some; LANES];
-    for (to, level) in fields.iter_mut().zip(levels) {
-        // All of one length: the first check is then that of all.
-        *to = &level.unwrap_or(some)[..some.len()];
+pub(crate) fn load<T: Value, const D: usize>(like: T, stored: &[T::Stored; D]) -> [T; D] {
+    let mut vector = [like; D];
+    for c in 0..D {
+        vector[c] = like.load(&stored[c]);
     }
-    let [a, b, c, d, e, f, g, h] = fields;
-    for (to, &node) in records.iter_mut().zip(nodes) {
-        let n = node as usize;
-        let (a, b, c, d) = (&a[n], &b[n], &c[n], &d[n]);
-        let (e, f, g, h) = (&e[n], &f[n], &g[n], &h[n]);
-        let to = place(to);
-        for k in 0..D {
-            to[k] = Lanes([a[k], b[k], c[k], d[k], e[k], f[k], g[k], h[k]]);
-        }
-    }
+    vector
 }
 
-/// A nodal field at some nodes, at some levels side by side.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FieldLanes<const D: usize>(Vec<[Lanes; D]>);
-
-impl<const D: usize> FieldLanes<D> {
-    /// Takes the values at these nodes, at each level that has the field; at the others, any values.
-    #[inline(always)]
-    pub(crate) fn gather<'f>(&mut self, nodes: &[u32], levels: impl Iterator<Item = Option<&'f [[f64; D]]>> + Clone) {
-        self.0.resize(nodes.len(), [Lanes::ZERO; D]);
-        gather(
-            &mut self.0,
-            nodes,
-            levels,
-            #[inline(always)]
-            |values| values,
-        );
+/// A vector to memory.
+#[inline(always)]
+pub(crate) fn store<T: Value<Stored = Lanes>, const D: usize>(vector: &[T; D]) -> [Lanes; D] {
+    let mut stored = [Lanes::ZERO; D];
+    for c in 0..D {
+        stored[c] = vector[c].store();
     }
-
-    /// The values by places.
-    #[inline(always)]
-    pub(crate) fn values(&self) -> &[[Lanes; D]] {
-        &self.0
-    }
-
-    /// The values at the nodes of an element, which have these places.
-    #[inline(always)]
-    pub(crate) fn of<const N: usize>(&self, local: &[u32; N]) -> [[Lanes; D]; N] {
-        let mut values = [[Lanes::ZERO; D]; N];
-        for i in 0..N {
-            values[i] = self.0[local[i] as usize];
-        }
-        values
-    }
+    stored
 }

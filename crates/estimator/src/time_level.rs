@@ -52,13 +52,13 @@ pub(crate) struct MotionKnown<const D: usize> {
     pub(crate) level: TimeLevel<D>,
     /// At t_n.
     pub(crate) now: NodalMotion<D>,
-    /// At t_{n−½}.
-    pub(crate) mid: Option<NodalMotion<D>>,
+    /// u̇_CA at t_{n−½} (m/s).
+    pub(crate) mid_velocity: Option<NodalField<D>>,
     /// All nodal forces but those of contact (N): external, internal, of supports.
     pub(crate) force: NodalField<D>,
 }
 
-/// Motion and ∫ã dt at one half-step instant.
+/// Motion and ∫ã dt at an instant.
 #[derive(Clone, Debug)]
 pub(crate) struct Velocities<const D: usize> {
     pub(crate) motion: NodalMotion<D>,
@@ -81,7 +81,8 @@ pub(crate) struct ForcesBefore<const D: usize> {
 pub(crate) struct ForcesKnown<const D: usize> {
     pub(crate) level: TimeLevel<D>,
     pub(crate) now: Velocities<D>,
-    pub(crate) mid: Option<Velocities<D>>,
+    /// u̇_CA at t_{n−½} (m/s); the other fields there follow from those at t_n and at the level before.
+    pub(crate) mid_velocity: Option<NodalField<D>>,
     /// ã after t_n (m/s²).
     pub(crate) acceleration: NodalField<D>,
     /// The contact density after t_n.

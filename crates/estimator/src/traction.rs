@@ -8,21 +8,30 @@
 
 mod equilibrated;
 mod mass_term;
+mod solve;
 mod star_solver;
 
-use crate::blocks::{ElementBlocks, StarBlocks};
+use crate::blocks::{ElementBlocks, MeshPart, StarBlocks, parts};
 use crate::contact_density::Densities;
 use crate::element::Element;
 use crate::lanes::Value;
 use crate::loaded::LoadedFacets;
+use crate::pool::Pool;
 use crate::time_level::{ForcesKnown, TimeLevel};
 pub(crate) use equilibrated::{EquilibratedLevel, EquilibratedLevels, KeptLevel};
 use mass_term::MassTerm;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::material::Law;
-use percute_core::mesh::Star;
+use percute_core::mesh::{Star, Strips};
 use percute_core::problem::Problem;
+use solve::StarFields;
 use star_solver::{Compatibility, Ends};
+
+/// Work on the elements of a part of the mesh, of which the tractions are final.
+pub(crate) type Then<'t, const D: usize> = &'t mut dyn FnMut(&EquilibratedLevels<D>, &MeshPart);
+
+/// Elements of a strip, at least.
+const STRIP: usize = 2048;
 
 /// Facet without prescribed moments.
 const FREE: u32 = u32::MAX;
@@ -37,6 +46,9 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     pub(crate) elements: Vec<Element<D, N>>,
     pub(crate) blocks: ElementBlocks<N>,
     star_blocks: StarBlocks<N>,
+    pub(crate) strips: Strips,
+    parts: Vec<MeshPart>,
+    star_fields: Pool<StarFields<D>>,
     /// For each facet, its place among the loaded facets, then the candidate facets of contact.
     slots: Vec<u32>,
     /// For each local node, the facets by which its star enters and leaves an element.
@@ -63,7 +75,27 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
         let crossing = problem.mesh().simplex().facets_around();
         let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
-        Self { problem, elements, blocks, star_blocks, slots, crossing, loaded, contact_links }
+        let strips = Strips::with_fewest(problem.mesh().cells(), STRIP);
+        let parts = parts(problem.mesh(), &strips);
+        let star_fields = Pool::new();
+        Self {
+            problem,
+            elements,
+            blocks,
+            star_blocks,
+            strips,
+            parts,
+            star_fields,
+            slots,
+            crossing,
+            loaded,
+            contact_links,
+        }
+    }
+
+    /// The parts that go through the work one after the other.
+    pub(crate) fn parts(&self) -> &[MeshPart] {
+        &self.parts
     }
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.
@@ -89,13 +121,19 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         self.slots[facet.index()] != FREE
     }
 
-    /// The known moments of the first and the last link of a star.
+    /// The known moments of the first and the last link of a star, in the form of a number.
     #[inline(always)]
-    fn ends<T: Value>(&self, star: &Star<'_>, known: impl Fn(FacetId) -> [T; D]) -> Ends<D, T> {
+    fn ends<T: Value>(&self, like: T, star: &Star<'_>, known: impl Fn(FacetId) -> [T; D]) -> Ends<D, T> {
         let closed = star.is_closed();
         let links = [star.links[0], star.links[star.elements.len()]].map(|link| link.filter(|_| !closed));
         let supported = |link: Option<FacetId>| link.map_or([false; D], |f| self.problem.supported(f));
-        Ends { closed, moments: links.map(|link| link.map_or([T::ZERO; D], &known)), supported: links.map(supported) }
+        let mut moments = [[like.zero(); D]; 2];
+        for (moment, link) in moments.iter_mut().zip(links) {
+            if let Some(link) = link {
+                *moment = known(link);
+            }
+        }
+        Ends { closed, moments, supported: links.map(supported) }
     }
 
     /// The local number of a node in an element.

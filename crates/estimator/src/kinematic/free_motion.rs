@@ -1,6 +1,7 @@
 //! Nodal motion between contacts: velocity continuous and linear between the half-step instants,
 //! displacement its exact integral.
 
+use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
 use percute_core::history::State;
 use percute_core::problem::Problem;
@@ -48,26 +49,26 @@ impl<const D: usize> FreeMotion<D> {
         Self { now: NodalMotion { displacement, velocity }, pool: pool.clone() }
     }
 
-    /// Advances over the half steps to t_{n−½} and t_n, and returns the motion at both; at n = 0 there is no half step and
-    /// the initial conditions are returned.
+    /// Advances over the half steps to t_{n−½} and t_n, and returns the velocity at the first (m/s) and the motion at the
+    /// second; at n = 0 there is no half step and the initial conditions are returned.
     pub(crate) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
         state: &State<'_, D>,
-    ) -> (Option<NodalMotion<D>>, NodalMotion<D>) {
+    ) -> (Option<NodalField<D>>, NodalMotion<D>) {
         let n = state.step().index;
         if n == 0 {
             return (None, self.now.clone());
         }
         let (u, v) = (self.now.displacement(), self.now.velocity());
         let quarter = 0.25 * times.step(n - 1);
-        let [mut u_mid, mut v_mid, mut u_now, mut v_now] = [(); 4].map(|()| self.pool.take());
+        let [mut v_mid, mut u_now, mut v_now] = [(); 3].map(|()| self.pool.take());
         // Velocity is linear over each half step, displacement its exact integral.
         let mut node = |i: usize, mid: [f64; D], now: [f64; D]| {
             for c in 0..D {
-                u_mid[i][c] = u[i][c] + quarter * (v[i][c] + mid[c]);
-                u_now[i][c] = u_mid[i][c] + quarter * (mid[c] + now[c]);
+                let half_way = u[i][c] + quarter * (v[i][c] + mid[c]);
+                u_now[i][c] = half_way + quarter * (mid[c] + now[c]);
             }
             (v_mid[i], v_now[i]) = (mid, now);
         };
@@ -83,9 +84,21 @@ impl<const D: usize> FreeMotion<D> {
             }
             node(i, mid, now);
         }
-        let motion =
-            |displacement, velocity| NodalMotion { displacement: Arc::new(displacement), velocity: Arc::new(velocity) };
-        self.now = motion(u_now, v_now);
-        (Some(motion(u_mid, v_mid)), self.now.clone())
+        self.now = NodalMotion { displacement: Arc::new(u_now), velocity: Arc::new(v_now) };
+        (Some(v_mid), self.now.clone())
     }
+}
+
+/// u_CA in the middle of a step of this length (s), from that at its end and the velocities in the middle and at the end.
+#[inline(always)]
+pub(super) fn half_way<T: Value, const D: usize>(
+    length: T,
+    end: &[T; D],
+    [mid_velocity, end_velocity]: [&[T; D]; 2],
+) -> [T; D] {
+    let (mut displacement, quarter) = (*end, length * 0.25);
+    for c in 0..D {
+        displacement[c] -= quarter * (mid_velocity[c] + end_velocity[c]);
+    }
+    displacement
 }

@@ -16,10 +16,14 @@ mod window;
 
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use contact_tracks::ContactTracks;
+use free_motion::half_way;
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
-use crate::lanes::{Lanes, Value, gather};
+use crate::field_lanes::gather;
+use crate::lanes::{Lanes, Value, load, store};
 use crate::numbers::Reader;
+use crate::simd::Registers;
+use crate::wide::Wide;
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 
@@ -64,6 +68,18 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     }
 }
 
+impl<const D: usize, const N: usize, T: Value> ElementMotion<D, N, T> {
+    /// The motion in the middle of the step of this length (s) that ends with this one, from the velocities in the middle (m/s).
+    #[inline(always)]
+    pub(crate) fn half_way(&self, length: T, velocity: [[T; D]; N]) -> Self {
+        let mut displacement = self.displacement;
+        for i in 0..N {
+            displacement[i] = half_way(length, &displacement[i], [&velocity[i], &self.velocity[i]]);
+        }
+        Self { displacement, velocity }
+    }
+}
+
 impl<const D: usize, const N: usize, T> ElementMotion<D, N, T> {
     #[inline(always)]
     pub(crate) fn displacement(&self) -> &[[T; D]; N] {
@@ -88,13 +104,15 @@ impl<const D: usize> MotionLanes<D> {
 
     /// Takes the motion of these nodes into their records.
     #[inline(always)]
-    pub(crate) fn gather<'m, R>(
-        records: &mut [R],
+    pub(crate) fn gather<'m, R: Registers, P>(
+        like: Wide<R>,
+        records: &mut [P],
         nodes: &[u32],
         motions: impl Iterator<Item = Option<&'m NodalMotion<D>>> + Clone,
-        place: impl Fn(&mut R) -> &mut Self,
+        place: impl Fn(&mut P) -> &mut Self,
     ) {
         gather(
+            like,
             records,
             nodes,
             motions.clone().map(|motion| motion.map(NodalMotion::displacement)),
@@ -102,6 +120,7 @@ impl<const D: usize> MotionLanes<D> {
             |record| &mut place(record).displacement,
         );
         gather(
+            like,
             records,
             nodes,
             motions.map(|motion| motion.map(NodalMotion::velocity)),
@@ -109,16 +128,43 @@ impl<const D: usize> MotionLanes<D> {
             |record| &mut place(record).velocity,
         );
     }
+
+    /// Takes the velocities of these nodes in the middle of steps into their records.
+    #[inline(always)]
+    pub(crate) fn gather_velocity<'m, R: Registers, P>(
+        like: Wide<R>,
+        records: &mut [P],
+        nodes: &[u32],
+        velocities: impl Iterator<Item = Option<&'m [[f64; D]]>> + Clone,
+        place: impl Fn(&mut P) -> &mut Self,
+    ) {
+        gather(
+            like,
+            records,
+            nodes,
+            velocities,
+            #[inline(always)]
+            |record| &mut place(record).velocity,
+        );
+    }
+
+    /// Completes the motion in the middle of steps of these lengths (s), of which the velocity is known, from that at their ends.
+    #[inline(always)]
+    pub(crate) fn complete_half_way<T: Value<Stored = Lanes>>(&mut self, length: T, end: &Self) {
+        let [mid, now] = [load(length, &self.velocity), load(length, &end.velocity)];
+        let displacement = half_way(length, &load(length, &end.displacement), [&mid, &now]);
+        self.displacement = store(&displacement);
+    }
 }
 
-impl<const D: usize, const N: usize> ElementMotion<D, N, Lanes> {
-    /// The motion of an element without contact node, from that of its nodes.
+impl<const D: usize, const N: usize, T: Value<Stored = Lanes>> ElementMotion<D, N, T> {
+    /// The motion of an element without contact node, from that of its nodes, in the form of a number.
     #[inline(always)]
-    pub(crate) fn of_nodes(nodes: [&MotionLanes<D>; N]) -> Self {
-        let mut motion = Self { displacement: [[Lanes::ZERO; D]; N], velocity: [[Lanes::ZERO; D]; N] };
+    pub(crate) fn of_nodes(like: T, nodes: [&MotionLanes<D>; N]) -> Self {
+        let mut motion = Self { displacement: [[like; D]; N], velocity: [[like; D]; N] };
         for i in 0..N {
-            motion.displacement[i] = nodes[i].displacement;
-            motion.velocity[i] = nodes[i].velocity;
+            motion.displacement[i] = load(like, &nodes[i].displacement);
+            motion.velocity[i] = load(like, &nodes[i].velocity);
         }
         motion
     }

@@ -12,7 +12,7 @@ pub(crate) struct AdmissibleStress<const D: usize, const N: usize, T = f64> {
 
 impl<const D: usize, const N: usize> Default for AdmissibleStress<D, N> {
     fn default() -> Self {
-        Self { mean: [[0.0; D]; D], fluctuation: Fluctuation::zero() }
+        Self { mean: [[0.0; D]; D], fluctuation: Fluctuation::filled(0.0) }
     }
 }
 
@@ -20,7 +20,12 @@ impl<const D: usize, const N: usize, T: Value> AdmissibleStress<D, N, T> {
     /// Half way between two instants, \[57\]–\[58\].
     #[inline(always)]
     pub(crate) fn middle(a: &Self, b: &Self) -> Self {
-        Self::combine(a, b, |x, y| (x + y) * 0.5)
+        Self::combine(
+            a,
+            b,
+            #[inline(always)]
+            |x, y| (x + y) * 0.5,
+        )
     }
 
     /// The stress that `number` makes of two.
@@ -30,7 +35,7 @@ impl<const D: usize, const N: usize, T: Value> AdmissibleStress<D, N, T> {
         b: &AdmissibleStress<D, N, B>,
         number: impl Fn(A, B) -> T,
     ) -> Self {
-        let mut mean = [[T::ZERO; D]; D];
+        let mut mean = [[number(a.mean[0][0], b.mean[0][0]); D]; D];
         for i in 0..D {
             for j in 0..D {
                 mean[i][j] = number(a.mean[i][j], b.mean[i][j]);

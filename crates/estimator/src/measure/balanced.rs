@@ -40,7 +40,12 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
     /// Half way between two instants, \[57\]–\[58\].
     #[inline(always)]
     pub(crate) fn middle(a: &Self, b: &Self) -> Self {
-        Self::combine(a, b, |x, y| (x + y) * 0.5)
+        Self::combine(
+            a,
+            b,
+            #[inline(always)]
+            |x, y| (x + y) * 0.5,
+        )
     }
 
     /// The fields that `number` makes of those of two.
@@ -50,9 +55,9 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
         b: &Balanced<D, N, B>,
         number: impl Fn(A, B) -> T,
     ) -> Self {
-        let zero = NodalForce { outer: [T::ZERO; D], inner: [T::ZERO; D] };
-        let mut forces = [zero; N];
-        let mut loading = Loading { traction: [[[T::ZERO; D]; D]; N], volume: [[T::ZERO; D]; N] };
+        let terms = number(a.terms, b.terms);
+        let mut forces = [NodalForce { outer: [terms; D], inner: [terms; D] }; N];
+        let mut loading = Loading { traction: [[[terms; D]; D]; N], volume: [[terms; D]; N] };
         for k in 0..N {
             for c in 0..D {
                 for p in 0..D {
@@ -63,7 +68,7 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
                 forces[k].inner[c] = number(a.forces[k].inner[c], b.forces[k].inner[c]);
             }
         }
-        Self { loading, terms: number(a.terms, b.terms), forces }
+        Self { loading, terms, forces }
     }
 }
 /// Outward moments of each facet at its nodes, from those by which the star of each node enters and leaves the element:
@@ -72,7 +77,8 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
 pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
     around: impl Fn(usize) -> [[T; D]; 2],
 ) -> [[[T; D]; D]; N] {
-    let mut moments = [[[T::ZERO; D]; D]; N];
+    let [entry, _] = around(0);
+    let mut moments = [[entry; D]; N];
     for k in 0..N {
         for p in 0..D {
             let [entry, exit] = around(facet_node::<N>(k, p));

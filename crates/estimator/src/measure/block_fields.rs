@@ -2,8 +2,11 @@
 
 use super::balanced::{NodalBalance, outward};
 use crate::element::Element;
-use crate::lanes::{Lanes, Value, gather};
+use crate::field_lanes::gather;
+use crate::lanes::{Lanes, Value, load};
+use crate::simd::Registers;
 use crate::traction::EquilibratedLevels;
+use crate::wide::Wide;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
@@ -32,8 +35,9 @@ pub(crate) struct BalanceFields<const D: usize> {
 impl<const D: usize> BalanceFields<D> {
     /// Takes the fields of these nodes.
     #[inline(always)]
-    pub(crate) fn gather<const N: usize>(
+    pub(crate) fn gather<R: Registers, const N: usize>(
         &mut self,
+        like: Wide<R>,
         problem: &Problem<D, N>,
         nodes: &[u32],
         levels: &EquilibratedLevels<D>,
@@ -50,6 +54,7 @@ impl<const D: usize> BalanceFields<D> {
             record.start = problem.initial_velocity()[node as usize];
         }
         gather(
+            like,
             &mut self.nodes,
             nodes,
             forces.iter().map(|f| Some(&f.acceleration[..])),
@@ -58,6 +63,7 @@ impl<const D: usize> BalanceFields<D> {
         );
         if self.mixed {
             gather(
+                like,
                 &mut self.nodes,
                 nodes,
                 forces.iter().map(|f| f.level.lumping_difference.as_deref()),
@@ -69,14 +75,29 @@ impl<const D: usize> BalanceFields<D> {
 
     /// Takes the displacements that are equilibrated too.
     #[inline(always)]
-    pub(crate) fn gather_displacement(&mut self, nodes: &[u32], levels: &EquilibratedLevels<D>) {
+    pub(crate) fn gather_displacement<R: Registers>(
+        &mut self,
+        like: Wide<R>,
+        nodes: &[u32],
+        levels: &EquilibratedLevels<D>,
+    ) {
         gather(
+            like,
             &mut self.nodes,
             nodes,
             levels.forces().iter().map(|f| Some(&f.level.displacement[..])),
             #[inline(always)]
             |node| &mut node.displacement,
         );
+    }
+
+    /// ã and the lumping difference at the nodes, by their places (m/s²).
+    #[inline(always)]
+    pub(crate) fn accelerations(&self) -> impl Iterator<Item = [&[Lanes; D]; 2]> {
+        self.nodes.iter().map(
+            #[inline(always)]
+            |node| [&node.acceleration, &node.lumping_difference],
+        )
     }
 
     /// Whether there is a lumping difference.
@@ -108,27 +129,30 @@ impl<const D: usize> BalanceFields<D> {
         }
     }
 
-    /// The fields of an element without contact node: the k-th whose moments were taken.
+    /// The fields of an element without contact node, the k-th whose moments were taken, in the form of a number.
     #[inline(always)]
-    pub(crate) fn nodal_balance<const N: usize>(
+    pub(crate) fn nodal_balance<T: Value<Stored = Lanes>, const N: usize>(
         &self,
+        like: T,
         k: usize,
         levels: &EquilibratedLevels<D>,
         id: ElementId,
         nodes: &[&BalanceNode<D>; N],
-    ) -> NodalBalance<D, N, Lanes> {
+    ) -> NodalBalance<D, N, T> {
         let own = &self.moments[N * k..][..N];
-        let around = |i: usize| own[i];
-        let (mut acceleration, mut lumping_difference) = ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N]);
+        let (mut acceleration, mut lumping_difference) = ([[like; D]; N], [[like; D]; N]);
         for i in 0..N {
-            acceleration[i] = nodes[i].acceleration;
-            lumping_difference[i] = nodes[i].lumping_difference;
+            acceleration[i] = load(like, &nodes[i].acceleration);
+            lumping_difference[i] = load(like, &nodes[i].lumping_difference);
         }
         NodalBalance {
-            moments: outward(around),
+            moments: outward(
+                #[inline(always)]
+                |i| [load(like, &own[i][0]), load(like, &own[i][1])],
+            ),
             acceleration,
             lumping_difference: self.mixed.then_some(lumping_difference),
-            body_force: if self.has_body_force { levels.body_force(id) } else { [Lanes::ZERO; D] },
+            body_force: if self.has_body_force { load(like, &levels.body_force(id)) } else { [like.zero(); D] },
         }
     }
 }
@@ -144,12 +168,12 @@ impl<const D: usize> BalanceNode<D> {
         points
     }
 
-    /// The displacements of the nodes of an element that are equilibrated (m).
+    /// The displacements of the nodes of an element that are equilibrated (m), in the form of a number.
     #[inline(always)]
-    pub(crate) fn displacements<const N: usize>(nodes: &[&Self; N]) -> [[Lanes; D]; N] {
-        let mut displacements = [[Lanes::ZERO; D]; N];
+    pub(crate) fn displacements<T: Value<Stored = Lanes>, const N: usize>(like: T, nodes: &[&Self; N]) -> [[T; D]; N] {
+        let mut displacements = [[like; D]; N];
         for i in 0..N {
-            displacements[i] = nodes[i].displacement;
+            displacements[i] = load(like, &nodes[i].displacement);
         }
         displacements
     }

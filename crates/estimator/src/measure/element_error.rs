@@ -11,6 +11,12 @@ pub(crate) struct ElementError<T = f64> {
 }
 
 impl<T: Value> ElementError<T> {
+    /// The same number in all parts.
+    #[inline(always)]
+    pub(crate) fn filled(number: T) -> Self {
+        Self { kinetic: number, elastic: number, reference: number }
+    }
+
     #[inline(always)]
     pub(crate) fn total(&self) -> T {
         self.kinetic + self.elastic
@@ -24,25 +30,28 @@ impl<T: Value> ElementError<T> {
     }
 }
 
-impl ElementError<Lanes> {
-    /// No error.
+impl<T: Value<Stored = Lanes>> ElementError<T> {
+    /// To memory.
     #[inline(always)]
-    pub(crate) fn zero() -> Self {
-        Self { kinetic: Lanes::ZERO, elastic: Lanes::ZERO, reference: Lanes::ZERO }
-    }
-
-    /// At one level.
-    #[inline(always)]
-    pub(crate) fn lane(&self, lane: usize) -> ElementError {
-        let Self { kinetic, elastic, reference } = self;
-        ElementError { kinetic: kinetic.0[lane], elastic: elastic.0[lane], reference: reference.0[lane] }
+    pub(crate) fn store(&self) -> ElementError<Lanes> {
+        let Self { kinetic, elastic, reference } = *self;
+        ElementError { kinetic: kinetic.store(), elastic: elastic.store(), reference: reference.store() }
     }
 
     /// At these levels, 0 at the others.
     #[inline(always)]
     pub(crate) fn only(&self, wanted: &[bool; LANES]) -> Self {
-        let Self { kinetic, elastic, reference } = self;
+        let (like, ElementError { kinetic, elastic, reference }) = (self.kinetic, self.store());
         let [kinetic, elastic, reference] = [kinetic, elastic, reference].map(|number| number.only(wanted));
-        Self { kinetic, elastic, reference }
+        Self { kinetic: like.load(&kinetic), elastic: like.load(&elastic), reference: like.load(&reference) }
+    }
+}
+
+impl ElementError<Lanes> {
+    /// At one level.
+    #[inline(always)]
+    pub(crate) fn lane(&self, lane: usize) -> ElementError {
+        let Self { kinetic, elastic, reference } = self;
+        ElementError { kinetic: kinetic.0[lane], elastic: elastic.0[lane], reference: reference.0[lane] }
     }
 }

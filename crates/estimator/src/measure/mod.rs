@@ -4,6 +4,7 @@ mod admissible_stress;
 mod balanced;
 mod block_fields;
 mod element_error;
+mod equilibrium;
 
 use crate::concentrated::HatStress;
 use crate::element::Element;
@@ -11,7 +12,6 @@ use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::lanes::Value;
 use crate::options::Acceleration;
-use crate::residual::{Residuals, worse};
 use crate::stress::{EnergyForm, Loading, StressMap, facet_node, hooke};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
@@ -134,7 +134,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn balanced<T: Value>(&self, fields: &NodalBalance<D, N, T>) -> Balanced<D, N, T> {
         let NodalBalance { moments, acceleration, lumping_difference, body_force } = fields;
         let density = self.law.density();
-        let mut terms = T::ZERO;
+        let mut terms = acceleration[0][0].zero();
         for a in acceleration.as_flattened() {
             terms = terms.max(a.abs() * density);
         }
@@ -176,7 +176,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         form: &EnergyForm<'_>,
         balanced: &Balanced<D, N, T>,
     ) -> AdmissibleStress<D, N, T> {
-        let mut mean = [[T::ZERO; D]; D];
+        let mut mean = [[balanced.terms.zero(); D]; D];
         let factor = 0.5 * self.law.extent() / self.element.volume;
         for (force, arm) in balanced.forces.iter().zip(&self.arms) {
             for a in 0..D {
@@ -218,10 +218,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         beside: T,
     ) -> ElementError<T> {
         let mass = N as f64 * self.element.nodal_mass;
-        let (mut dynamic, mut misfit) = (*increment, [[T::ZERO; D]; N]);
+        let (mut dynamic, mut misfit) = (*increment, *increment);
         for i in 0..N {
             for c in 0..D {
-                dynamic[i][c] += T::constant(self.start[i][c]);
+                dynamic[i][c] += beside.fill(self.start[i][c]);
                 misfit[i][c] = dynamic[i][c] - motion.velocity()[i][c];
             }
         }
@@ -230,7 +230,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         // σ_CA is constant.
         let gradient = self.element.gradient(motion.displacement());
         let mut mean = hooke(self.law, &gradient);
-        let mut work = T::ZERO;
+        let mut work = beside.zero();
         for a in 0..D {
             for b in 0..D {
                 work += admissible[a][b] * gradient[a][b];
@@ -248,7 +248,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     #[inline(always)]
     pub(crate) fn strain<T: Value>(&self, stress: &[[T; D]; D]) -> [[T; D]; D] {
         let (alpha, beta) = self.law.compliance::<D>();
-        let (mut strain, mut trace) = (*stress, T::ZERO);
+        let (mut strain, mut trace) = (*stress, stress[0][0].zero());
         for a in 0..D {
             trace += stress[a][a];
             for b in 0..D {
@@ -295,10 +295,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// |e|F̂ at the nodes of each facet, from its outward moments there.
     #[inline(always)]
     pub(crate) fn tractions<T: Value>(&self, moments: &[[[T; D]; D]; N]) -> [[[T; D]; D]; N] {
-        let mut traction = [[[T::ZERO; D]; D]; N];
+        let mut traction = *moments;
         for k in 0..N {
             for c in 0..D {
-                let mut sum = T::ZERO;
+                let mut sum = moments[0][0][0].zero();
                 for b in &moments[k] {
                     sum += b[c];
                 }
@@ -337,70 +337,21 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         (self.stress_map().mean(&self.balanced(&fields).loading), acceleration)
     }
 
-    /// Residuals of the pointwise equilibrium of σ_DA; `scale` is the largest nodal force in the
-    /// mesh (N).
-    pub(crate) fn check_stress(&self, balanced: &Balanced<D, N>, scale: f64, residuals: &mut Residuals) {
-        let stress = self.stress_map().residuals(&balanced.loading, self.floor(balanced, scale));
-        residuals.divergence = worse(residuals.divergence, stress.divergence);
-        residuals.edge_tractions = worse(residuals.edge_tractions, stress.edges);
-        residuals.inner_tractions = worse(residuals.inner_tractions, stress.inner);
-    }
-
-    /// The smallest force that counts, per unit of section or thickness: 1e-12 of the largest in
-    /// the mesh, or the force of f_d or of the lumped inertia at a node.
-    #[inline(always)]
-    fn floor<T: Value>(&self, balanced: &Balanced<D, N, T>, scale: T) -> T {
-        (scale * 1e-12).max(balanced.terms * (self.element.volume / N as f64)) * (1.0 / self.law.extent())
-    }
-
-    /// Residual of the balance of the element as a whole: resultant of tractions less Γ_DA − f_d, and their moments about the
-    /// centroid, one in each coordinate plane.
-    #[inline(always)]
-    pub(crate) fn resultant_residual<T: Value>(&self, balanced: &Balanced<D, N, T>, scale: T) -> T {
-        let floor = self.floor(balanced, scale);
-        let (mut resultant, mut moments) = ([T::ZERO; D], [[T::ZERO; D]; D]);
-        // Tractions one by one: at a node between a fixed edge and elements at rest two of them cancel.
-        let mut scale = T::ZERO;
-        for t in balanced.loading.traction.as_flattened().as_flattened() {
-            scale = scale.max(t.abs());
-        }
-        scale = floor.max(scale * (1.0 / (D * (D + 1)) as f64));
-        for (force, arm) in balanced.forces.iter().zip(&self.arms) {
-            for c in 0..D {
-                resultant[c] += force.outer[c] - force.inner[c];
-                scale = scale.max(force.outer[c].abs()).max(force.inner[c].abs());
-            }
-            let net = |c: usize| force.outer[c] - force.inner[c];
-            for b in 1..D {
-                for a in 0..b {
-                    moments[a][b] += net(b) * arm[a] - net(a) * arm[b];
-                }
-            }
-        }
-        let mut miss = T::ZERO;
-        for moment in moments.as_flattened() {
-            miss = miss.worse((*moment * self.inverse_reach).abs());
-        }
-        for force in &resultant {
-            miss = miss.worse(force.abs());
-        }
-        miss / scale.max(T::constant(f64::MIN_POSITIVE))
-    }
-
     /// Work of the tractions, and of Γ_DA − f_d, on the shape function of each node.
     #[inline(always)]
     fn nodal_forces<T: Value>(&self, loading: &Loading<D, N, T>) -> [NodalForce<D, T>; N] {
         let volume = self.element.volume / self.law.extent() / ((D + 1) * (D + 2)) as f64;
         let Loading { traction, volume: load } = loading;
-        let mut forces = [NodalForce { outer: [T::ZERO; D], inner: [T::ZERO; D] }; N];
+        let zero = load[0][0].zero();
+        let mut forces = [NodalForce { outer: [zero; D], inner: [zero; D] }; N];
         for c in 0..D {
-            let mut total = T::ZERO;
+            let mut total = zero;
             for g in load {
                 total += g[c];
             }
             for k in 0..N {
                 forces[k].inner[c] = (load[k][c] + total) * volume;
-                let mut sum = T::ZERO;
+                let mut sum = zero;
                 for t in &traction[k] {
                     sum += t[c];
                 }
@@ -415,7 +366,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 /// The sum of products of entries.
 #[inline(always)]
 fn product<T: Value, const D: usize>(a: &[[T; D]; D], b: &[[T; D]; D]) -> T {
-    let mut sum = T::ZERO;
+    let mut sum = a[0][0].zero();
     for i in 0..D {
         for j in 0..D {
             sum += a[i][j] * b[i][j];

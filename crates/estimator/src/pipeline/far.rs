@@ -1,21 +1,25 @@
 //! Elements without a candidate node of contact, sampled as soon as their levels are equilibrated.
 
+mod element;
+mod fields;
+
 use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
-use super::sampling::{Course, ElementSample, Sampling};
+use super::sampling::{Course, Sampling};
 use crate::blocks::BLOCK;
-use crate::increment::Increment;
-use crate::kinematic::{ElementMotion, MotionLanes};
-use crate::lanes::{LANES, Lanes, Value, gather};
-use crate::measure::{
-    AdmissibleStress, BalanceFields, BalanceNode, Balanced, ElementError, ElementMeasure, NodalBalance, at_places,
-};
+use crate::lanes::{LANES, Lanes, Value};
+use crate::measure::{AdmissibleStress, BalanceNode, ElementError, ElementMeasure};
+use crate::pool::Pool;
 use crate::residual::{Residuals, worse};
-use crate::simd::dispatch;
-use crate::stress::{EnergyForm, EnergyForms};
-use crate::time_level::Velocities;
+use crate::simd::{Registers, Task, run_task};
+use crate::stress::EnergyForms;
+use crate::traction::{EquilibratedLevel, EquilibratedLevels};
+use crate::wide::Wide;
+use element::FarElement;
+use fields::BlockFields;
 use percute_core::ids::ElementId;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in its turn: a
 /// check costs more than the measure itself.
@@ -51,94 +55,99 @@ struct FarBlock {
     kept: Vec<Contribution>,
 }
 
-/// The fields of a block at some levels, and in the middles before them.
-#[derive(Default)]
-struct BlockFields<const D: usize> {
-    now: Vec<VelocityLanes<D>>,
-    mid: Vec<VelocityLanes<D>>,
-    balance: BalanceFields<D>,
+/// The same while its elements are sampled.
+struct FarSamples<T> {
+    levels: ElementError<T>,
+    mids: ElementError<T>,
+    /// The largest residual of the balance of an element.
+    worst: T,
+    residuals: Residuals,
+    kept: Vec<Contribution>,
 }
 
-/// [`Velocities`] of a node side by side.
-#[derive(Clone, Copy)]
-struct VelocityLanes<const D: usize> {
-    motion: MotionLanes<D>,
-    increment: [Lanes; D],
-    lumping_increment: [Lanes; D],
+/// The sampling of all far elements at some levels, part by part: blocks are added up in their order.
+pub(super) struct FarSampling<'a, 's, 'p, const D: usize, const N: usize> {
+    shared: &'a Sampling<'s, 'p, D, N>,
+    /// The level before these.
+    before: Option<EquilibratedLevel<'a, D>>,
+    is_near: &'a [bool],
+    courses: &'a mut [FarCourse<D, N>],
+    room: Pool<BlockFields<D>>,
+    levels: ElementError<Lanes>,
+    mids: ElementError<Lanes>,
+    residuals: Residuals,
+    kept: Vec<Contribution>,
 }
 
-impl<const D: usize> VelocityLanes<D> {
-    #[inline(always)]
-    fn gather<'v>(
-        records: &mut Vec<Self>,
-        nodes: &[u32],
-        velocities: impl Iterator<Item = Option<&'v Velocities<D>>> + Clone,
-        mixed: bool,
-    ) {
-        let none = [Lanes::ZERO; D];
-        records.resize(nodes.len(), Self { motion: MotionLanes::REST, increment: none, lumping_increment: none });
-        MotionLanes::gather(
-            records,
-            nodes,
-            velocities.clone().map(|v| v.map(|v| &v.motion)),
-            #[inline(always)]
-            |record| &mut record.motion,
-        );
-        gather(
-            records,
-            nodes,
-            velocities.clone().map(|v| v.map(|v| v.increment.values())),
-            #[inline(always)]
-            |record| &mut record.increment,
-        );
-        if mixed {
-            gather(
-                records,
-                nodes,
-                velocities.map(|v| v.and_then(|v| v.lumping_increment.as_ref()).map(Increment::values)),
-                #[inline(always)]
-                |record| &mut record.lumping_increment,
-            );
+impl<'a, 's, 'p, const D: usize, const N: usize> FarSampling<'a, 's, 'p, D, N> {
+    pub(super) fn new(
+        shared: &'a Sampling<'s, 'p, D, N>,
+        before: Option<EquilibratedLevel<'a, D>>,
+        is_near: &'a [bool],
+        courses: &'a mut [FarCourse<D, N>],
+    ) -> Self {
+        let none = ElementError::filled(Lanes::ZERO);
+        let (residuals, kept) = (Residuals::default(), Vec::new());
+        Self { shared, before, is_near, courses, room: Pool::new(), levels: none, mids: none, residuals, kept }
+    }
+
+    /// Samples the elements of some blocks.
+    pub(super) fn sample(&mut self, levels: &EquilibratedLevels<D>, blocks: Range<usize>) {
+        let Self { shared, before, is_near, courses, room, .. } = self;
+        let levels = SampledLevels { before: *before, levels };
+        let all = FarLevels::new(shared, &levels);
+        let end = (blocks.end * BLOCK).min(courses.len());
+        let block = |(block, courses): (usize, &mut [FarCourse<D, N>])| {
+            let block = blocks.start + block;
+            let task =
+                |fields: &mut BlockFields<D>| run_task(SampleBlock { all: &all, block, fields, is_near, courses });
+            room.lend(BlockFields::default, task)
+        };
+        let courses = courses[blocks.start * BLOCK..end].par_chunks_mut(BLOCK).enumerate();
+        let found: Vec<FarBlock> = courses.map(block).collect();
+        for block in found {
+            self.levels.add(&block.levels);
+            self.mids.add(&block.mids);
+            self.residuals.merge(&block.residuals);
+            self.kept.extend(block.kept);
         }
     }
+
+    /// Appends the sums at these levels, of which all blocks are sampled.
+    pub(super) fn finish(self, levels: &EquilibratedLevels<D>, sums: &mut FarSums) -> (Residuals, Vec<Contribution>) {
+        sums.extend(&self.levels, &self.mids, levels.len(), self.before.is_none());
+        (self.residuals, self.kept)
+    }
 }
 
-/// Samples all far elements at some levels, by blocks, and adds them up in the order of the blocks.
-pub(super) fn sample<const D: usize, const N: usize>(
-    shared: &Sampling<'_, '_, D, N>,
-    levels: &SampledLevels<'_, D>,
-    is_near: &[bool],
-    courses: &mut [FarCourse<D, N>],
-    sums: &mut FarSums,
-) -> (Residuals, Vec<Contribution>) {
-    let all = FarLevels::new(shared, levels);
-    let block = |fields: &mut BlockFields<D>, (block, courses): (usize, &mut [FarCourse<D, N>])| {
-        dispatch(
-            #[inline(always)]
-            || all.sample(block, fields, is_near, courses),
-        )
-    };
-    let blocks: Vec<FarBlock> =
-        courses.par_chunks_mut(BLOCK).enumerate().map_init(BlockFields::default, block).collect();
-    let (mut at_levels, mut in_mids) = (ElementError::zero(), ElementError::zero());
-    let (mut residuals, mut kept) = (Residuals::default(), Vec::new());
-    for block in blocks {
-        at_levels.add(&block.levels);
-        in_mids.add(&block.mids);
-        residuals.merge(&block.residuals);
-        kept.extend(block.kept);
+/// A block to be sampled.
+struct SampleBlock<'b, 'a, 's, 'p, const D: usize, const N: usize> {
+    all: &'b FarLevels<'a, 's, 'p, D, N>,
+    block: usize,
+    fields: &'b mut BlockFields<D>,
+    is_near: &'b [bool],
+    courses: &'b mut [FarCourse<D, N>],
+}
+
+impl<const D: usize, const N: usize> Task for SampleBlock<'_, '_, '_, '_, D, N> {
+    type Output = FarBlock;
+
+    #[inline(always)]
+    fn run<R: Registers>(self, registers: R) -> FarBlock {
+        self.all.sample(Wide::new(registers), self.block, self.fields, self.is_near, self.courses)
     }
-    sums.extend(&at_levels, &in_mids, levels.levels.len(), levels.before.is_none());
-    (residuals, kept)
 }
 
 /// The data that all blocks share at some levels.
 struct FarLevels<'a, 's, 'p, const D: usize, const N: usize> {
     shared: &'a Sampling<'s, 'p, D, N>,
     levels: &'a SampledLevels<'a, D>,
-    /// Which levels end an interval of a single step, and whether any does.
+    /// Which levels end an interval of a single step, and whether any and all of them do.
     single: [bool; LANES],
     has_mids: bool,
+    all_single: bool,
+    /// Lengths of these steps (s).
+    lengths: Lanes,
     /// Weights of the integral over the interval before each level: of η at its ends and in its middle (s).
     ends: Lanes,
     middles: Lanes,
@@ -165,6 +174,10 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
             levels,
             single,
             has_mids: single.contains(&true),
+            all_single: !single.contains(&false),
+            lengths: Lanes::at_levels(
+                |lane| if single[lane] { shared.times.step(forces[lane].level.index - 1) } else { 0.0 },
+            ),
             ends: Lanes::at_levels(|lane| if single[lane] { 0.25 * length(lane) } else { 0.5 * length(lane) }),
             middles: Lanes::at_levels(|lane| if single[lane] { 0.5 * length(lane) } else { 0.0 }),
             turns,
@@ -174,24 +187,25 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
     }
 
     #[inline(always)]
-    fn sample(
+    fn sample<R: Registers>(
         &self,
+        like: Wide<R>,
         block: usize,
         fields: &mut BlockFields<D>,
         is_near: &[bool],
         courses: &mut [FarCourse<D, N>],
     ) -> FarBlock {
-        let mut found = FarBlock {
-            levels: ElementError::zero(),
-            mids: ElementError::zero(),
+        let mut found = FarSamples {
+            levels: ElementError::filled(like),
+            mids: ElementError::filled(like),
+            worst: like,
             residuals: Residuals::default(),
             kept: Vec::new(),
         };
         let (problem, equilibration) = (self.shared.problem, self.shared.equilibration);
         let (range, block) = (equilibration.blocks.elements(block), equilibration.blocks.block(block));
-        self.gather(fields, block.nodes);
+        self.gather(like, fields, block.nodes);
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-        let mut worst = Lanes::ZERO;
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
             fields.balance.gather_moments(&equilibration.elements[group.clone()], self.levels.levels);
@@ -204,121 +218,16 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
                     let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
                     let of = (problem, &equilibration.elements[e], id);
                     let measure = ElementMeasure::of_nodes(of, self.shared.choice, &nodes);
-                    let balance = fields.balance.nodal_balance(e - start, self.levels.levels, id, &nodes);
+                    let balance = fields.balance.nodal_balance(like, e - start, self.levels.levels, id, &nodes);
                     let element = FarElement { all: self, measure, form, id, local: &block.local[k] };
-                    element.sample(fields, &balance, &mut courses[k], &mut found, &mut worst);
+                    element.sample(like, fields, &balance, &mut courses[k], &mut found);
                 }
             }
         }
         // A lane without a level holds no state.
-        let worst = worst.0[..self.levels.levels.len()].iter().copied().fold(0.0, worse);
-        found.residuals.element_resultants = worse(found.residuals.element_resultants, worst);
-        found
-    }
-
-    #[inline(always)]
-    fn gather(&self, fields: &mut BlockFields<D>, nodes: &[u32]) {
-        let forces = self.levels.levels.forces();
-        fields.balance.gather(self.shared.problem, nodes, self.levels.levels);
-        let mixed = fields.balance.is_mixed();
-        VelocityLanes::gather(&mut fields.now, nodes, forces.iter().map(|f| Some(&f.now)), mixed);
-        if self.has_mids {
-            let mids = forces.iter().zip(self.single).map(|(f, single)| f.mid.as_ref().filter(|_| single));
-            VelocityLanes::gather(&mut fields.mid, nodes, mids, mixed);
-        }
-    }
-}
-
-/// One far element.
-struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {
-    all: &'f FarLevels<'a, 's, 'p, D, N>,
-    measure: ElementMeasure<'f, D, N>,
-    form: EnergyForm<'f>,
-    id: ElementId,
-    local: &'f [u32; N],
-}
-
-impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
-    /// Samples the element at all levels and in the middles before them.
-    #[inline(always)]
-    fn sample(
-        &self,
-        fields: &BlockFields<D>,
-        balance: &NodalBalance<D, N, Lanes>,
-        so_far: &mut FarCourse<D, N>,
-        found: &mut FarBlock,
-        worst: &mut Lanes,
-    ) {
-        let (levels, balanced) = (self.all.levels.levels, self.measure.balanced(balance));
-        *worst = worst.worse(self.measure.resultant_residual(&balanced, levels.force_scale()));
-        self.check(&balanced, &mut found.residuals);
-        let stress = self.measure.stress(&self.form, &balanced);
-        let mixed = fields.balance.is_mixed();
-        let now = self.error(&stress, &fields.now, mixed);
-        found.levels.add(&now);
-        let mut mid = ElementError::zero();
-        if self.all.has_mids {
-            // A window that begins with the first level has no middle before it.
-            let before = AdmissibleStress::combine(&so_far.stress, &stress, |last: f64, now: Lanes| now.later(last));
-            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, mixed).only(&self.all.single);
-            found.mids.add(&mid);
-        }
-        let last = levels.len() - 1;
-        so_far.stress = AdmissibleStress::combine(&stress, &stress, |now: Lanes, _: Lanes| now.0[last]);
-        self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
-    }
-
-    #[inline(always)]
-    fn error(
-        &self,
-        stress: &AdmissibleStress<D, N, Lanes>,
-        velocities: &[VelocityLanes<D>],
-        mixed: bool,
-    ) -> ElementError<Lanes> {
-        let nodes = at_places(velocities, self.local);
-        let (mut increment, mut lumping, mut motions) =
-            ([[Lanes::ZERO; D]; N], [[Lanes::ZERO; D]; N], [&nodes[0].motion; N]);
-        for i in 0..N {
-            (increment[i], lumping[i]) = (nodes[i].increment, nodes[i].lumping_increment);
-            motions[i] = &nodes[i].motion;
-        }
-        let increment = self.measure.increment_of(&increment, mixed.then_some(&lumping));
-        self.measure.error(stress, &increment, &ElementMotion::of_nodes(motions), Lanes::ZERO)
-    }
-
-    /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear and the
-    /// same at all levels.
-    #[inline(always)]
-    fn check(&self, balanced: &Balanced<D, N, Lanes>, residuals: &mut Residuals) {
-        let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;
-        if !self.all.turn.contains(&turn) {
-            return;
-        }
-        for (lane, _) in self.all.turn.iter().enumerate().filter(|&(_, &level)| level == turn) {
-            let one = Balanced::combine(balanced, balanced, |now: Lanes, _: Lanes| now.0[lane]);
-            self.measure.check_stress(&one, self.all.levels.levels.force_scale().0[lane], residuals);
-        }
-    }
-
-    /// Goes on with the integral of η over time, and keeps the samples that are wanted.
-    #[inline(always)]
-    fn integrate(
-        &self,
-        now: &ElementError<Lanes>,
-        mid: &ElementError<Lanes>,
-        course: &mut Course,
-        kept: &mut Vec<Contribution>,
-    ) {
-        let totals = now.total();
-        // The trapezoidal rule, with the middle where it is sampled.
-        let integrals = (totals.later(course.last().total()) + totals) * self.all.ends + mid.total() * self.all.middles;
-        for (lane, forces) in self.all.levels.levels.forces().iter().enumerate() {
-            course.add(integrals.0[lane]);
-            if self.all.wanted[lane] {
-                course.reach(ElementSample::away_from_contact(now.lane(lane)));
-                course.keep(self.id, forces.level.index, kept);
-            }
-        }
-        course.reach(ElementSample::away_from_contact(now.lane(self.all.levels.levels.len() - 1)));
+        let worst = found.worst.store().0[..self.levels.levels.len()].iter().copied().fold(0.0, worse);
+        let FarSamples { levels, mids, mut residuals, kept, .. } = found;
+        residuals.element_resultants = worse(residuals.element_resultants, worst);
+        FarBlock { levels: levels.store(), mids: mids.store(), residuals, kept }
     }
 }

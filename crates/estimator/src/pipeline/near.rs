@@ -22,7 +22,7 @@ use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
 /// The pointwise equilibrium of σ_DA is checked at every level of so many, more often than away from contact.
-const CHECK: usize = 4;
+const CHECK: usize = 16;
 
 /// One such element.
 #[derive(Clone, Debug)]
@@ -121,9 +121,12 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
         let loaded = Waiting::<D, N>::has_hats(&hats);
-        let single = to.index() == from.index() + 1;
-        let mid = forces.mid.as_ref().filter(|_| single).map(|mid| WaitingSample {
-            at: self.at(sampler, mid, friction(0)),
+        let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
+        let mid = single.then(|| WaitingSample {
+            at: ContactInstant {
+                velocities: sampler.velocities_half_way([&from, &to], &self.contact),
+                friction: friction(0),
+            },
             stress: stress(&Balanced::middle(&start, &end), loaded),
         });
         let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };

@@ -187,8 +187,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         if decision.before {
             self.differ_at_last();
         }
-        let (mid, now) = self.motion.advance(problem, self.times, state);
-        self.track_contact(step, mid.as_ref(), &now)?;
+        let (mid_velocity, now) = self.motion.advance(problem, self.times, state);
+        self.track_contact(step, mid_velocity.as_deref(), &now)?;
         let miss = self.supports.advance(problem, self.times, n, &now);
         self.residuals.supports = worse(self.residuals.supports, miss);
 
@@ -215,7 +215,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             },
             lumping_difference,
         };
-        let motion = MotionKnown { level, now, mid, force };
+        let motion = MotionKnown { level, now, mid_velocity, force };
         if n == 0 {
             self.check_initial(&motion.now);
             self.current = Some(self.first(motion));
@@ -267,24 +267,25 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     fn track_contact(
         &mut self,
         step: &Step<'_, D>,
-        mid: Option<&NodalMotion<D>>,
+        mid_velocity: Option<&[[f64; D]]>,
         now: &NodalMotion<D>,
     ) -> Result<(), ScratchError> {
         let (problem, tolerance) = (self.problem, self.problem.contact_tolerance());
-        let normal = |at: usize, motion: &NodalMotion<D>| {
+        let normal = |at: usize, velocity: &[[f64; D]]| {
             let contact = &problem.surface().nodes()[at];
-            problem.obstacles()[contact.obstacle].flat_frame().split(&motion.velocity()[contact.node.index()]).0
+            problem.obstacles()[contact.obstacle].flat_frame().split(&velocity[contact.node.index()]).0
         };
-        let Some(mid) = mid else {
+        let velocity = now.velocity();
+        let Some(mid) = mid_velocity else {
             let gap = |at: usize| {
                 let node = problem.surface().nodes()[at].node.index();
                 problem.surface().gap(at, &now.displacement()[node])
             };
-            return self.tracks.begin(problem, |at| ((gap(at), normal(at, now)), step.touching[at]));
+            return self.tracks.begin(problem, |at| ((gap(at), normal(at, velocity)), step.touching[at]));
         };
         let half = 0.5 * self.times.step(step.index - 1);
         let normal_step =
-            |at| NormalStep { half, velocity: [normal(at, mid), normal(at, now)], touching: step.touching[at] };
+            |at| NormalStep { half, velocity: [normal(at, mid), normal(at, velocity)], touching: step.touching[at] };
         self.tracks.push(normal_step, tolerance)
     }
 

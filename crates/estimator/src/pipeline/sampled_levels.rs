@@ -18,7 +18,7 @@ impl<'a, const D: usize> SampledLevels<'a, D> {
     /// Whether one of them ends an interval of a single step, whose middle is sampled.
     pub(super) fn is_single(&self, lane: usize) -> bool {
         let end = &self.levels.forces()[lane];
-        end.mid.is_some() && self.before(lane).is_some_and(|before| end.level.index == before.index() + 1)
+        end.mid_velocity.is_some() && self.before(lane).is_some_and(|before| end.level.index == before.index() + 1)
     }
 
     /// The intervals: both levels of each.

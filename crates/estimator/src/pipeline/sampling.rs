@@ -3,6 +3,7 @@
 use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
 use crate::element::Element;
+use crate::increment::{self, Increment};
 use crate::kinematic::ElementMotion;
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy};
 use crate::numbers::Reader;
@@ -203,6 +204,36 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         ElementVelocities {
             motion: ElementMotion::gather(&velocities.motion, &self.element.nodes),
             increment: self.measure.increment(velocities),
+        }
+    }
+
+    /// The fields of the element in the middle of a step between two levels; `contact` gives the contact node at each local node.
+    pub(super) fn velocities_half_way(
+        &self,
+        [from, to]: [&EquilibratedLevel<'_, D>; 2],
+        contact: &[Option<usize>; N],
+    ) -> ElementVelocities<D, N> {
+        let (element, [start, end]) = (self.element, [from.forces(), to.forces()]);
+        let (length, now) = (self.shared.times.step(from.index()), &end.now);
+        let mut last = element.gather(&end.acceleration);
+        for i in 0..N {
+            if let (Some(at), Some(before)) = (contact[i], &end.before) {
+                last[i] = before.acceleration[at];
+            }
+        }
+        let half_way = |increment: &Increment<D>, start: &[[f64; D]], end: &[[f64; D]; N]| {
+            let (increment, start) = (increment.gather(&element.nodes), element.gather(start));
+            std::array::from_fn(|i| increment::half_way(length, &increment[i], [&start[i], &end[i]]))
+        };
+        let lumping = now.lumping_increment.as_ref().zip(start.level.lumping_difference.as_ref());
+        let lumping = lumping.zip(end.level.lumping_difference.as_ref());
+        let lumping = lumping.map(|((increment, start), end)| half_way(increment, start, &element.gather(end)));
+        let increment = half_way(&now.increment, &start.acceleration, &last);
+        let mid_velocity = end.mid_velocity.as_ref().map(|field| element.gather(field));
+        let motion = ElementMotion::gather(&now.motion, &element.nodes);
+        ElementVelocities {
+            motion: mid_velocity.map_or(motion, |velocity| motion.half_way(length, velocity)),
+            increment: self.measure.increment_of(&increment, lumping.as_ref()),
         }
     }
 

@@ -3,8 +3,8 @@
 //! Nothing here depends on the number of threads or on where windows end: every number is computed
 //! by one task from its own data, and sums are taken over fixed blocks of elements in order.
 
-use super::far::{self, FarCourse, FarSums};
-use super::maps::{Balance, Maps};
+use super::far::{FarCourse, FarSampling, FarSums};
+use super::maps::{Balance, Contribution, Maps};
 use super::near::ContactSampling;
 use super::near_elements::{self, NearElements};
 use super::prepare::Preparation;
@@ -23,7 +23,7 @@ use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::sources::Sources;
 use crate::time_level::ForcesKnown;
-use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel};
+use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel, Then};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
@@ -35,7 +35,7 @@ const OTHER_LEVELS: usize = 4;
 
 /// Memory of one level (bytes).
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
-    let fields = if options.acceleration(D) == Acceleration::Mixed { 11 } else { 8 };
+    let fields = if options.acceleration(D) == Acceleration::Mixed { 8 } else { 6 };
     size_of::<[f64; D]>() * fields * problem.mesh().node_count()
 }
 
@@ -177,39 +177,44 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             return Ok(());
         }
         let mut levels = std::mem::take(&mut self.equilibrated);
-        let miss = self.equilibration.solve(std::mem::take(&mut self.levels), &mut levels);
-        self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
-        preparation.reconstruction().improve(&self.equilibration, self.choice, &mut levels);
-        self.sample(preparation, &levels)?;
+        let (reconstruction, choice) = (preparation.reconstruction(), self.choice);
+        let forces = std::mem::take(&mut self.levels);
+        let kept = self.sample(&mut levels, |equilibration, levels, then| {
+            reconstruction.equilibrate(equilibration, choice, forces, levels, then)
+        })?;
+        let (equilibration, concentration) = (&self.equilibration, reconstruction.concentration());
+        let balance = Balance { problem: self.problem, equilibration, choice, concentration };
+        self.maps.begin(self.times.instants(), &balance, &levels);
+        self.maps.put(&kept);
         self.carried = levels.keep_last(&self.near_links);
         self.equilibrated = levels;
         self.catch_up(preparation)
     }
 
-    /// Samples all elements at some levels.
+    /// Samples all elements at some levels, each part of the mesh as soon as its tractions are there. Returns the contributions
+    /// of far elements to maps.
     fn sample(
         &mut self,
-        preparation: &Preparation<'p, D, N>,
-        levels: &EquilibratedLevels<D>,
-    ) -> Result<(), ScratchError> {
+        levels: &mut EquilibratedLevels<D>,
+        equilibrate: impl FnOnce(&Equilibration<'p, D, N>, &mut EquilibratedLevels<D>, Then<'_, D>) -> f64,
+    ) -> Result<Vec<Contribution>, ScratchError> {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
-        let concentration = preparation.reconstruction().concentration();
-        let balance = Balance { problem, equilibration, choice, concentration };
-        self.maps.begin(times.instants(), &balance, levels);
         let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
-        let sampled = SampledLevels { before: self.carried.as_ref().map(KeptLevel::level), levels };
-        let (residuals, kept) = far::sample(&shared, &sampled, &self.is_near, &mut self.courses, &mut self.far);
-        let before = self.intervals.len();
+        let before = self.carried.as_ref().map(KeptLevel::level);
+        let mut far = FarSampling::new(&shared, before, &self.is_near, &mut self.courses);
+        let miss = equilibrate(equilibration, levels, &mut |levels, part| far.sample(levels, part.elements.clone()));
+        let (residuals, kept) = far.finish(levels, &mut self.far);
+        let (sampled, first) = (SampledLevels { before, levels }, self.intervals.len());
         for (k, interval) in sampled.intervals().enumerate() {
             let far = [self.far.levels[k], self.far.mids[k], self.far.levels[k + 1]];
             self.intervals.push(SampledInterval::new(times, interval.map(|level| level.index()), far));
         }
-        self.far.levels.drain(..self.intervals.len() - before);
+        self.far.levels.drain(..self.intervals.len() - first);
         self.far.mids.clear();
-        self.near.append(&shared, &sampled, before..self.intervals.len())?;
+        self.near.append(&shared, &sampled, first..self.intervals.len())?;
         self.residuals.merge(&residuals);
-        self.maps.put(&kept);
-        Ok(())
+        self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
+        Ok(kept)
     }
 
     /// Samples near elements as far as the motion of all contact nodes is known.

@@ -1,7 +1,6 @@
 //! The friction part of η of densities that are linear over a step.
 
 use crate::contact_density::{Densities, hat_misfit_power, misfit_power};
-use crate::kinematic::NodalMotion;
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::problem::Problem;
 
@@ -16,9 +15,9 @@ pub(super) fn friction<const D: usize, const N: usize>(
 ) -> Vec<[f64; 2]> {
     let mut friction = Vec::with_capacity(problem.surface().facets().len());
     for f in 0..problem.surface().facets().len() {
-        let power = |motion, densities: &[&Densities<D>]| misfit(problem, f, motion, densities);
-        let (a, b) = (power(&now.now.motion, &[&now.density]), power(&next.now, &[density]));
-        let m = next.mid.as_ref().map_or(0.0, |mid| power(mid, &[&now.density, density]));
+        let power = |velocity: &[[f64; D]], densities: &[&Densities<D>]| misfit(problem, f, velocity, densities);
+        let (a, b) = (power(now.now.motion.velocity(), &[&now.density]), power(next.now.velocity(), &[density]));
+        let m = next.mid_velocity.as_ref().map_or(0.0, |velocity| power(velocity, &[&now.density, density]));
         let so_far = now.friction[f][1];
         // 2∫[…], twice over half a step each.
         friction.push([so_far + 0.5 * length * (a + m), so_far + 0.5 * length * (a + 2.0 * m + b)]);
@@ -30,11 +29,11 @@ pub(super) fn friction<const D: usize, const N: usize>(
 fn misfit<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     f: usize,
-    motion: &NodalMotion<D>,
+    velocity: &[[f64; D]],
     densities: &[&Densities<D>],
 ) -> f64 {
     let (facet, share) = (&problem.surface().facets()[f], 1.0 / densities.len() as f64);
-    let velocity = facet.nodes.map(|k| motion.velocity()[problem.surface().nodes()[k].node.index()]);
+    let velocity = facet.nodes.map(|k| velocity[problem.surface().nodes()[k].node.index()]);
     let mut mean = [[0.0; D]; D];
     let mut power = 0.0;
     for density in densities {

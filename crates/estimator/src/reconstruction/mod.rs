@@ -17,7 +17,7 @@ use crate::kinematic::ContactTrack;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
 use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
-use crate::traction::{EquilibratedLevels, Equilibration};
+use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
 pub(crate) use corrected::Concentration;
@@ -149,13 +149,17 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         None
     }
 
-    /// Improves the tractions of levels; their other fields cannot change any more.
-    fn improve(
+    /// Finds equilibrated tractions of levels with these forces, and gives `then` each part of the mesh when those of its elements are
+    /// final. Returns the largest relative miss of the star problems. `levels` gives its memory.
+    fn equilibrate(
         &self,
-        _equilibration: &Equilibration<'_, D, N>,
+        equilibration: &Equilibration<'_, D, N>,
         _choice: Acceleration,
-        _levels: &mut EquilibratedLevels<D>,
-    ) {
+        forces: Vec<ForcesKnown<D>>,
+        levels: &mut EquilibratedLevels<D>,
+        then: Then<'_, D>,
+    ) -> f64 {
+        equilibration.solve(forces, levels, then)
     }
 }
 

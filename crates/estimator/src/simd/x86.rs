@@ -1,6 +1,6 @@
 //! The registers of AVX2 and AVX-512.
 
-use super::{Eight, Four, Registers};
+use super::{Eight, Four, Portable, Registers};
 use pulp::cast;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m256d, __m512d};
@@ -40,6 +40,12 @@ macro_rules! four {
     };
 }
 
+/// Two vectors, from memory.
+#[inline(always)]
+fn both(set: V3, a: &[f64; 2], b: &[f64; 2]) -> __m256d {
+    set.avx._mm256_insertf128_pd::<1>(set.avx._mm256_castpd128_pd256(cast(*a)), cast(*b))
+}
+
 /// AVX2: two registers.
 impl Registers for V3 {
     type Eight = [__m256d; 2];
@@ -75,6 +81,42 @@ impl Registers for V3 {
     #[inline(always)]
     fn mul(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
         [self.mul4(a[0], b[0]), self.mul4(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn div(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        [self.avx._mm256_div_pd(a[0], b[0]), self.avx._mm256_div_pd(a[1], b[1])]
+    }
+
+    #[inline(always)]
+    fn max(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        // Where one is NaN, the instruction gives its second operand.
+        [self.avx._mm256_max_pd(b[0], a[0]), self.avx._mm256_max_pd(b[1], a[1])]
+    }
+
+    #[inline(always)]
+    fn max_bits(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
+        // There is no such instruction.
+        self.load(&Portable.max_bits(self.store(a), self.store(b)))
+    }
+
+    #[inline(always)]
+    fn abs(self, v: Self::Eight) -> Self::Eight {
+        let sign = self.splat4(-0.0);
+        [self.avx._mm256_andnot_pd(sign, v[0]), self.avx._mm256_andnot_pd(sign, v[1])]
+    }
+
+    #[inline(always)]
+    fn later(self, first: f64, v: Self::Eight) -> Self::Eight {
+        self.load(&Portable.later(first, self.store(v)))
+    }
+
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f64; 2]; 8]) -> [Self::Eight; 2] {
+        let [p, q] = [both(self, a, c), both(self, e, g)];
+        let [r, s] = [both(self, b, d), both(self, f, h)];
+        let low = [self.avx._mm256_unpacklo_pd(p, r), self.avx._mm256_unpacklo_pd(q, s)];
+        [low, [self.avx._mm256_unpackhi_pd(p, r), self.avx._mm256_unpackhi_pd(q, s)]]
     }
 
     #[inline(always)]
@@ -133,6 +175,41 @@ impl Registers for V4 {
     #[inline(always)]
     fn mul(self, a: __m512d, b: __m512d) -> __m512d {
         self.avx512f._mm512_mul_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn div(self, a: __m512d, b: __m512d) -> __m512d {
+        self.avx512f._mm512_div_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn max(self, a: __m512d, b: __m512d) -> __m512d {
+        // Where one is NaN, the instruction gives its second operand.
+        self.avx512f._mm512_max_pd(b, a)
+    }
+
+    #[inline(always)]
+    fn max_bits(self, a: __m512d, b: __m512d) -> __m512d {
+        cast(self.avx512f._mm512_max_epu64(cast(a), cast(b)))
+    }
+
+    #[inline(always)]
+    fn abs(self, v: __m512d) -> __m512d {
+        self.avx512f._mm512_abs_pd(v)
+    }
+
+    #[inline(always)]
+    fn later(self, first: f64, v: __m512d) -> __m512d {
+        cast(self.avx512f._mm512_alignr_epi64::<7>(cast(v), cast(self.splat(first))))
+    }
+
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f64; 2]; 8]) -> [__m512d; 2] {
+        let p = self.avx512f._mm512_castpd256_pd512(both(*self, a, c));
+        let p = self.avx512f._mm512_insertf64x4::<1>(p, both(*self, e, g));
+        let q = self.avx512f._mm512_castpd256_pd512(both(*self, b, d));
+        let q = self.avx512f._mm512_insertf64x4::<1>(q, both(*self, f, h));
+        [self.avx512f._mm512_unpacklo_pd(p, q), self.avx512f._mm512_unpackhi_pd(p, q)]
     }
 
     #[inline(always)]

@@ -115,10 +115,22 @@ impl EnergyForm<'_> {
         fluctuation: &Fluctuation<D, N, T>,
     ) -> [[T; D]; N] {
         match self {
-            Self::Bar(_) => [[T::ZERO; D]; N],
+            Self::Bar(_) => [[fluctuation.nodes[0][0].zero(); D]; N],
             Self::Triangle(form) => form.difference_slope(fluctuation),
         }
     }
+}
+
+/// The value at the second end less that at the first.
+#[inline(always)]
+fn difference<T: Value, const D: usize>(ends: &[[T; D]; D]) -> [T; 2] {
+    [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]]
+}
+
+/// The product of a matrix with a vector.
+#[inline(always)]
+fn turned<T: Value>(rows: &[[f64; 2]; 2], v: [T; 2]) -> [T; 2] {
+    [v[0] * rows[0][0] + v[1] * rows[0][1], v[0] * rows[1][0] + v[1] * rows[1][1]]
 }
 
 /// The corners of a triangle.
@@ -227,7 +239,7 @@ impl TriangleForm<'_> {
     ) -> Fluctuation<D, N, T> {
         let loads = self.pull_back(loading);
         let (edges, nodes) = (self.columns::<0, T>(&loads), self.columns::<COLUMNS, T>(&loads));
-        let mut coordinates = Fluctuation::zero();
+        let mut coordinates = Fluctuation::filled(loads[0].zero());
         for k in 0..N {
             for c in 0..D {
                 coordinates.edges[k][c] = edges[2 * k + c];
@@ -241,7 +253,7 @@ impl TriangleForm<'_> {
     #[inline(always)]
     fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
         // A lane is below LANES; the compiler does not know.
-        let (mut sums, lane) = ([T::ZERO; COLUMNS], self.lane % LANES);
+        let (mut sums, lane) = ([loads[0].zero(); COLUMNS], self.lane % LANES);
         for i in FIRST..LOADS {
             let (load, row) = (loads[i], &self.factors[i]);
             for j in 0..COLUMNS {
@@ -254,16 +266,17 @@ impl TriangleForm<'_> {
     /// The loads of the fluctuation on the reference triangle.
     #[inline(always)]
     fn pull_back<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> [T; LOADS] {
-        let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [self.inverse[(c, 0)], self.inverse[(c, 1)]]);
-        let own = |v: [T; 2]| [v[0] * xx + v[1] * xy, v[0] * yx + v[1] * yy];
-        let scaled = |v: [T; 2]| own(v).map(|v| v * self.jacobian);
+        let rows = [[self.inverse[(0, 0)], self.inverse[(0, 1)]], [self.inverse[(1, 0)], self.inverse[(1, 1)]]];
         let Loading { traction: t, volume: g } = loading;
-        let difference = |k: usize| [t[k][1][0] - t[k][0][0], t[k][1][1] - t[k][0][1]];
         // One by one: a loop over them would be compiled into one over their components.
-        let ([a, b], [c, d], [e, f]) = (own(difference(0)), own(difference(1)), own(difference(2)));
-        let ([p, q], [r, s], [u, v]) =
-            (scaled([g[0][0], g[0][1]]), scaled([g[1][0], g[1][1]]), scaled([g[2][0], g[2][1]]));
-        [a, b, c, d, e, f, p, q, r, s, u, v]
+        let [a, b] = turned(&rows, difference(&t[0]));
+        let [c, d] = turned(&rows, difference(&t[1]));
+        let [e, f] = turned(&rows, difference(&t[2]));
+        let [p, q] = turned(&rows, [g[0][0], g[0][1]]);
+        let [r, s] = turned(&rows, [g[1][0], g[1][1]]);
+        let [u, v] = turned(&rows, [g[2][0], g[2][1]]);
+        let size = self.jacobian;
+        [a, b, c, d, e, f, p * size, q * size, r * size, s * size, u * size, v * size]
     }
 
     #[inline(always)]
@@ -272,9 +285,10 @@ impl TriangleForm<'_> {
         fluctuation: &Fluctuation<D, N, T>,
     ) -> [[T; D]; N] {
         let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [self.inverse[(0, c)], self.inverse[(1, c)]]);
-        let (mut slopes, lane) = ([[T::ZERO; D]; N], self.lane % LANES);
+        let zero = fluctuation.nodes[0][0].zero();
+        let (mut slopes, lane) = ([[zero; D]; N], self.lane % LANES);
         for k in 0..N {
-            let mut pair = [T::ZERO; 2];
+            let mut pair = [zero; 2];
             for c in 0..2 {
                 let row = &self.factors[2 * k + c];
                 for j in 0..COLUMNS {

@@ -14,15 +14,16 @@ pub(crate) struct Fluctuation<const D: usize, const N: usize, T = f64> {
 }
 
 impl<const D: usize, const N: usize, T: Value> Fluctuation<D, N, T> {
+    /// The same number in all coordinates.
     #[inline(always)]
-    pub(crate) fn zero() -> Self {
-        Self { edges: [[T::ZERO; D]; N], nodes: [[T::ZERO; D]; N] }
+    pub(crate) fn filled(number: T) -> Self {
+        Self { edges: [[number; D]; N], nodes: [[number; D]; N] }
     }
 
     /// ½∫σ : K⁻¹ σ (J per unit of section or thickness).
     #[inline(always)]
     pub(crate) fn energy(&self) -> T {
-        let mut energy = T::ZERO;
+        let mut energy = self.nodes[0][0].zero();
         for k in 0..N {
             for c in 0..D {
                 energy += self.edges[k][c] * self.edges[k][c];
@@ -39,7 +40,7 @@ impl<const D: usize, const N: usize, T: Value> Fluctuation<D, N, T> {
         b: &Fluctuation<D, N, B>,
         number: impl Fn(A, B) -> T,
     ) -> Self {
-        let mut both = Self::zero();
+        let mut both = Self::filled(number(a.nodes[0][0], b.nodes[0][0]));
         for k in 0..N {
             for c in 0..D {
                 both.edges[k][c] = number(a.edges[k][c], b.edges[k][c]);

@@ -41,11 +41,12 @@ pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
 #[inline(always)]
 pub(crate) fn hooke<T: Value, const D: usize>(law: &impl LinearLaw, gradient: &[[T; D]; D]) -> [[T; D]; D] {
     let (lambda, shear) = law.moduli();
-    let mut trace = T::ZERO;
+    let zero = gradient[0][0].zero();
+    let mut trace = zero;
     for a in 0..D {
         trace += gradient[a][a];
     }
-    let mut stress = [[T::ZERO; D]; D];
+    let mut stress = [[zero; D]; D];
     for a in 0..D {
         for b in 0..D {
             stress[a][b] = (gradient[a][b] + gradient[b][a]) * shear;

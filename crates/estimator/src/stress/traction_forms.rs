@@ -8,7 +8,7 @@ use super::LOADS;
 use super::combined_gram::{CombinedGram, unit};
 use super::reference::{ALL, FREE, PAIRS};
 use super::triangle::reference_compliance;
-use crate::lanes::{LANES, Lanes, Value};
+use crate::lanes::{LANES, Lanes};
 use nalgebra::Matrix2;
 use percute_core::material::LinearLaw;
 use std::sync::OnceLock;

@@ -3,27 +3,26 @@
 use crate::lanes::Value;
 
 /// The nodal inertia forces of the elements around a node. Their sum over the star is M ã at the node.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum MassTerm<'a, const D: usize, const N: usize, T> {
+pub(super) enum MassTerm<'a, const D: usize, const N: usize, T: Value> {
     /// ρV/(D+1) ã_i, with ã of the node.
     Lumped([T; D]),
     /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at nodes, and the places of the nodes of each element.
-    Mixed { acceleration: &'a [[T; D]], lumping_difference: &'a [[T; D]], nodes: &'a [[u32; N]] },
+    Mixed { acceleration: &'a [[T::Stored; D]], lumping_difference: &'a [[T::Stored; D]], nodes: &'a [[u32; N]] },
 }
 
 impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
     /// Component `c` at local node `i` of an element, and the size of its parts before they cancel; both over the lumped mass
-    /// of the element there (m/s²).
+    /// of the element there (m/s²), in the form of a number.
     #[inline(always)]
-    pub(super) fn at(&self, element: usize, i: usize, c: usize) -> [T; 2] {
+    pub(super) fn at(&self, like: T, element: usize, i: usize, c: usize) -> [T; 2] {
         match *self {
             Self::Lumped(acceleration) => [acceleration[c], acceleration[c].abs()],
             Self::Mixed { acceleration, lumping_difference, nodes } => {
                 let nodes = &nodes[element];
-                let lumping = lumping_difference[nodes[i] as usize][c];
-                let (mut sum, mut size) = (acceleration[nodes[i] as usize][c], lumping.abs());
+                let lumping = like.load(&lumping_difference[nodes[i] as usize][c]);
+                let (mut sum, mut size) = (like.load(&acceleration[nodes[i] as usize][c]), lumping.abs());
                 for n in nodes {
-                    let a = acceleration[*n as usize][c];
+                    let a = like.load(&acceleration[*n as usize][c]);
                     (sum, size) = (sum + a, size.max(a.abs()));
                 }
                 [sum * (1.0 / (D + 2) as f64) + lumping, size]
@@ -67,12 +66,12 @@ mod tests {
         let free = |n, c| if held(n, c) { 0.0 } else { (lumped(n, c) - consistent[n][c]) / problem.mass()[n] };
         let lumping_difference: Vec<_> = (0..nodes).map(|n| [0, 1].map(|c| free(n, c))).collect();
         let cells: Vec<_> = elements.iter().map(|e| e.nodes.map(|n| n.index() as u32)).collect();
-        let term =
+        let term: MassTerm<'_, 2, 3, f64> =
             MassTerm::Mixed { acceleration: &acceleration, lumping_difference: &lumping_difference, nodes: &cells };
         let mut sums = vec![[0.0; 2]; nodes];
         for (e, element) in elements.iter().enumerate() {
             for (i, c) in (0..3).flat_map(|i| [(i, 0), (i, 1)]) {
-                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(e, i, c)[0];
+                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(0.0, e, i, c)[0];
             }
         }
         assert!(problem.prescribed().len() > 3);

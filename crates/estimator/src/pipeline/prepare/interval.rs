@@ -37,7 +37,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         let forces = ForcesKnown {
             level,
             now: Velocities { motion, increment, lumping_increment },
-            mid: None,
+            mid_velocity: None,
             acceleration: force,
             density: Densities::none(self.problem),
             before: None,
@@ -73,19 +73,18 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     ) -> ForcesBefore<D> {
         let length = self.times.step(now.level.index);
         let friction = self.reconstruction.friction(self.problem, length, now, &next, &density);
-        let MotionKnown { level, now: motion, mid, force: mut acceleration } = next;
+        let MotionKnown { level, now: motion, mid_velocity, force: mut acceleration } = next;
         let surface_force = self.on_surface(&acceleration);
         let pull = driving_forces(self.problem, &density);
         accelerate(self.problem, self.dynamics.inverse_mass(), &mut acceleration, &pull);
-        let [middle, increment] = now.now.increment.advance(length, &now.acceleration, &acceleration);
+        let increment = now.now.increment.advance(length, &now.acceleration, &acceleration);
         let lumping_difference = now.level.lumping_difference.as_ref().zip(level.lumping_difference.as_ref());
         let lumping = now.now.lumping_increment.as_ref().zip(lumping_difference);
-        let lumping = lumping.map(|(so_far, (start, end))| <(_, _)>::from(so_far.advance(length, start, end)));
-        let (lumping_middle, lumping_increment) = lumping.unzip();
+        let lumping_increment = lumping.map(|(so_far, (start, end))| so_far.advance(length, start, end));
         let forces = ForcesKnown {
             level,
             now: Velocities { motion, increment, lumping_increment },
-            mid: mid.map(|motion| Velocities { motion, increment: middle, lumping_increment: lumping_middle }),
+            mid_velocity,
             acceleration,
             density,
             before: None,

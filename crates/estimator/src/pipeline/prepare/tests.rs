@@ -106,10 +106,10 @@ fn the_contact_part_step_by_step() {
             let mut sum = 0.0;
             for n in 0..times.step_count() {
                 let (now, next) = (&levels[n], &levels[n + 1]);
-                let mid = &next.mid.as_ref().unwrap().motion;
+                let mid = next.mid_velocity.as_deref().unwrap();
                 let nodes = facet.nodes.map(|k| problem.surface().nodes()[k].node.index());
-                let mut power = |motion: &NodalMotion<2>, force: [[f64; 2]; 2]| {
-                    let sliding = nodes.map(|i| motion.velocity()[i][0]);
+                let mut power = |velocity: &[[f64; 2]], force: [[f64; 2]; 2]| {
+                    let sliding = nodes.map(|i| velocity[i][0]);
                     let pressed = force.iter().any(|f| f[1] > 0.0);
                     turning += usize::from(pressed && sliding[0] * sliding[1] < 0.0);
                     inside += usize::from(force.iter().any(|f| f[1] > 0.0 && f[0].abs() < 0.5 * f[1]));
@@ -117,7 +117,11 @@ fn the_contact_part_step_by_step() {
                 };
                 let (start, end) = (now.density[f], before(next)[f]);
                 let middle = [0, 1].map(|p| [0, 1].map(|c| 0.5 * (start[p][c] + end[p][c])));
-                let [a, m, b] = [power(&now.now.motion, start), power(mid, middle), power(&next.now.motion, end)];
+                let [a, m, b] = [
+                    power(now.now.motion.velocity(), start),
+                    power(mid, middle),
+                    power(next.now.motion.velocity(), end),
+                ];
                 // 2∫: twice the trapezoids of two half steps.
                 let half = 0.5 * times.step(n);
                 let found = next.friction[f];

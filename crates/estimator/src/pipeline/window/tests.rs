@@ -40,7 +40,7 @@ impl Run<'_> {
                 return solved;
             }
             let mut levels = EquilibratedLevels::default();
-            let miss = self.window.equilibration.solve(some, &mut levels);
+            let miss = self.window.equilibration.solve(some, &mut levels, |_, _| ());
             self.window.residuals.star_compatibility = worse(self.window.residuals.star_compatibility, miss);
             solved.push(levels);
         }
@@ -49,7 +49,12 @@ impl Run<'_> {
     /// All residuals of these levels.
     fn residuals(mut self, levels: Vec<EquilibratedLevels<2>>) -> Residuals {
         for mut some in levels {
-            self.window.sample(&self.preparation, &some).unwrap();
+            let parts =
+                |equilibration: &Equilibration<'_, 2, 3>, levels: &mut EquilibratedLevels<2>, then: Then<'_, 2>| {
+                    equilibration.parts().iter().for_each(|part| then(levels, part));
+                    0.0
+                };
+            self.window.sample(&mut some, parts).unwrap();
             self.window.carried = some.keep_last(&self.window.near_links);
             self.window.catch_up(&mut self.preparation).unwrap();
         }
@@ -110,7 +115,7 @@ fn wrong_moments_show_in_the_resultants() {
         let mut levels = run.solve();
         let (level, elements) = run.places();
         let link = run.window.equilibration.elements[elements[k]].links[2] as usize;
-        let moments = &mut levels[level / LANES].moments_mut()[link];
+        let moments = &mut levels[level / LANES].all_moments_mut()[link];
         moments.iter_mut().for_each(|b| b.0[level % LANES] *= 1.01);
         let found = run.residuals(levels);
         assert!(found.element_resultants > SHOWS, "{found:?}");

@@ -19,8 +19,8 @@ use crate::kinematic::ContactTrack;
 use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
-use crate::time_level::SurfaceStep;
-use crate::traction::{EquilibratedLevels, Equilibration};
+use crate::time_level::{ForcesKnown, SurfaceStep};
+use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
 use impulse_smoothing::ImpulseSmoothing;
@@ -260,15 +260,17 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
     }
 
-    fn improve(
+    fn equilibrate(
         &self,
         equilibration: &Equilibration<'_, D, N>,
         choice: Acceleration,
+        forces: Vec<ForcesKnown<D>>,
         levels: &mut EquilibratedLevels<D>,
-    ) {
-        if let Some(minimisation) = &self.minimisation {
-            minimisation.improve(self.problem, equilibration, choice, levels, self.concentration.as_ref());
-        }
+        then: Then<'_, D>,
+    ) -> f64 {
+        let Some(minimisation) = &self.minimisation else { return equilibration.solve(forces, levels, then) };
+        let of = (self.problem, equilibration, choice);
+        minimisation.equilibrate(of, forces, levels, self.concentration.as_ref(), then)
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
     // A moment is a force on its node: it changes the mean stress by the product with the arm of the node. The traction at the second
     // node of an edge less that at the first is D(D+1) times the difference of the moments.
     let (strain, slopes) = (measure.strain(&difference), form.difference_slope(&admissible.fluctuation));
-    let mut moments = [T::ZERO; MOMENTS];
+    let mut moments = [difference[0][0]; MOMENTS];
     for (k, slope) in slopes.iter().enumerate() {
         for c in 0..D {
             let turning = slope[c] * (D * (D + 1)) as f64;
@@ -52,10 +52,11 @@ pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOA
 /// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
 #[inline(always)]
 pub(super) fn moment_gradient<T: Value, const D: usize, const N: usize>(gradient: &[[[T; D]; D]; N]) -> [T; MOMENTS] {
-    let mut moments = [T::ZERO; MOMENTS];
+    let zero = gradient[0][0][0].zero();
+    let mut moments = [zero; MOMENTS];
     for (k, slope) in gradient.iter().enumerate() {
         for c in 0..D {
-            let mut sum = T::ZERO;
+            let mut sum = zero;
             slope.iter().for_each(|s| sum += s[c]);
             for p in 0..D {
                 moments[4 * k + 2 * p + c] = (slope[p][c] * (D + 1) as f64 - sum) * D as f64;

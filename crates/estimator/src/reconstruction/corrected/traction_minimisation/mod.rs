@@ -20,12 +20,15 @@ mod wavefront;
 use super::concentration::Concentration;
 use crate::blocks::BLOCK;
 use crate::element::Element;
-use crate::lanes::{LANES, Lanes, Value};
+use crate::lanes::{LANES, Lanes};
 use crate::measure::{BalanceFields, BalanceNode, ElementMeasure};
 use crate::options::Acceleration;
-use crate::simd::dispatch;
+use crate::pool::Pool;
+use crate::simd::{Registers, Task, run_task};
 use crate::stress::{EnergyForms, hooke};
-use crate::traction::{EquilibratedLevels, Equilibration};
+use crate::time_level::ForcesKnown;
+use crate::traction::{EquilibratedLevels, Equilibration, Then};
+use crate::wide::Wide;
 use chebyshev::{Arrays, Steps};
 use energy::{moment_slope, product_slope};
 use modes::{Modes, ModesPart, Numbers};
@@ -36,7 +39,6 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 use wavefront::{Wavefront, Work};
 
 /// The largest eigenvalue is known to 1 to 3 % from below. Above the value that is assumed, the iteration overshoots fast.
@@ -47,11 +49,9 @@ const MARGIN: f64 = 1.03;
 pub(in crate::reconstruction) struct TractionMinimisation {
     numbers: Numbers,
     operator: Operator,
-    strips: Strips,
     wavefront: Wavefront,
     steps: Steps,
-    /// Those that are not in use.
-    spaces: Mutex<Vec<Workspace>>,
+    spaces: Pool<Workspace>,
     #[cfg(test)]
     largest_eigenvalue: f64,
 }
@@ -87,15 +87,17 @@ impl TractionMinimisation {
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
-        let mut space = Workspace::new(&numbers);
-        let largest_eigenvalue = spectrum::largest_eigenvalue(problem.mesh(), &numbers, &operator, &mut space);
+        let spaces = Pool::new();
+        let largest_eigenvalue = spaces.lend(
+            || Workspace::new(&numbers),
+            |space| spectrum::largest_eigenvalue(problem.mesh(), &numbers, &operator, space),
+        );
         Some(Self {
-            strips: Strips::new(problem.mesh().cells()),
             wavefront: Wavefront::new(problem.mesh()),
             numbers,
             operator,
             steps: Steps::new(MARGIN * largest_eigenvalue),
-            spaces: Mutex::new(vec![space]),
+            spaces,
             #[cfg(test)]
             largest_eigenvalue,
         })
@@ -110,17 +112,6 @@ impl TractionMinimisation {
         }
     }
 
-    /// Room for the slopes and the change of a group, with any content; [`TractionMinimisation::leave`] takes it back for use again.
-    pub(in crate::reconstruction) fn take(&self) -> Workspace {
-        let mut spaces = self.spaces.lock().unwrap_or_else(PoisonError::into_inner);
-        spaces.pop().unwrap_or_else(|| Workspace::new(&self.numbers))
-    }
-
-    /// Takes room back.
-    pub(in crate::reconstruction) fn leave(&self, space: Workspace) {
-        self.spaces.lock().unwrap_or_else(PoisonError::into_inner).push(space);
-    }
-
     /// Makes the change that reduces the energy with these slopes.
     pub(in crate::reconstruction) fn minimise(&self, space: &mut Workspace) {
         let Workspace { slopes, change, nodes, edges: [t, v] } = space;
@@ -129,45 +120,74 @@ impl TractionMinimisation {
         self.wavefront.run(work, &mut arrays);
     }
 
-    /// Improves the moments of all levels.
-    pub(in crate::reconstruction) fn improve<const D: usize, const N: usize>(
+    /// Solves the star problems of levels with these forces and improves their moments; `then` is given each part of the mesh with
+    /// the final ones. Returns the largest relative miss of the star problems.
+    pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
-        problem: &Problem<D, N>,
-        equilibration: &Equilibration<'_, D, N>,
-        choice: Acceleration,
+        of @ (problem, equilibration, _): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
+        forces: Vec<ForcesKnown<D>>,
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
-    ) {
-        let mut space = self.take();
-        space.slopes.clear();
-        let slopes = Slopes { problem, equilibration, choice, levels, numbers: &self.numbers };
-        for parity in 0..2 {
-            self.strips(parity, space.slopes.part())
-                .into_par_iter()
-                .for_each_init(BalanceFields::default, |fields, strip| slopes.add(fields, strip));
-        }
+        then: Then<'_, D>,
+    ) -> f64 {
+        let new = || Workspace::new(&self.numbers);
+        self.spaces.lend(new, |space| {
+            let miss = self.add_slopes(of, forces, levels, concentration, &mut space.slopes);
+            self.minimise(space);
+            for part in equilibration.parts() {
+                let (nodes, moments) = equilibration.moments_mut(part, levels);
+                self.add(problem.mesh(), nodes, &space.change, moments);
+                then(levels, part);
+            }
+            miss
+        })
+    }
+
+    /// Solves the star problems and finds the slopes of the energy.
+    fn add_slopes<const D: usize, const N: usize>(
+        &self,
+        (problem, equilibration, choice): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
+        forces: Vec<ForcesKnown<D>>,
+        levels: &mut EquilibratedLevels<D>,
+        concentration: Option<&Concentration<D>>,
+        all: &mut Modes,
+    ) -> f64 {
+        all.clear();
+        let room = Pool::new();
+        let miss = equilibration.solve(forces, levels, |levels, part| {
+            let slopes = Slopes { problem, equilibration, choice, levels, numbers: &self.numbers };
+            for parity in 0..2 {
+                let strips = part.strips.clone().filter(|strip| strip % 2 == parity);
+                self.strips(&equilibration.strips, strips, all.part())
+                    .into_par_iter()
+                    .for_each(|strip| room.lend(BalanceFields::default, |fields| slopes.add(fields, strip)));
+            }
+        });
         if let Some(concentration) = concentration {
             for (lane, forces) in levels.forces().iter().enumerate() {
                 concentration.each_element(problem, forces.density.hats(), |element, stress| {
                     let slope = product_slope::<D, N>(&stress.products());
                     let slope = slope.map(|slope| Lanes::at_levels(|l| if l == lane { slope } else { 0.0 }));
-                    self.numbers.add_slope(problem.mesh(), element.index(), &slope, &mut space.slopes.part());
+                    self.numbers.add_slope(problem.mesh(), element.index(), &slope, &mut all.part());
                 });
             }
         }
-        self.minimise(&mut space);
-        self.add(problem.mesh(), 0..problem.mesh().node_count(), &space.change, levels.moments_mut());
-        self.leave(space);
+        miss
     }
 
-    /// The elements of every other strip, each with the modes of its nodes.
-    fn strips<'a>(&self, parity: usize, modes: ModesPart<'a>) -> Vec<(Range<usize>, ModesPart<'a>)> {
-        let (mut rest, mut parts) = (modes, Vec::with_capacity(self.strips.count() / 2 + 1));
-        for strip in (parity..self.strips.count()).step_by(2) {
-            let nodes = self.strips.nodes(strip);
+    /// The elements of some strips that have no node in common, each with the modes of its nodes.
+    fn strips<'a>(
+        &self,
+        all: &Strips,
+        strips: impl Iterator<Item = usize>,
+        modes: ModesPart<'a>,
+    ) -> Vec<(Range<usize>, ModesPart<'a>)> {
+        let (mut rest, mut parts) = (modes, Vec::new());
+        for strip in strips {
+            let nodes = all.nodes(strip);
             let (_, part) = rest.split(&self.numbers, NodeId::new(nodes.start));
             let (part, others) = part.split(&self.numbers, NodeId::new(nodes.end));
-            parts.push((self.strips.elements(strip), part));
+            parts.push((all.elements(strip), part));
             rest = others;
         }
         parts
@@ -191,17 +211,31 @@ impl TractionMinimisation {
             );
             return;
         }
-        dispatch(
-            #[inline(always)]
-            || {
-                let mut rest = moments;
-                for node in nodes.map(NodeId::new) {
-                    let (own, others) = rest.split_at_mut(mesh.stars().link_range(node).len());
-                    self.numbers.add_change(mesh, node, change, own);
-                    rest = others;
-                }
-            },
-        );
+        run_task(AddChange { numbers: &self.numbers, mesh, nodes, change, moments });
+    }
+}
+
+/// The change of the moments on the links of the stars of some nodes.
+struct AddChange<'a, const D: usize, const N: usize> {
+    numbers: &'a Numbers,
+    mesh: &'a Mesh<D, N>,
+    nodes: Range<usize>,
+    change: &'a Modes,
+    moments: &'a mut [[Lanes; D]],
+}
+
+impl<const D: usize, const N: usize> Task for AddChange<'_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Registers>(self, registers: R) {
+        let Self { numbers, mesh, nodes, change, moments } = self;
+        let mut rest = moments;
+        for node in nodes.map(NodeId::new) {
+            let (own, others) = rest.split_at_mut(mesh.stars().link_range(node).len());
+            numbers.add_change(Wide::new(registers), mesh, node, change, own);
+            rest = others;
+        }
     }
 }
 
@@ -221,21 +255,25 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
         for block in elements.start / BLOCK..elements.end.div_ceil(BLOCK) {
             let own = self.equilibration.blocks.elements(block);
             let range = own.start.max(elements.start)..own.end.min(elements.end);
-            dispatch(
-                #[inline(always)]
-                || self.add_block(fields, block, range, &mut to),
-            );
+            run_task(SlopesOfBlock { all: self, fields, block, range, to: to.reborrow() });
         }
     }
 
     /// Adds those of some elements of a block.
     #[inline(always)]
-    fn add_block(&self, fields: &mut BalanceFields<D>, block: usize, range: Range<usize>, to: &mut ModesPart<'_>) {
+    fn add_block<R: Registers>(
+        &self,
+        like: Wide<R>,
+        fields: &mut BalanceFields<D>,
+        block: usize,
+        range: Range<usize>,
+        to: &mut ModesPart<'_>,
+    ) {
         let (problem, equilibration, levels) = (self.problem, self.equilibration, self.levels);
         let first = equilibration.blocks.elements(block).start;
         let block = equilibration.blocks.block(block);
-        fields.gather(problem, block.nodes, levels);
-        fields.gather_displacement(block.nodes, levels);
+        fields.gather(like, problem, block.nodes, levels);
+        fields.gather_displacement(like, block.nodes, levels);
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
@@ -247,12 +285,31 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let (id, nodes, element) = (ElementId::new(e), nodes_of(e), &equilibration.elements[e]);
                 let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
                 let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
-                let balance = fields.nodal_balance(e - start, levels, id, &nodes);
-                let stress = hooke(problem.material(id), &element.gradient(&BalanceNode::displacements(&nodes)));
+                let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
+                let stress = hooke(problem.material(id), &element.gradient(&BalanceNode::displacements(like, &nodes)));
                 let slope = moment_slope(&measure, &form, &balance, &stress);
                 self.numbers.add_slope(problem.mesh(), e, &slope, to);
             }
         }
+    }
+}
+
+/// Some elements of a block whose slopes are wanted.
+struct SlopesOfBlock<'b, 'a, const D: usize, const N: usize> {
+    all: &'b Slopes<'a, D, N>,
+    fields: &'b mut BalanceFields<D>,
+    block: usize,
+    range: Range<usize>,
+    to: ModesPart<'b>,
+}
+
+impl<const D: usize, const N: usize> Task for SlopesOfBlock<'_, '_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Registers>(self, registers: R) {
+        let Self { all, fields, block, range, mut to } = self;
+        all.add_block(Wide::new(registers), fields, block, range, &mut to);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The energy of elements as a form of the coefficients of the modes around them, eight elements at once.
 
-use crate::lanes::{LANES, Lanes, Value};
+use crate::lanes::{LANES, Lanes};
 use crate::stress::{BasisForm, EDGES, TractionForms};
 use nalgebra::Matrix2;
 use percute_core::ids::ElementId;

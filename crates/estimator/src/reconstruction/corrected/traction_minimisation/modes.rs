@@ -9,7 +9,7 @@
 //! Each edge and each node has coefficients, whether it has modes or not; without modes they stay 0. Edges are numbered by their lower
 //! ends, so that those of consecutive nodes follow each other.
 
-use crate::lanes::{Lanes, Value};
+use crate::lanes::{Lanes, Value, load};
 use percute_core::ids::{FacetId, NodeId};
 use percute_core::mesh::{Facet, Mesh};
 
@@ -129,21 +129,22 @@ impl Numbers {
     /// Adds the slopes of an energy in the moments on the edges of element `e`, outward from it. Moment 4k + 2p + c is
     /// component c at the p-th node of edge k.
     #[inline(always)]
-    pub(in crate::reconstruction) fn add_slope<const D: usize, const N: usize>(
+    pub(in crate::reconstruction) fn add_slope<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
         &self,
         mesh: &Mesh<D, N>,
         e: usize,
-        slope: &[Lanes; MOMENTS],
+        slope: &[T; MOMENTS],
         to: &mut ModesPart<'_>,
     ) {
         let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
-        let mut nodes = [[Lanes::ZERO; 3]; N];
+        let mut nodes = [[slope[0].zero(); 3]; N];
         for k in 0..N {
             let (a, b) = ((k + 1) % N, (k + 2) % N);
             let edge = Edge::new(mesh, cell[a], cell[b]);
             let (ax, ay, bx, by) = (slope[4 * k], slope[4 * k + 1], slope[4 * k + 2], slope[4 * k + 3]);
             let (x, y) = (bx - ax, by - ay);
-            to.edges[self.of(facets[k]) - to.first_edge] += x * edge.along[0] + y * edge.along[1];
+            let sum = &mut to.edges[self.of(facets[k]) - to.first_edge];
+            *sum = (x.load(sum) + (x * edge.along[0] + y * edge.along[1])).store();
             let couple = x * edge.lever[0] + y * edge.lever[1];
             nodes[a] = [nodes[a][0] - ax, nodes[a][1] - ay, nodes[a][2] - couple];
             nodes[b] = [nodes[b][0] + bx, nodes[b][1] + by, nodes[b][2] + couple];
@@ -151,30 +152,33 @@ impl Numbers {
         for (node, own) in cell.iter().zip(&nodes) {
             let to = &mut to.nodes[node.index() - to.first_node];
             for i in 0..3 {
-                to[i] += own[i];
+                to[i] = (own[i].load(&to[i]) + own[i]).store();
             }
         }
     }
 
-    /// Adds the moments that modes make on the links of the star of one node.
+    /// Adds the moments that modes make on the links of the star of one node; the sums have the form of a number.
     #[inline(always)]
-    pub(in crate::reconstruction) fn add_change<const D: usize, const N: usize>(
+    pub(in crate::reconstruction) fn add_change<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
         &self,
+        like: T,
         mesh: &Mesh<D, N>,
         node: NodeId,
         change: &Modes,
         moments: &mut [[Lanes; D]],
     ) {
-        let [x, y, turn] = change.nodes[node.index()];
+        let [x, y, turn] = load(like, &change.nodes[node.index()]);
         for (moment, facet) in moments.iter_mut().zip(mesh.stars().star(node).links) {
             let Some(facet) = *facet else { continue };
-            let [one, two] = [0, 1].map(|k| mesh.facets()[facet.index()].nodes[k % D]);
-            let other = if one == node { two } else { one };
+            let ends = &mesh.facets()[facet.index()].nodes;
+            let other = if ends[0] == node { ends[D - 1] } else { ends[0] };
             // The star leaves the element before the link by it: the node is the second one there.
             let edge = Edge::new(mesh, other, node);
-            let (s, couple) = (change.edges[self.of(facet)], turn - change.nodes[other.index()][2]);
-            moment[0] += x + (couple * edge.lever[0] + s * edge.along[0]);
-            moment[1] += y + (couple * edge.lever[1] + s * edge.along[1]);
+            let s = like.load(&change.edges[self.of(facet)]);
+            let couple = turn - like.load(&change.nodes[other.index()][2]);
+            let [a, b] = [like.load(&moment[0]), like.load(&moment[1])];
+            moment[0] = (a + (x + (couple * edge.lever[0] + s * edge.along[0]))).store();
+            moment[1] = (b + (y + (couple * edge.lever[1] + s * edge.along[1]))).store();
         }
     }
 }
@@ -196,6 +200,6 @@ impl Edge {
         let d = [b[0] - a[0], b[1] - a[1]];
         let inverse_square = 1.0 / (d[0] * d[0] + d[1] * d[1]);
         let inverse = if first < second { -inverse_square.sqrt() } else { inverse_square.sqrt() };
-        Self { along: d.map(|x| inverse * x), lever: [-inverse_square * d[1], inverse_square * d[0]] }
+        Self { along: [inverse * d[0], inverse * d[1]], lever: [-inverse_square * d[1], inverse_square * d[0]] }
     }
 }

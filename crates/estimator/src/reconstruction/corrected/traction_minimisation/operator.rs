@@ -4,7 +4,7 @@
 //! materials or axes.
 
 use super::modes::Numbers;
-use crate::lanes::{Lanes, Value};
+use crate::lanes::Lanes;
 use std::ops::Range;
 
 /// The entries that couple an edge with nodes.

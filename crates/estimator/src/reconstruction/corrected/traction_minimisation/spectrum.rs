@@ -6,7 +6,7 @@
 use super::Workspace;
 use super::modes::{MOMENTS, Modes, Numbers};
 use super::operator::{Block, Operator};
-use crate::lanes::{LANES, Lanes, Value};
+use crate::lanes::{LANES, Lanes};
 use crate::simd::dispatch;
 use percute_core::mesh::Mesh;
 

@@ -80,7 +80,8 @@ impl Case {
         let stars = self.problem.mesh().stars();
         let mut moments = vec![[Lanes::ZERO; 2]; stars.link_count()];
         for node in (0..self.problem.mesh().node_count()).map(NodeId::new) {
-            self.all.numbers.add_change(self.problem.mesh(), node, modes, &mut moments[stars.link_range(node)]);
+            let own = &mut moments[stars.link_range(node)];
+            self.all.numbers.add_change(Lanes::ZERO, self.problem.mesh(), node, modes, own);
         }
         moments
     }
@@ -117,7 +118,7 @@ impl Case {
     }
 
     pub(super) fn change(&self, slopes: &[[Lanes; MOMENTS]]) -> Modes {
-        let mut space = self.all.take();
+        let mut space = Workspace::new(&self.all.numbers);
         space.slopes = self.in_modes(slopes);
         self.all.minimise(&mut space);
         space.change

@@ -1,0 +1,129 @@
+//! The samples of one far element.
+
+use super::FarLevels;
+use super::fields::{BlockFields, VelocityLanes};
+use super::{FarCourse, FarSamples};
+use crate::kinematic::ElementMotion;
+use crate::lanes::{Lanes, Value, load};
+use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, NodalBalance, at_places};
+use crate::pipeline::maps::Contribution;
+use crate::pipeline::sampling::{Course, ElementSample};
+use crate::residual::Residuals;
+use crate::simd::Registers;
+use crate::stress::EnergyForm;
+use crate::wide::Wide;
+use percute_core::ids::ElementId;
+
+/// One far element.
+pub(super) struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {
+    pub(super) all: &'f FarLevels<'a, 's, 'p, D, N>,
+    pub(super) measure: ElementMeasure<'f, D, N>,
+    pub(super) form: EnergyForm<'f>,
+    pub(super) id: ElementId,
+    pub(super) local: &'f [u32; N],
+}
+
+impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
+    /// Samples the element at all levels and in the middles before them.
+    #[inline(always)]
+    pub(super) fn sample<R: Registers>(
+        &self,
+        like: Wide<R>,
+        fields: &BlockFields<D>,
+        balance: &NodalBalance<D, N, Wide<R>>,
+        so_far: &mut FarCourse<D, N>,
+        found: &mut FarSamples<Wide<R>>,
+    ) {
+        let (levels, balanced) = (self.all.levels.levels, self.measure.balanced(balance));
+        found.worst = found.worst.worse(self.measure.resultant_residual(&balanced, like.load(&levels.force_scale())));
+        self.check(&balanced, &mut found.residuals);
+        let stress = self.measure.stress(&self.form, &balanced);
+        let mixed = fields.balance.is_mixed();
+        let now = self.error(&stress, &fields.now, mixed);
+        found.levels.add(&now);
+        let mut mid = ElementError::filled(like);
+        if self.all.has_mids {
+            // A window that begins with the first level has no middle before it.
+            let before = AdmissibleStress::combine(
+                &so_far.stress,
+                &stress,
+                #[inline(always)]
+                |last: f64, now: Wide<R>| now.later(last),
+            );
+            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, mixed);
+            if !self.all.all_single {
+                mid = mid.only(&self.all.single);
+            }
+            found.mids.add(&mid);
+        }
+        let last = levels.len() - 1;
+        so_far.stress = AdmissibleStress::combine(
+            &stress,
+            &stress,
+            #[inline(always)]
+            |now: Wide<R>, _: Wide<R>| now.store().0[last],
+        );
+        self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
+    }
+
+    #[inline(always)]
+    fn error<R: Registers>(
+        &self,
+        stress: &AdmissibleStress<D, N, Wide<R>>,
+        velocities: &[VelocityLanes<D>],
+        mixed: bool,
+    ) -> ElementError<Wide<R>> {
+        let (nodes, like) = (at_places(velocities, self.local), stress.mean[0][0]);
+        let (mut increment, mut lumping, mut motions) = ([[like; D]; N], [[like; D]; N], [&nodes[0].motion; N]);
+        for i in 0..N {
+            increment[i] = load(like, &nodes[i].increment);
+            lumping[i] = load(like, &nodes[i].lumping_increment);
+            motions[i] = &nodes[i].motion;
+        }
+        let increment = self.measure.increment_of(&increment, mixed.then_some(&lumping));
+        self.measure.error(stress, &increment, &ElementMotion::of_nodes(like, motions), like.zero())
+    }
+
+    /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear and the
+    /// same at all levels.
+    #[inline(always)]
+    fn check<T: Value<Stored = Lanes>>(&self, balanced: &Balanced<D, N, T>, residuals: &mut Residuals) {
+        let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;
+        if !self.all.turn.contains(&turn) {
+            return;
+        }
+        for (lane, _) in self.all.turn.iter().enumerate().filter(|&(_, &level)| level == turn) {
+            let one = Balanced::combine(
+                balanced,
+                balanced,
+                #[inline(always)]
+                |now: T, _: T| now.store().0[lane],
+            );
+            self.measure.check_stress(&one, self.all.levels.levels.force_scale().0[lane], residuals);
+        }
+    }
+
+    /// Goes on with the integral of η over time, and keeps the samples that are wanted.
+    #[inline(always)]
+    fn integrate<R: Registers>(
+        &self,
+        now: &ElementError<Wide<R>>,
+        mid: &ElementError<Wide<R>>,
+        course: &mut Course,
+        kept: &mut Vec<Contribution>,
+    ) {
+        let totals = now.total();
+        // The trapezoidal rule, with the middle where it is sampled.
+        let [ends, middles] = [totals.load(&self.all.ends), totals.load(&self.all.middles)];
+        let integrals = (totals.later(course.last().total()) + totals) * ends + mid.total() * middles;
+        let (integrals, now) = (integrals.store(), now.store());
+        for (lane, forces) in self.all.levels.levels.forces().iter().enumerate() {
+            course.add(integrals.0[lane]);
+            if self.all.wanted[lane] {
+                course.reach(ElementSample::away_from_contact(now.lane(lane)));
+                course.keep(self.id, forces.level.index, kept);
+            }
+        }
+        course.reach(ElementSample::away_from_contact(now.lane(self.all.levels.levels.len() - 1)));
+    }
+}

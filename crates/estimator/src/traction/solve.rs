@@ -1,0 +1,354 @@
+//! The star problems of some levels side by side, block by block.
+
+use super::star_solver::{Compatibility, StarSolver};
+use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
+use crate::blocks::{BLOCK, MeshPart, StarBlock};
+use crate::element::Element;
+use crate::field_lanes::FieldLanes;
+use crate::lanes::{Lanes, Value, load};
+use crate::residual::worse;
+use crate::simd::{Registers, Task, run_task};
+use crate::stress::hooke;
+use crate::time_level::{ForcesKnown, Side};
+use crate::wide::Wide;
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// The fields of the nodes and elements of a block of stars.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StarFields<const D: usize> {
+    displacement: FieldLanes<D>,
+    acceleration: FieldLanes<D>,
+    lumping_difference: FieldLanes<D>,
+    /// σ_h (Pa).
+    stress: Vec<[[Lanes; D]; D]>,
+    /// f_d (N/m³), empty if there is none.
+    body_force: Vec<[Lanes; D]>,
+}
+
+impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
+    /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels, part by part, and gives `then` each part when all
+    /// stars of its elements are solved. Returns the largest relative miss of their equations. `levels` gives its memory.
+    pub(crate) fn solve(
+        &self,
+        forces: Vec<ForcesKnown<D>>,
+        levels: &mut EquilibratedLevels<D>,
+        mut then: impl FnMut(&EquilibratedLevels<D>, &MeshPart),
+    ) -> f64 {
+        levels.force_scale = self.force_scale(&forces);
+        levels.moments.resize(self.problem.mesh().stars().link_count(), [Lanes::ZERO; D]);
+        levels.moments_before.clear();
+        let mut worst = 0.0;
+        for (forces, force_scale) in forces.iter().zip(levels.force_scale.0) {
+            let (moments, miss) = self.stars_before_jump(forces, force_scale).unzip();
+            worst = worse(worst, miss.unwrap_or(0.0));
+            levels.moments_before.push(moments);
+        }
+        levels.forces = forces;
+        for part in self.parts() {
+            worst = worse(worst, self.solve_part(part, levels));
+            then(levels, part);
+        }
+        worst
+    }
+
+    /// Solves the stars of a part.
+    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>) -> f64 {
+        let EquilibratedLevels { forces, force_scale, moments, .. } = levels;
+        let links = |block: usize| self.links(&self.star_blocks.centres(block));
+        let mut blocks = Vec::with_capacity(part.stars.len());
+        let mut rest = &mut moments[part.stars.clone().next().map_or(0, |block| links(block).start)..];
+        for block in part.stars.clone() {
+            let (own, others) = rest.split_at_mut(links(block).len());
+            blocks.push((block, own));
+            rest = others;
+        }
+        let solve = |(block, moments): (usize, &mut [[Lanes; D]])| {
+            let task = |fields: &mut StarFields<D>| {
+                run_task(SolveBlock { all: self, forces, force_scale, block, fields, moments })
+            };
+            self.star_fields.lend(StarFields::default, task)
+        };
+        blocks.into_par_iter().map(solve).reduce(|| 0.0, worse)
+    }
+
+    /// The links of the stars of some nodes.
+    fn links(&self, nodes: &Range<usize>) -> Range<usize> {
+        let stars = self.problem.mesh().stars();
+        stars.link_range(NodeId::new(nodes.start)).start..stars.link_range(NodeId::new(nodes.end - 1)).end
+    }
+
+    /// The nodes of the stars of a part and the moments on their links, for changes that balance. No instant of these levels may be
+    /// a jump.
+    pub(crate) fn moments_mut<'l>(
+        &self,
+        part: &MeshPart,
+        levels: &'l mut EquilibratedLevels<D>,
+    ) -> (Range<usize>, &'l mut [[Lanes; D]]) {
+        if part.stars.is_empty() {
+            return (0..0, &mut []);
+        }
+        let centres = |block: usize| self.star_blocks.centres(block);
+        let nodes = centres(part.stars.start).start..centres(part.stars.end - 1).end;
+        let links = self.links(&nodes);
+        (nodes, &mut levels.moments[links])
+    }
+
+    /// Largest nodal force of any element at each level (N).
+    fn force_scale(&self, forces: &[ForcesKnown<D>]) -> Lanes {
+        let blocks = (0..self.elements.len().div_ceil(BLOCK)).into_par_iter();
+        let largest = |block: usize| {
+            let task = |fields: &mut StarFields<D>| run_task(LargestForce { all: self, forces, block, fields });
+            self.star_fields.lend(StarFields::default, task)
+        };
+        blocks.map(largest).reduce(|| Lanes::ZERO, Value::max)
+    }
+
+    #[inline(always)]
+    fn force_scale_of<R: Registers>(
+        &self,
+        like: Wide<R>,
+        forces: &[ForcesKnown<D>],
+        block: usize,
+        fields: &mut StarFields<D>,
+    ) -> Wide<R> {
+        let (range, block) = (self.blocks.elements(block), self.blocks.block(block));
+        fields.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        fields.acceleration.gather(like, block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
+        let mut largest = like.zero();
+        for (e, local) in range.zip(block.local) {
+            let (element, law) = (&self.elements[e], self.problem.material(ElementId::new(e)));
+            let stress = hooke(law, &element.gradient(&fields.displacement.of(like, local)));
+            largest = largest.max(largest_force(element, &stress, &fields.acceleration.of(like, local)));
+        }
+        largest
+    }
+
+    /// Solves the stars of a block. Returns the largest residual.
+    #[inline(always)]
+    fn solve_block<R: Registers>(
+        &self,
+        like: Wide<R>,
+        forces: &[ForcesKnown<D>],
+        force_scale: &Lanes,
+        block: usize,
+        fields: &mut StarFields<D>,
+        mut moments: &mut [[Lanes; D]],
+    ) -> f64 {
+        let (centres, place) = (self.star_blocks.centres(block), self.star_blocks.block(block));
+        let mixed = fields.gather(like, self, forces, &place);
+        let floor = like.load(force_scale) * 1e-12;
+        let mut worst: f64 = 0.0;
+        for node in centres.map(NodeId::new) {
+            let star = self.problem.mesh().stars().star(node);
+            let (own, others) = std::mem::take(&mut moments).split_at_mut(star.links.len());
+            moments = others;
+            let acceleration = fields.acceleration.values();
+            let local = self.star_blocks.around(node);
+            let mass_term = if mixed {
+                let lumping_difference = fields.lumping_difference.values();
+                MassTerm::Mixed { acceleration, lumping_difference, nodes: place.local }
+            } else {
+                let own = self.position(star.elements[0], node);
+                MassTerm::Lumped(load(like, &acceleration[place.local[local[0] as usize][own] as usize]))
+            };
+            let ends = self.ends(
+                like,
+                &star,
+                #[inline(always)]
+                |facet| load(like, &self.known_moments(forces, facet, node)),
+            );
+            let solver = StarSolver {
+                all: self,
+                node,
+                elements: star.elements,
+                local,
+                stress: &fields.stress,
+                body_force: &fields.body_force,
+                mass_term,
+                ends: &ends,
+            };
+            let found = solver.solve(own);
+            let scale = found.scale.max(floor);
+            let relative = found.miss / scale.max(like.fill(f64::MIN_POSITIVE));
+            let largest = relative.store().0[..forces.len()].iter().copied().fold(0.0, worse);
+            if largest <= EXPLAINED {
+                worst = worse(worst, largest);
+                continue;
+            }
+            let (miss, scale) = (found.miss.store(), found.scale.store());
+            for (lane, forces) in forces.iter().enumerate() {
+                let star = Compatibility { miss: miss.0[lane], scale: scale.0[lane] };
+                worst = worse(worst, self.star_residual(star, forces, force_scale.0[lane], node));
+            }
+        }
+        worst
+    }
+
+    /// The known moments on a facet at a node, at each level.
+    #[inline(always)]
+    fn known_moments(&self, forces: &[ForcesKnown<D>], facet: FacetId, node: NodeId) -> [Lanes; D] {
+        if !self.is_known(facet) {
+            return [Lanes::ZERO; D];
+        }
+        let mut moments = [Lanes::ZERO; D];
+        for (lane, forces) in forces.iter().enumerate() {
+            let moment = self.known_moment(&forces.level, &forces.density, facet, node);
+            (0..D).for_each(|c| moments[c].0[lane] = moment[c]);
+        }
+        moments
+    }
+
+    /// The stars of contact nodes once more, with the values before a jump, and the largest relative miss of their equations.
+    fn stars_before_jump(&self, forces: &ForcesKnown<D>, force_scale: f64) -> Option<(Vec<[f64; D]>, f64)> {
+        let before = forces.before.as_ref()?;
+        let mut moments = vec![[0.0; D]; self.contact_links.last().copied().unwrap_or(0)];
+        let mut worst: f64 = 0.0;
+        for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
+            let node = contact.node;
+            let links = &mut moments[self.contact_links[at]..self.contact_links[at + 1]];
+            let star = self.problem.mesh().stars().star(node);
+            let stress: Vec<_> = star.elements.iter().map(|&e| self.stress_of(forces, e)).collect();
+            let body = &forces.level.body_force;
+            let body_force: Vec<_> = star.elements.iter().filter_map(|e| body.get(e.index()).copied()).collect();
+            let local: Vec<u32> = (0..star.elements.len() as u32).collect();
+            let ends = self.ends(0.0, &star, |facet| self.known_moment(&forces.level, &before.density, facet, node));
+            let solver = StarSolver {
+                all: self,
+                node,
+                elements: star.elements,
+                local: &local,
+                stress: &stress,
+                body_force: &body_force,
+                mass_term: MassTerm::Lumped(before.acceleration[at]),
+                ends: &ends,
+            };
+            worst = worse(worst, self.star_residual(solver.solve(links), forces, force_scale, node));
+        }
+        Some((moments, worst))
+    }
+
+    /// σ_h of one element (Pa).
+    pub(crate) fn stress_of(&self, forces: &ForcesKnown<D>, element: ElementId) -> [[f64; D]; D] {
+        let data = &self.elements[element.index()];
+        hooke(self.problem.material(element), &data.gradient(&data.gather(&forces.level.displacement)))
+    }
+
+    /// The moments by which the star of local node `i` enters and leaves an element.
+    #[inline]
+    pub(crate) fn moments_around(
+        &self,
+        level: &EquilibratedLevel<'_, D>,
+        data: &Element<D, N>,
+        i: usize,
+        contact: Option<usize>,
+        side: Side,
+    ) -> [[f64; D]; 2] {
+        let link = data.links[i] as usize;
+        match (contact, side, level.moments_before) {
+            (Some(at), Side::Before, Some(moments)) => {
+                let first = self.problem.mesh().stars().link_range(data.nodes[i]).start;
+                let link = self.contact_links[at] + link - first;
+                [moments[link], moments[link + 1]]
+            }
+            _ => [level.moment(link), level.moment(link + 1)],
+        }
+    }
+}
+
+/// A block of stars to be solved.
+struct SolveBlock<'b, 'p, const D: usize, const N: usize> {
+    all: &'b Equilibration<'p, D, N>,
+    forces: &'b [ForcesKnown<D>],
+    force_scale: &'b Lanes,
+    block: usize,
+    fields: &'b mut StarFields<D>,
+    moments: &'b mut [[Lanes; D]],
+}
+
+impl<const D: usize, const N: usize> Task for SolveBlock<'_, '_, D, N> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<R: Registers>(self, registers: R) -> f64 {
+        let Self { all, forces, force_scale, block, fields, moments } = self;
+        all.solve_block(Wide::new(registers), forces, force_scale, block, fields, moments)
+    }
+}
+
+/// A block of elements whose largest force is wanted.
+struct LargestForce<'b, 'p, const D: usize, const N: usize> {
+    all: &'b Equilibration<'p, D, N>,
+    forces: &'b [ForcesKnown<D>],
+    block: usize,
+    fields: &'b mut StarFields<D>,
+}
+
+impl<const D: usize, const N: usize> Task for LargestForce<'_, '_, D, N> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn run<R: Registers>(self, registers: R) -> Lanes {
+        self.all.force_scale_of(Wide::new(registers), self.forces, self.block, self.fields).store()
+    }
+}
+
+impl<const D: usize> StarFields<D> {
+    /// Takes the fields of a block. Returns whether there is a lumping difference.
+    #[inline(always)]
+    fn gather<R: Registers, const N: usize>(
+        &mut self,
+        like: Wide<R>,
+        all: &Equilibration<'_, D, N>,
+        forces: &[ForcesKnown<D>],
+        block: &StarBlock<'_, N>,
+    ) -> bool {
+        self.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        self.acceleration.gather(like, block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
+        let mixed = forces.iter().any(|f| f.level.lumping_difference.is_some());
+        if mixed {
+            self.lumping_difference.gather(
+                like,
+                block.nodes,
+                forces.iter().map(|f| f.level.lumping_difference.as_deref()),
+            );
+        }
+        self.stress.clear();
+        for (id, local) in block.cells() {
+            let element = &all.elements[id.index()];
+            let stress = hooke(all.problem.material(id), &element.gradient(&self.displacement.of(like, local)));
+            let mut stored = [[Lanes::ZERO; D]; D];
+            for (to, from) in stored.as_flattened_mut().iter_mut().zip(stress.as_flattened()) {
+                *to = from.store();
+            }
+            self.stress.push(stored);
+        }
+        self.body_force.clear();
+        if forces.iter().any(|f| !f.level.body_force.is_empty()) {
+            let of = |e: usize, c: usize| {
+                Lanes::at_levels(|k| forces.get(k).and_then(|f| f.level.body_force.get(e)).map_or(0.0, |f| f[c]))
+            };
+            let vector = |&e: &u32| std::array::from_fn(|c| of(e as usize, c));
+            self.body_force.extend(block.elements.iter().map(vector));
+        }
+        mixed
+    }
+}
+
+/// Largest |Vσ∇φ_i| and lumped inertia force of an element (N).
+#[inline(always)]
+fn largest_force<T: Value, const D: usize, const N: usize>(
+    element: &Element<D, N>,
+    stress: &[[T; D]; D],
+    acceleration: &[[T; D]; N],
+) -> T {
+    let mut largest = stress[0][0].zero();
+    for i in 0..N {
+        let internal = element.internal_force(i, stress);
+        for c in 0..D {
+            largest = largest.max(internal[c].abs()).max((acceleration[i][c] * element.nodal_mass).abs());
+        }
+    }
+    largest
+}

@@ -1,0 +1,127 @@
+//! Numbers at several time levels side by side, in registers.
+//!
+//! [`Lanes`](crate::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in memory too, and moves
+//! three numbers for each operation. In registers a formula moves those that do not fit.
+
+use crate::lanes::{LANES, Lanes, Value};
+use crate::simd::Registers;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A number at each level of some lanes, in registers of one kind.
+#[derive(Clone, Copy)]
+pub(crate) struct Wide<R: Registers> {
+    registers: R,
+    numbers: R::Eight,
+}
+
+impl<R: Registers> Wide<R> {
+    /// Any numbers, as the form of others.
+    #[inline(always)]
+    pub(crate) fn new(registers: R) -> Self {
+        Self { registers, numbers: registers.splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn with(self, numbers: R::Eight) -> Self {
+        Self { numbers, ..self }
+    }
+
+    /// The first and the second components of a vector at each level.
+    #[inline(always)]
+    pub(crate) fn transpose(self, vectors: [&[f64; 2]; LANES]) -> [Self; 2] {
+        let [first, second] = self.registers.transpose(vectors);
+        [self.with(first), self.with(second)]
+    }
+
+    /// The numbers of the levels before, that of the first level given.
+    #[inline(always)]
+    pub(crate) fn later(self, first: f64) -> Self {
+        self.with(self.registers.later(first, self.numbers))
+    }
+}
+
+impl<R: Registers> Value for Wide<R> {
+    type Stored = Lanes;
+
+    #[inline(always)]
+    fn load(self, stored: &Lanes) -> Self {
+        self.with(self.registers.load(&stored.0))
+    }
+
+    #[inline(always)]
+    fn store(self) -> Lanes {
+        Lanes(self.registers.store(self.numbers))
+    }
+
+    #[inline(always)]
+    fn fill(self, number: f64) -> Self {
+        self.with(self.registers.splat(number))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.with(self.registers.abs(self.numbers))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.with(self.registers.max(self.numbers, other.numbers))
+    }
+
+    #[inline(always)]
+    fn worse(self, other: Self) -> Self {
+        self.with(self.registers.max_bits(self.numbers, other.numbers))
+    }
+}
+
+/// An operation on two numbers at each level.
+macro_rules! operation {
+    ($trait:ident $method:ident $operation:ident) => {
+        impl<R: Registers> $trait for Wide<R> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with(self.registers.$operation(self.numbers, other.numbers))
+            }
+        }
+    };
+}
+
+operation!(Add add add);
+operation!(Sub sub sub);
+operation!(Mul mul mul);
+operation!(Div div div);
+
+impl<R: Registers> Mul<f64> for Wide<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self * self.fill(factor)
+    }
+}
+
+impl<R: Registers> Neg for Wide<R> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        // The sign of 0 too.
+        self.fill(-0.0) - self
+    }
+}
+
+impl<R: Registers> AddAssign for Wide<R> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<R: Registers> SubAssign for Wide<R> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
