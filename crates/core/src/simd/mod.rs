@@ -65,7 +65,7 @@ pub(crate) trait Task {
 /// Does the work with the widest vectors of the machine.
 #[inline]
 pub(crate) fn dispatch<T: Task>(task: T) -> T::Output {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
     {
         use pulp::x86::{V3, V4};
         if let Some(set) = V4::try_new() {
