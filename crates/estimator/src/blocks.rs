@@ -192,3 +192,38 @@ impl<const N: usize> StarBlock<'_, N> {
         self.elements.iter().map(|&e| ElementId::new(e as usize)).zip(self.local)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::mesh::TriangleMesh;
+    use percute_testkit::random_rectangle;
+
+    /// Parts hold all blocks and strips once, in order, and the stars that their elements need come with them or before.
+    fn check(mesh: &TriangleMesh, fewest: usize) -> usize {
+        let strips = Strips::with_fewest(mesh.cells(), fewest);
+        let parts = parts(mesh, &strips);
+        let (mut stars, mut elements, mut strip) = (0, 0, 0);
+        for part in &parts {
+            assert_eq!((part.stars.start, part.elements.start, part.strips.start), (stars, elements, strip));
+            (stars, elements, strip) = (part.stars.end, part.elements.end, part.strips.end);
+            let of_blocks = part.elements.start * BLOCK..(part.elements.end * BLOCK).min(mesh.element_count());
+            let of_strips = part.strips.clone().flat_map(|strip| strips.elements(strip));
+            for e in of_blocks.chain(of_strips) {
+                assert!(mesh.cells()[e].iter().all(|node| node.index() < stars * BLOCK), "element {e}");
+            }
+        }
+        let all = [mesh.node_count().div_ceil(BLOCK), mesh.element_count().div_ceil(BLOCK), strips.count()];
+        assert_eq!([stars, elements, strip], all);
+        parts.len()
+    }
+
+    #[test]
+    fn parts_have_the_stars_of_their_elements() {
+        let mesh = TriangleMesh::rectangle(1.0, 8.0, 12, 200).unwrap();
+        assert!(check(&mesh, 64) > 5 && check(&mesh, 500) > 1);
+        assert_eq!(check(&mesh, 10_000), 1);
+        // Without locality there is one strip.
+        assert_eq!(check(&random_rectangle(1.0, 1.0, 12, 3).unwrap(), 16), 1);
+    }
+}

@@ -4,7 +4,7 @@ use crate::beside::run;
 use crate::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
 use crate::estimating::{estimate, estimate_with_maps, history, reactions};
 use percute_core::history::Discard;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -126,6 +126,28 @@ fn block() {
     let plane = plane_below(&mesh, 0.01, 2e-4, 0.2, None);
     let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();
     check("block", &problem, &steps(&problem, 0.9, 23));
+}
+
+/// More elements than a part of four strips of 2048, so that the work goes from part to part.
+#[test]
+fn parts() {
+    let mesh = TriangleMesh::rectangle(0.05, 0.08, 48, 200).unwrap();
+    assert!(mesh.element_count() > 2 * 4 * 2048);
+    let plane = plane_below(&mesh, 0.01, 1e-5, 0.2, None);
+    let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();
+    let times = steps(&problem, 0.9, 12);
+    let history = history(&problem, &times);
+    for &reconstruction in Reconstruction::ALL {
+        let options = Options { reconstruction, every: Sampling::Every(1), ..Options::default() };
+        let of = |threads, window| {
+            let options = Options { threads: Some(threads), window: Some(window), ..options };
+            bits(&estimate(&problem, &history, options))
+        };
+        let expected = of(1, 8);
+        for (threads, window) in [(2, 8), (3, 5), (1, 1)] {
+            assert!(of(threads, window) == expected, "{reconstruction}: {threads} threads, window {window}");
+        }
+    }
 }
 
 #[test]
