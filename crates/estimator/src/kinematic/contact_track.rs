@@ -34,6 +34,14 @@ pub(crate) struct ContactTrack {
     between_instants: f64,
 }
 
+/// Instants of a window that ends with the run which are worked on at once; few in tests, so that their windows have some pieces.
+const PIECE: usize = if cfg!(test) { 3 } else { 4096 };
+
+/// A motion as it is stored.
+fn stored(path: Path) -> Vec<Pair> {
+    path.into_iter().map(|(velocity, gap)| [velocity, gap]).collect()
+}
+
 /// The normal motion of a candidate node over one step of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalStep {
@@ -104,23 +112,58 @@ impl ContactTrack {
 
     /// Solves the last window, which ends with the run.
     pub(super) fn finish(&mut self, store: &mut NormalMotions, tolerance: f64) -> Result<(), ScratchError> {
-        if self.known < store.count() { self.close(store, false, tolerance) } else { Ok(()) }
+        if self.penetrates(store, tolerance)? {
+            return self.close(store, false, tolerance);
+        }
+        // Without a contact at its end the window has the motion of the simulation, piece by piece.
+        while self.known < store.count() {
+            let (first, target, lengths) = self.window(store, PIECE)?;
+            let (velocity, gap) = self.last;
+            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
+            let path = window.integrate(&target);
+            self.record(&window, &path);
+            store.write(self.node, first, &stored(path))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the motion of the simulation since the last known instant is deeper than the tolerance (m).
+    fn penetrates(&self, store: &mut NormalMotions, tolerance: f64) -> Result<bool, ScratchError> {
+        let mut ahead = self.clone();
+        while ahead.known < store.count() {
+            let (_, target, lengths) = ahead.window(store, PIECE)?;
+            let (velocity, gap) = ahead.last;
+            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
+            let path = window.integrate(&target);
+            let (_, least) = window.deepest(&path);
+            if least.is_nan() || least < -tolerance {
+                return Ok(true);
+            }
+            let (velocity, gap) = path[path.len() - 1];
+            (ahead.last, ahead.known) = ((velocity, gap), ahead.known + path.len());
+        }
+        Ok(false)
+    }
+
+    /// The first instant that is not known, with target velocities and half steps from there on: at most so many.
+    fn window(&self, store: &mut NormalMotions, most: usize) -> Result<(usize, Vec<f64>, Vec<f64>), ScratchError> {
+        let count = most.min(store.count() - self.known);
+        let mut steps = Vec::with_capacity(count);
+        store.read(self.node, self.known..self.known + count, &mut steps)?;
+        let (target, lengths) = steps.into_iter().map(|[velocity, half]| (velocity, half)).unzip();
+        Ok((self.known, target, lengths))
     }
 
     /// Solves the window since the last known instant.
     fn close(&mut self, store: &mut NormalMotions, arrives: bool, tolerance: f64) -> Result<(), ScratchError> {
-        let mut steps = Vec::with_capacity(store.count() - self.known);
-        store.read(self.node, self.known..store.count(), &mut steps)?;
-        let (target, lengths): (Vec<f64>, Vec<f64>) = steps.iter().map(|[velocity, half]| (*velocity, *half)).unzip();
+        // A window may be as long as the run: there is one copy of it at a time.
+        let (first, target, lengths) = self.window(store, usize::MAX)?;
         let (velocity, gap) = self.last;
         let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives };
         // A prescribed node cannot be moved out of the way.
         let path = if self.free { solve(&window, tolerance) } else { window.integrate(&target) };
         self.record(&window, &path);
-        for (stored, (velocity, gap)) in steps.iter_mut().zip(path) {
-            *stored = [velocity, gap];
-        }
-        store.write(self.node, self.known - steps.len(), &steps)
+        store.write(self.node, first, &stored(path))
     }
 
     /// Takes the motion over the window as known and checks it.

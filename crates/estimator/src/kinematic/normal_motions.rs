@@ -11,7 +11,7 @@ use std::ops::Range;
 const CHUNK: usize = 128;
 
 /// Memory (bytes) that full chunks may always take; on large contact surfaces a single chunk takes more.
-const HELD: usize = 1 << 20;
+const HELD: usize = 1 << 18;
 
 /// Two numbers of a node at an instant.
 pub(super) type Pair = [f64; 2];

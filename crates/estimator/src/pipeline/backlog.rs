@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Memory (bytes) that may always be taken, and for each contact node.
-const HELD: usize = 4 << 20;
+const HELD: usize = 1 << 20;
 const HELD_PER_NODE: usize = 8 << 10;
 
 /// Intervals of all elements, block after block.

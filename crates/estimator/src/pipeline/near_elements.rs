@@ -108,6 +108,11 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
         Ok(())
     }
 
+    /// The elements, of which no interval waits any more.
+    pub(super) fn into_elements(self) -> Vec<NearElement<D, N>> {
+        self.all
+    }
+
     /// Puts the contributions to maps in their places.
     pub(super) fn put(&mut self, maps: &mut Maps<D>) {
         self.all.iter_mut().for_each(|near| maps.put(&std::mem::take(&mut near.kept)));

@@ -164,10 +164,26 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         preparation: &mut Preparation<'p, D, N>,
     ) -> Result<Estimate<D>, ScratchError> {
         pool.install(|| self.work(preparation).and_then(|()| self.catch_up(preparation)))?;
-        let Self { problem, times, intervals, near, courses, residuals, .. } = self;
-        let maps = self.maps.finish(problem, &self.equilibration.elements);
+        // The sums over time begin when the memory of levels is free.
+        let Self {
+            problem,
+            times,
+            intervals,
+            near,
+            courses,
+            residuals,
+            maps,
+            equilibration,
+            levels,
+            equilibrated,
+            carried,
+            ..
+        } = self;
+        let near = near.into_elements();
+        drop((levels, equilibrated, carried));
+        let maps = maps.finish(problem, &equilibration.elements);
         let integrals = courses.iter().map(|course| course.course.integral).collect();
-        let worked = Worked { intervals, near: near.all, integrals, residuals, maps };
+        let worked = Worked { intervals, near, integrals, residuals, maps };
         Ok(totals::estimate(problem, times, preparation, worked))
     }
 
