@@ -47,7 +47,10 @@ pub(crate) struct MeshPart {
     pub(crate) strips: Range<usize>,
 }
 
-/// Strips of a part: enough for the threads of a processor, few enough for its cache.
+/// Elements of a part, at least: few enough for the cache.
+const PART: usize = 8192;
+
+/// Strips of a part, at least: those of a parity are worked on at the same time.
 const STRIPS: usize = 4;
 
 /// The parts of a mesh with these strips, in order.
@@ -58,12 +61,16 @@ pub(crate) fn parts<const D: usize, const N: usize>(mesh: &Mesh<D, N>, strips: &
         _ if strip == strips.count() => all,
         _ => [strips.nodes(strip - 1).end.div_ceil(BLOCK), strips.elements(strip).start / BLOCK],
     };
-    let part = |first: usize| {
-        let next = (first + STRIPS).min(strips.count());
-        let ([stars, elements], [stars_end, elements_end]) = (ends(first), ends(next));
-        MeshPart { stars: stars..stars_end, elements: elements..elements_end, strips: first..next }
-    };
-    (0..strips.count()).step_by(STRIPS).map(part).collect()
+    let (mut parts, mut first) = (Vec::new(), 0);
+    for next in 1..=strips.count() {
+        let elements = strips.elements(next - 1).end - strips.elements(first).start;
+        if next == strips.count() || (next - first >= STRIPS && elements >= PART) {
+            let ([stars, blocks], [stars_end, blocks_end]) = (ends(first), ends(next));
+            parts.push(MeshPart { stars: stars..stars_end, elements: blocks..blocks_end, strips: first..next });
+            first = next;
+        }
+    }
+    parts
 }
 
 /// The numbers that belong to each block, one block after the other.
@@ -220,9 +227,8 @@ mod tests {
 
     #[test]
     fn parts_have_the_stars_of_their_elements() {
-        let mesh = TriangleMesh::rectangle(1.0, 8.0, 12, 200).unwrap();
-        assert!(check(&mesh, 64) > 5 && check(&mesh, 500) > 1);
-        assert_eq!(check(&mesh, 10_000), 1);
+        let mesh = TriangleMesh::rectangle(1.0, 80.0, 12, 1200).unwrap();
+        assert_eq!((check(&mesh, 64), check(&mesh, 2100), check(&mesh, 20_000)), (4, 4, 1));
         // Without locality there is one strip.
         assert_eq!(check(&random_rectangle(1.0, 1.0, 12, 3).unwrap(), 16), 1);
     }

@@ -12,8 +12,8 @@ const PIECE: usize = 4096;
 /// Why numbers could not wait in a file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error(
-    "a temporary file of {bytes} bytes in {} failed: {cause}. It holds elements around contact nodes whose next contact is not \
-     known yet. Set TMPDIR to a folder with more space, or sample fewer steps with `every`",
+    "a temporary file of {bytes} bytes in {} failed: {cause}. It holds the motion of contact nodes, and the elements around them, until \
+     the next contact is known. Set TMPDIR to a folder that exists, can be written and has space, or sample fewer steps with `every`",
     folder.display()
 )]
 pub struct ScratchError {
@@ -37,10 +37,23 @@ pub(crate) struct ScratchFile {
 /// The folder of temporary files: that of `TMPDIR`. Without one it is `/var/tmp`, which is on a disk, while `/tmp` may be memory.
 fn folder() -> PathBuf {
     let lasting = Path::new("/var/tmp");
-    if std::env::var_os("TMPDIR").is_none() && lasting.is_dir() { lasting.to_path_buf() } else { std::env::temp_dir() }
+    match std::env::var_os("TMPDIR").filter(|folder| !folder.is_empty()) {
+        Some(folder) => folder.into(),
+        None if lasting.is_dir() => lasting.to_path_buf(),
+        None => std::env::temp_dir(),
+    }
 }
 
 impl ScratchFile {
+    /// Whether a file can be made.
+    ///
+    /// # Errors
+    /// The folder does not exist or cannot be written.
+    pub(crate) fn check() -> Result<(), ScratchError> {
+        let file = Self::default();
+        tempfile::tempfile_in(folder()).map(|_| ()).map_err(|cause| file.failure(0, &cause))
+    }
+
     /// One that is made in this folder.
     #[cfg(test)]
     pub(crate) fn within(folder: PathBuf) -> Self {

@@ -31,7 +31,7 @@ use star_solver::{Compatibility, Ends};
 pub(crate) type Then<'t, const D: usize> = &'t mut dyn FnMut(&EquilibratedLevels<D>, &MeshPart);
 
 /// Elements of a strip, at least.
-const STRIP: usize = 2048;
+const STRIP: usize = 512;
 
 /// Facet without prescribed moments.
 const FREE: u32 = u32::MAX;

@@ -14,14 +14,15 @@ pub(crate) struct ContactTracks {
 }
 
 impl ContactTracks {
-    /// Those of so many nodes, which begin with the first step.
-    pub(crate) fn new(nodes: usize, file: ScratchFile) -> Self {
-        Self { all: Vec::new(), store: NormalMotions::new(nodes, file) }
+    /// Those of so many nodes, which begin with the first step; so many half-step instants are at hand at a time.
+    pub(crate) fn new(nodes: usize, span: usize, file: ScratchFile) -> Self {
+        Self { all: Vec::new(), store: NormalMotions::new(nodes, span, file) }
     }
 
     /// The most bytes that they take.
-    pub(crate) fn memory(nodes: usize) -> usize {
-        nodes * size_of::<ContactTrack>() + most_bytes(nodes)
+    pub(crate) fn memory(nodes: usize, span: usize) -> usize {
+        let at_hand = nodes.saturating_mul(span).saturating_mul(size_of::<[f64; 2]>());
+        nodes * size_of::<ContactTrack>() + most_bytes(nodes, span).saturating_add(at_hand)
     }
 
     /// Begins with the gap (m) and normal velocity (m/s) of each node at t = 0, and whether it touches.

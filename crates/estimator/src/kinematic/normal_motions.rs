@@ -13,6 +13,9 @@ const CHUNK: usize = 128;
 /// Memory (bytes) that full chunks may always take; on large contact surfaces a single chunk takes more.
 const HELD: usize = 1 << 18;
 
+/// Instants that may always be in memory if work needs them at a time.
+const SPAN: usize = 512;
+
 /// Two numbers of a node at an instant.
 pub(super) type Pair = [f64; 2];
 
@@ -47,25 +50,25 @@ fn bytes_of_chunk(nodes: usize) -> usize {
     nodes * CHUNK * size_of::<Pair>()
 }
 
-/// The most bytes that the numbers of so many nodes take in memory.
-pub(super) fn most_bytes(nodes: usize) -> usize {
-    (1 + most_chunks(nodes)) * bytes_of_chunk(nodes)
+/// The most bytes that the numbers of so many nodes take in memory, where work needs so many instants at a time.
+pub(super) fn most_bytes(nodes: usize, span: usize) -> usize {
+    (1 + most_chunks(nodes, span)) * bytes_of_chunk(nodes)
 }
 
 /// Chunks that may be in memory beside the last one.
-fn most_chunks(nodes: usize) -> usize {
-    HELD.checked_div(bytes_of_chunk(nodes)).unwrap_or(0).max(1)
+fn most_chunks(nodes: usize, span: usize) -> usize {
+    HELD.checked_div(bytes_of_chunk(nodes)).unwrap_or(0).max(1 + span.min(SPAN) / CHUNK)
 }
 
 impl NormalMotions {
-    /// Of so many nodes, at no instant yet.
-    pub(super) fn new(nodes: usize, file: ScratchFile) -> Self {
+    /// Of so many nodes, at no instant yet; work needs so many instants at a time.
+    pub(super) fn new(nodes: usize, span: usize, file: ScratchFile) -> Self {
         Self {
             nodes,
             first: 0,
             chunks: VecDeque::new(),
             count: 0,
-            most: most_chunks(nodes),
+            most: most_chunks(nodes, span),
             file,
             places: 0,
             free: Vec::new(),
@@ -187,14 +190,14 @@ mod tests {
     #[test]
     fn numbers_wait_in_the_file() {
         let (nodes, instants) = (300, 20 * CHUNK + 7);
-        let mut motions = NormalMotions::new(nodes, ScratchFile::default());
+        let mut motions = NormalMotions::new(nodes, 0, ScratchFile::default());
         let number = |node: usize, instant: usize| [node as f64, instant as f64];
         for instant in 0..instants {
             motions.extend().unwrap();
             for node in 0..nodes {
                 motions.write(node, instant, &[number(node, instant)]).unwrap();
             }
-            assert!(motions.held() <= most_bytes(nodes));
+            assert!(motions.held() <= most_bytes(nodes, 0));
         }
         assert!(motions.file.is_used());
         let changed: Vec<Pair> = (0..10 * CHUNK).map(|k| [-(k as f64), 0.5]).collect();
@@ -213,7 +216,7 @@ mod tests {
     /// Without an earliest instant that is needed, places in the file are used again.
     #[test]
     fn places_in_the_file_are_used_again() {
-        let mut motions = NormalMotions::new(1000, ScratchFile::default());
+        let mut motions = NormalMotions::new(1000, 0, ScratchFile::default());
         for instant in 0..100 * CHUNK {
             motions.extend().unwrap();
             motions.forget(instant.saturating_sub(5 * CHUNK));

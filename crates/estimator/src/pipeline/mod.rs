@@ -25,7 +25,9 @@ use crate::estimate::Estimate;
 use crate::options::{MOST_THREADS, Options};
 use crate::request::Request;
 use crate::sampling::Sampling;
+use crate::scratch_file::ScratchFile;
 use maps::Maps;
+use near_elements::may_need_a_file;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -40,7 +42,8 @@ const THREADED: usize = 20_000;
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
-/// windows, and memory does not grow with their number, but for some 400 bytes of each sample and the maps that were requested.
+/// windows, and memory does not grow with their number, but for some 150 bytes of each step, 300 of each sample and the maps that were
+/// requested.
 /// Elements around candidate nodes of contact wait until the next contact of all these nodes is known, which may be the end of
 /// the run. Some kilobytes for each node wait in memory, and the rest in a temporary file, in the folder that `TMPDIR` names or in
 /// `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
@@ -62,7 +65,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     /// Prepares the estimate of a problem over a time grid.
     ///
     /// # Errors
-    /// Options out of range, or threads that cannot be started.
+    /// Options out of range, threads that cannot be started, or no folder for a temporary file that may be needed.
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: Options) -> Result<Self, EstimateError> {
         let every = match options.every {
             Sampling::Auto => None,
@@ -80,6 +83,10 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;
+        let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
+        if may_need_a_file(problem, times.step_count() / spacing + 1, spacing) {
+            ScratchFile::check()?;
+        }
         let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
         let mut preparation = Preparation::new(problem, times, &options);
         preparation.prepare(&window.equilibration.elements);

@@ -21,7 +21,8 @@ use crate::traction::EquilibratedLevel;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
-/// The pointwise equilibrium of σ_DA is checked at every level of so many, more often than away from contact.
+/// The pointwise equilibrium of σ_DA is checked in one interval of so many, more often than away from contact: with one of 4, checks
+/// took a sixth of the estimate on 640 elements.
 const CHECK: usize = 16;
 
 /// One such element.
@@ -36,6 +37,8 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     start: Option<ContactInstant<D, N>>,
     /// ∫∫F_n|w_n| so far (J).
     normal_work: f64,
+    /// Intervals so far.
+    checks: usize,
     pub(super) course: Course,
     /// Its contributions at the steps requested.
     pub(super) kept: Vec<Contribution>,
@@ -61,6 +64,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             facets,
             start: None,
             normal_work: 0.0,
+            checks: 0,
             course: Course::default(),
             kept: Vec::new(),
             residuals: Residuals::default(),
@@ -106,10 +110,12 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let start = sampler.balanced(&from, &self.contact, Side::After);
         let end = sampler.balanced(&to, &self.contact, Side::Before);
         let begins = from.index() == 0 || from.forces().before.is_some();
+        let turn = (self.checks + self.element.index()).is_multiple_of(CHECK);
+        self.checks += 1;
         if begins {
-            sampler.check(&start, &from, CHECK, &mut self.residuals);
+            sampler.check(&start, &from, turn, &mut self.residuals);
         }
-        sampler.check(&end, &to, CHECK, &mut self.residuals);
+        sampler.check(&end, &to, turn, &mut self.residuals);
         let forces = to.forces();
         let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];

@@ -23,15 +23,34 @@ use std::ops::Range;
 const BLOCK: usize = 16;
 const GROUP: usize = 16;
 
-/// The most bytes that near elements and their intervals take in memory, at so many samples of which the middles between are sampled
-/// too or not.
-pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, samples: usize, middles: bool) -> usize {
+/// The most bytes that near elements and their intervals take in memory, at so many samples, each so many steps after the one before.
+pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, samples: usize, spacing: usize) -> usize {
     let (nodes, elements) = (problem.surface().nodes().len(), near_elements(problem).len());
-    let interval = size_of::<f64>() * (waiting::shortest::<D, N>() + usize::from(middles) * waiting::sample::<D, N>());
+    let interval = bytes_of_interval::<D, N>(spacing);
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
     // The memory of a group has room for more; what is in the file is read into another.
     let groups = (2 + usize::from(all > most)) * elements.min(BLOCK * GROUP) * LANES * interval;
-    elements * size_of::<NearElement<D, N>>() + all.min(most) + groups + ContactTracks::memory(nodes)
+    elements * size_of::<NearElement<D, N>>() + all.min(most) + groups + ContactTracks::memory(nodes, span(spacing))
+}
+
+/// Whether the intervals of a flight over the whole run have no room in memory.
+pub(super) fn may_need_a_file<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    samples: usize,
+    spacing: usize,
+) -> bool {
+    let all = samples.saturating_mul(near_elements(problem).len()).saturating_mul(bytes_of_interval::<D, N>(spacing));
+    all > backlog::most_bytes(problem.surface().nodes().len())
+}
+
+/// Numbers of an interval of so many steps, in bytes; the middle of a single step is sampled too.
+fn bytes_of_interval<const D: usize, const N: usize>(spacing: usize) -> usize {
+    size_of::<f64>() * (waiting::shortest::<D, N>() + usize::from(spacing == 1) * waiting::sample::<D, N>())
+}
+
+/// Half-step instants of the intervals that wait together.
+pub(super) fn span(spacing: usize) -> usize {
+    spacing.saturating_mul(2 * LANES)
 }
 
 /// All near elements.

@@ -4,6 +4,7 @@ mod impulse;
 mod interval;
 mod supports;
 
+use super::near_elements::span;
 use super::schedule::Schedule;
 use crate::contact_density::OffContact;
 use crate::element::Element;
@@ -61,6 +62,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let pool = FieldPool::new(problem.mesh().node_count());
+        let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
         Self {
             problem,
             times,
@@ -70,7 +72,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
             motion: FreeMotion::new(problem, &pool),
             pool,
-            tracks: ContactTracks::new(problem.surface().nodes().len(), ScratchFile::default()),
+            tracks: ContactTracks::new(problem.surface().nodes().len(), span(spacing), ScratchFile::default()),
             supports: SupportCheck::default(),
             before: None,
             current: None,

@@ -247,18 +247,18 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         self.measure.balanced(&self.measure.nodal_balance(self.shared.equilibration, level, contact, side))
     }
 
-    /// Checks their resultants, and their stress at one level of so many, each element in its turn: the map that makes the
-    /// stress is linear and the same at all levels.
+    /// Checks their resultants, and their stress if it is the turn of the element: the map that makes the stress is linear and the
+    /// same at all levels.
     pub(super) fn check(
         &self,
         balanced: &Balanced<D, N>,
         level: &EquilibratedLevel<'_, D>,
-        turns: usize,
+        turn: bool,
         residuals: &mut Residuals,
     ) {
         let residual = self.measure.resultant_residual(balanced, level.force_scale());
         residuals.element_resultants = worse(residuals.element_resultants, residual);
-        if (level.index() + self.id.index()).is_multiple_of(turns) {
+        if turn {
             self.measure.check_stress(balanced, level.force_scale(), residuals);
         }
     }

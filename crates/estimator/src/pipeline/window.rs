@@ -80,7 +80,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))
-        .saturating_add(near_elements::memory(problem, steps, spacing == 1))
+        .saturating_add(near_elements::memory(problem, steps, spacing))
         .saturating_add(auxiliary)
 }
 

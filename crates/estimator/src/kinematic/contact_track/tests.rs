@@ -16,7 +16,7 @@ struct Alone {
 
 impl Alone {
     fn new(gap: f64, velocity: f64, touching: bool) -> Self {
-        let mut store = NormalMotions::new(1, ScratchFile::default());
+        let mut store = NormalMotions::new(1, 0, ScratchFile::default());
         store.extend().unwrap();
         store.write(0, 0, &[[velocity, gap]]).unwrap();
         Self { track: ContactTrack::new(0, (gap, 1.0), true, (gap, velocity), touching), store }
