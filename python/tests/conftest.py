@@ -7,8 +7,10 @@ import percute as pc
 import pytest
 
 matplotlib.use("Agg")
-# A background job of a shell ignores SIGINT, and so would all processes that the tests start.
+# A background job of a shell ignores SIGINT, one of nohup SIGHUP, and so would all processes that the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def block(nx: int = 8, ny: int = 6, friction: float = 0.2) -> pc.Problem:

@@ -15,6 +15,7 @@ pub(crate) struct NodalBalance<const D: usize, const N: usize, T = f64> {
     /// f_d (N/m³).
     pub(crate) body_force: [T; D],
 }
+
 /// The dynamically admissible fields of an element at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Balanced<const D: usize, const N: usize, T = f64> {
@@ -71,6 +72,7 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
         Self { loading, terms, forces }
     }
 }
+
 /// Outward moments of each facet at its nodes, from those by which the star of each node enters and leaves the element:
 /// entering moments have the other sign.
 #[inline(always)]

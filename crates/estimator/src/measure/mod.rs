@@ -35,6 +35,7 @@ fn hat_product<const D: usize, const N: usize>(loading: &Loading<D, N>, hat: &Ha
     let loads = loading.traction.iter().flatten().flatten().chain(loading.volume.iter().flatten());
     hat.products().iter().zip(loads).map(|(c, d)| c * d).sum()
 }
+
 /// The maps of one element, constant in time.
 #[derive(Clone, Debug)]
 pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
@@ -363,6 +364,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         forces
     }
 }
+
 /// The sum of products of entries.
 #[inline(always)]
 fn product<T: Value, const D: usize>(a: &[[T; D]; D], b: &[[T; D]; D]) -> T {

@@ -17,7 +17,6 @@ use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::time_level::{Side, Velocities};
 use crate::traction::EquilibratedLevel;
-
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
