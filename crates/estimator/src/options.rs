@@ -1,6 +1,8 @@
 //! The choices that the method leaves open.
 
 use crate::sampling::Sampling;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -134,6 +136,11 @@ impl Options {
     #[must_use]
     pub fn acceleration(&self, dimension: usize) -> Acceleration {
         self.acceleration.unwrap_or(Acceleration::default_of(self.reconstruction, dimension))
+    }
+
+    /// Steps from one sample to the next, where nothing asks for more.
+    pub(crate) fn spacing<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, times: &TimeGrid) -> usize {
+        self.every.spacing(problem.mesh().element_count(), times.step_count())
     }
 
     /// With all that an estimate of bodies of this dimension takes by default.

@@ -15,9 +15,9 @@ pub(crate) struct Wide<R: Registers> {
 }
 
 impl<R: Registers> Wide<R> {
-    /// Any numbers, as the form of others.
+    /// 0 at all levels; also the form of other numbers.
     #[inline(always)]
-    pub(crate) fn new(registers: R) -> Self {
+    pub(crate) fn zeros(registers: R) -> Self {
         Self { registers, numbers: registers.splat(0.0) }
     }
 

@@ -115,19 +115,30 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         side: Side,
     ) -> NodalBalance<D, N> {
         let forces = level.forces();
+        let around = |i: usize| equilibration.moments_around(level, self.element, i, contact[i], side);
+        NodalBalance {
+            moments: outward(around),
+            acceleration: self.acceleration(level, contact, side),
+            lumping_difference: forces.level.lumping_difference.as_ref().map(|field| self.element.gather(field)),
+            body_force: forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]),
+        }
+    }
+
+    /// ã at the nodes at a level (m/s²); `contact` gives the contact node at each local node.
+    pub(crate) fn acceleration(
+        &self,
+        level: &EquilibratedLevel<'_, D>,
+        contact: &[Option<usize>; N],
+        side: Side,
+    ) -> [[f64; D]; N] {
+        let forces = level.forces();
         let mut acceleration = self.element.gather(&forces.acceleration);
         for i in 0..N {
             if let (Some(at), Side::Before, Some(before)) = (contact[i], side, &forces.before) {
                 acceleration[i] = before.acceleration[at];
             }
         }
-        let around = |i: usize| equilibration.moments_around(level, self.element, i, contact[i], side);
-        NodalBalance {
-            moments: outward(around),
-            acceleration,
-            lumping_difference: forces.level.lumping_difference.as_ref().map(|field| self.element.gather(field)),
-            body_force: forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]),
-        }
+        acceleration
     }
 
     /// Tractions and Γ_DA − f_d.

@@ -134,7 +134,7 @@ impl<const D: usize, const N: usize> Task for SampleBlock<'_, '_, '_, '_, D, N> 
 
     #[inline(always)]
     fn run<R: Registers>(self, registers: R) -> FarBlock {
-        self.all.sample(Wide::new(registers), self.block, self.fields, self.is_near, self.courses)
+        self.all.sample(Wide::zeros(registers), self.block, self.fields, self.is_near, self.courses)
     }
 }
 

@@ -83,7 +83,7 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;
-        let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
+        let spacing = options.spacing(problem, times);
         if may_need_a_file(problem, times.step_count() / spacing + 1, spacing) {
             ScratchFile::check()?;
         }

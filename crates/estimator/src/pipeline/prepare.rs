@@ -62,7 +62,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let pool = FieldPool::new(problem.mesh().node_count());
-        let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
+        let spacing = options.spacing(problem, times);
         Self {
             problem,
             times,

@@ -215,12 +215,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     ) -> ElementVelocities<D, N> {
         let (element, [start, end]) = (self.element, [from.forces(), to.forces()]);
         let (length, now) = (self.shared.times.step(from.index()), &end.now);
-        let mut last = element.gather(&end.acceleration);
-        for i in 0..N {
-            if let (Some(at), Some(before)) = (contact[i], &end.before) {
-                last[i] = before.acceleration[at];
-            }
-        }
+        let last = self.measure.acceleration(to, contact, Side::Before);
         let half_way = |increment: &Increment<D>, start: &[[f64; D]], end: &[[f64; D]; N]| {
             let (increment, start) = (increment.gather(&element.nodes), element.gather(start));
             std::array::from_fn(|i| increment::half_way(length, &increment[i], [&start[i], &end[i]]))

@@ -67,7 +67,7 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
     let link = size_of::<[Lanes; D]>();
     // At the level and half way to the next.
     let step = size_of::<SampledInterval>() + 2 * size_of::<Sample>() + size_of::<usize>();
-    let spacing = options.every.spacing(problem.mesh().element_count(), times.step_count());
+    let spacing = options.spacing(problem, times);
     let steps = times.step_count() / spacing + 1;
     let auxiliary = if options.reconstruction == Reconstruction::Corrected {
         bytes_of_auxiliary(problem, times.step_count(), steps, levels * spacing)

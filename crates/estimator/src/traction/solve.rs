@@ -56,11 +56,10 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     /// Solves the stars of a part.
     fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>) -> f64 {
         let EquilibratedLevels { forces, force_scale, moments, .. } = levels;
-        let links = |block: usize| self.links(&self.star_blocks.centres(block));
         let mut blocks = Vec::with_capacity(part.stars.len());
-        let mut rest = &mut moments[part.stars.clone().next().map_or(0, |block| links(block).start)..];
+        let mut rest = &mut moments[self.links(&self.nodes(part))];
         for block in part.stars.clone() {
-            let (own, others) = rest.split_at_mut(links(block).len());
+            let (own, others) = rest.split_at_mut(self.links(&self.star_blocks.centres(block)).len());
             blocks.push((block, own));
             rest = others;
         }
@@ -73,8 +72,18 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         blocks.into_par_iter().map(solve).reduce(|| 0.0, worse)
     }
 
+    /// The nodes of the stars of a part.
+    fn nodes(&self, part: &MeshPart) -> Range<usize> {
+        let centres = |block: usize| self.star_blocks.centres(block);
+        let Range { start, end } = part.stars;
+        if start < end { centres(start).start..centres(end - 1).end } else { 0..0 }
+    }
+
     /// The links of the stars of some nodes.
     fn links(&self, nodes: &Range<usize>) -> Range<usize> {
+        if nodes.is_empty() {
+            return 0..0;
+        }
         let stars = self.problem.mesh().stars();
         stars.link_range(NodeId::new(nodes.start)).start..stars.link_range(NodeId::new(nodes.end - 1)).end
     }
@@ -86,13 +95,9 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         part: &MeshPart,
         levels: &'l mut EquilibratedLevels<D>,
     ) -> (Range<usize>, &'l mut [[Lanes; D]]) {
-        if part.stars.is_empty() {
-            return (0..0, &mut []);
-        }
-        let centres = |block: usize| self.star_blocks.centres(block);
-        let nodes = centres(part.stars.start).start..centres(part.stars.end - 1).end;
-        let links = self.links(&nodes);
-        (nodes, &mut levels.moments[links])
+        let nodes = self.nodes(part);
+        let moments = &mut levels.moments[self.links(&nodes)];
+        (nodes, moments)
     }
 
     /// Largest nodal force of any element at each level (N).
@@ -273,7 +278,7 @@ impl<const D: usize, const N: usize> Task for SolveBlock<'_, '_, D, N> {
     #[inline(always)]
     fn run<R: Registers>(self, registers: R) -> f64 {
         let Self { all, forces, force_scale, block, fields, moments } = self;
-        all.solve_block(Wide::new(registers), forces, force_scale, block, fields, moments)
+        all.solve_block(Wide::zeros(registers), forces, force_scale, block, fields, moments)
     }
 }
 
@@ -290,7 +295,7 @@ impl<const D: usize, const N: usize> Task for LargestForce<'_, '_, D, N> {
 
     #[inline(always)]
     fn run<R: Registers>(self, registers: R) -> Lanes {
-        self.all.force_scale_of(Wide::new(registers), self.forces, self.block, self.fields).store()
+        self.all.force_scale_of(Wide::zeros(registers), self.forces, self.block, self.fields).store()
     }
 }
 

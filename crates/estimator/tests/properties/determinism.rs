@@ -128,11 +128,11 @@ fn block() {
     check("block", &problem, &steps(&problem, 0.9, 23));
 }
 
-/// More elements than a part of four strips of 2048, so that the work goes from part to part.
+/// More elements than two parts, so that the work goes from part to part.
 #[test]
 fn parts() {
     let mesh = TriangleMesh::rectangle(0.05, 0.08, 48, 200).unwrap();
-    assert!(mesh.element_count() > 2 * 4 * 2048);
+    assert!(mesh.element_count() > 2 * 8192);
     let plane = plane_below(&mesh, 0.01, 1e-5, 0.2, None);
     let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();
     let times = steps(&problem, 0.9, 12);

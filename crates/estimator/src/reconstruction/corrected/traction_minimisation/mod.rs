@@ -233,7 +233,7 @@ impl<const D: usize, const N: usize> Task for AddChange<'_, D, N> {
         let mut rest = moments;
         for node in nodes.map(NodeId::new) {
             let (own, others) = rest.split_at_mut(mesh.stars().link_range(node).len());
-            numbers.add_change(Wide::new(registers), mesh, node, change, own);
+            numbers.add_change(Wide::zeros(registers), mesh, node, change, own);
             rest = others;
         }
     }
@@ -309,7 +309,7 @@ impl<const D: usize, const N: usize> Task for SlopesOfBlock<'_, '_, D, N> {
     #[inline(always)]
     fn run<R: Registers>(self, registers: R) {
         let Self { all, fields, block, range, mut to } = self;
-        all.add_block(Wide::new(registers), fields, block, range, &mut to);
+        all.add_block(Wide::zeros(registers), fields, block, range, &mut to);
     }
 }
 
