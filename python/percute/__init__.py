@@ -84,3 +84,8 @@ __all__ = [
     "simulate",
     "true_errors",
 ]
+
+
+def __dir__() -> list[str]:
+    """Give the public names only."""
+    return sorted(__all__)

@@ -173,7 +173,7 @@ class History(Immutable):
         ----------
         reference : History
             A simulation of the same problem, at least as long, on a mesh in which this one is nested, such as
-            `Mesh.refined`. Between its instants it is interpolated linearly. Where it needs too much memory, take
+            `Mesh.refine`. Between its instants it is interpolated linearly. Where it needs too much memory, take
             `percute.true_errors`.
 
         Returns

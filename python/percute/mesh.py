@@ -116,7 +116,7 @@ class Mesh(Immutable):
         """
         return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
 
-    def refined(self, times: int = 1, *, where: ArrayLike | None = None) -> Mesh:
+    def refine(self, times: int = 1, *, where: ArrayLike | None = None) -> Mesh:
         """Cut each element into halves (a bar) or quarters, repeatedly; or only some elements, once.
 
         Nodes keep their numbers and groups their edges and elements, so that the mesh is nested in the finer one: `History.error`
@@ -257,9 +257,31 @@ class Mesh(Immutable):
         """Number of elements that were given with the wrong orientation and reoriented."""
         return self._data.reoriented_elements
 
+    def __eq__(self, other: object) -> bool:
+        """Tell whether another mesh has the same points, cells and groups, number by number."""
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        if self is other:
+            return True
+        same = np.array_equal(self.points, other.points) and np.array_equal(self.cells, other.cells)
+        return same and _same_groups(self.edge_groups, other.edge_groups) and _same_groups(self.element_groups, other.element_groups)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        # Adding 0 turns −0 into 0, which is equal to it.
+        return hash(((self.points + 0.0).tobytes(), self.cells.tobytes()))
+
     def __repr__(self) -> str:
         kind = "bars" if self.dimension == 1 else "triangles"
         return f"<percute.Mesh: {len(self.cells)} {kind}, {len(self.points)} nodes>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
+
+
+def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:
+    """Tell whether groups have the same names and members."""
+    return first.keys() == second.keys() and all(np.array_equal(first[name], second[name]) for name in first)

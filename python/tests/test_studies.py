@@ -37,7 +37,7 @@ def test_bodies_have_their_areas() -> None:
 
 
 def test_corners_of_an_outline() -> None:
-    frame = BODIES["frame"]().refined(2)
+    frame = BODIES["frame"]().refine(2)
     outer, inner = [(x, y) for x in (0.0, 0.06) for y in (0.0, 0.05)], [(x, y) for x in (0.01, 0.05) for y in (0.01, 0.04)]
     assert sorted(map(tuple, frame.points[corners(frame)].round(12).tolist())) == sorted(outer + inner)
 
@@ -116,32 +116,32 @@ def test_refinement_at_the_contact_helps_corners_not_fronts() -> None:
 
 def test_refined_meshes_are_nested() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=2, ny=2)
-    fine = mesh.refined(2)
+    fine = mesh.refine(2)
     assert len(fine.cells) == 16 * len(mesh.cells) and np.array_equal(fine.points[: len(mesh.points)], mesh.points)
     assert area(fine) == pytest.approx(area(mesh), rel=1e-14)
-    line = pc.Mesh.bar(1.0, elements=3).refined()
+    line = pc.Mesh.bar(1.0, elements=3).refine()
     assert len(line.cells) == 6 and sorted(line.points[:, 0]) == pytest.approx([i / 6 for i in range(7)])
-    assert len(mesh.refined(0).cells) == len(mesh.cells)
+    assert len(mesh.refine(0).cells) == len(mesh.cells)
     with pytest.raises(pc.InputError, match="`times`"):
-        mesh.refined(-1)
+        mesh.refine(-1)
 
 
 def test_some_elements_are_refined() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
     near = np.linalg.norm(mesh.points[mesh.cells].mean(axis=1), axis=1) < 0.012
-    fine = mesh.refined(where=near)
+    fine = mesh.refine(where=near)
     assert len(mesh.cells) < len(fine.cells) < 4 * len(mesh.cells)
     assert np.array_equal(fine.points[: len(mesh.points)], mesh.points)
     # Two edges of the group are cut, of five.
     assert len(fine.edge_groups["bottom"]) > len(mesh.edge_groups["bottom"]) == 5
-    assert len(mesh.refined(where=np.zeros(40, bool)).cells) == 40
-    assert len(mesh.refined(where=np.ones(40, bool)).cells) == 160
-    assert len(pc.Mesh.bar(1.0, elements=3).refined(where=[True, False, False]).cells) == 4
+    assert len(mesh.refine(where=np.zeros(40, bool)).cells) == 40
+    assert len(mesh.refine(where=np.ones(40, bool)).cells) == 160
+    assert len(pc.Mesh.bar(1.0, elements=3).refine(where=[True, False, False]).cells) == 4
     for wrong in (near[:-1], near.astype(int), [near], "all", 3):
         with pytest.raises(pc.InputError, match=r"`where` is .* 40 truth values, one for each element"):
-            mesh.refined(where=wrong)  # type: ignore[arg-type]
+            mesh.refine(where=wrong)  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match=r"`times` is 2, but `where` names elements of this mesh only"):
-        mesh.refined(2, where=near)
+        mesh.refine(2, where=near)
 
 
 def test_errors_against_finer_histories(block_history: pc.History) -> None:

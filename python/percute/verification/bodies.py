@@ -133,4 +133,4 @@ def graded(mesh: pc.Mesh, places: NDArray[np.float64], size: float, slope: float
         coarse = longest / np.sqrt(2.0) > 1.0001 * wanted
         if not coarse.any():
             return mesh
-        mesh = mesh.refined(where=coarse)
+        mesh = mesh.refine(where=coarse)

@@ -126,7 +126,7 @@ class Case:
         if self.body == "block":
             # The same triangles as by refinement, but in rows, which is faster.
             return pc.Mesh.rectangle(0.05, 0.04, nx=5 << refinements, ny=4 << refinements)
-        return BODIES[self.body]().refined(refinements)
+        return BODIES[self.body]().refine(refinements)
 
     def problem(self, refinements: int, places: NDArray[np.float64] | None = None, size: float = 0.0) -> pc.Problem:
         """Give the problem on one of the meshes, with elements of a size at some places."""

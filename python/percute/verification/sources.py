@@ -140,7 +140,7 @@ def _refined(mesh: pc.Mesh, history: pc.History, times: int) -> pc.Mesh:
     places = history.problem.mesh.points[history.contact_nodes[history.touching.any(axis=0)]]
     for _ in range(times):
         distance = np.linalg.norm(mesh.points[:, None] - places[None], axis=2).min(axis=1)
-        mesh = mesh.refined(where=(distance[mesh.cells] < 1e-9).any(axis=1))
+        mesh = mesh.refine(where=(distance[mesh.cells] < 1e-9).any(axis=1))
     return mesh
 
 
