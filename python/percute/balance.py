@@ -1,9 +1,16 @@
 """Energies, works and drifts of a simulation over time."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 __all__ = ["Balance"]
 
@@ -12,6 +19,8 @@ __all__ = ["Balance"]
 class Balance:
     """Energies and works (J) and drifts at each instant, each of shape (instants,)."""
 
+    time: NDArray[np.float64]
+    """Instants t_n (s)."""
     kinetic: NDArray[np.float64]
     """Kinetic energy."""
     strain: NDArray[np.float64]
@@ -28,6 +37,18 @@ class Balance:
     """Largest error of the energy balance so far, over the largest energy or work."""
     impulse_drift: NDArray[np.float64]
     """The same for momentum and impulses."""
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Make a table over time (extra ``pandas``): one row for each instant; ``attrs["units"]`` has the units of the columns."""
+        from percute import contents, tables
+
+        return tables.to_pandas(contents.of_balance(self), "time", {"time": ("time",)})
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Make a data set over ``time`` (extra ``xarray``); each variable has its unit and meaning as attributes."""
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_balance(self))
 
     def __repr__(self) -> str:
         drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from percute.mesh import Mesh
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
     from matplotlib.axes import Axes
 
 __all__ = ["Contact", "ContactStatus", "Resultants"]
@@ -150,6 +152,31 @@ class Contact:
         from percute import contact_picture
 
         return contact_picture.plot_contact(self, colour, axes)
+
+    def to_pandas(self, over: Literal["time", "nodes", "both"] = "time") -> pandas.DataFrame:
+        """Make a table of the contact results (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "nodes", "both"}, default: "time"
+            The rows: the resultants at each instant, the results of each contact node, or force, pressure, gap and status of each
+            node at each instant.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With one column for each component, such as ``total_force_x``; ``attrs["units"]`` has the units of the columns.
+        """
+        from percute import contents, tables
+
+        rows = {"time": ("time",), "nodes": ("contact_node",), "both": ("time", "contact_node")}
+        return tables.to_pandas(contents.of_contact(self), over, rows)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Make a data set over ``time`` and ``contact_node`` (extra ``xarray``); each variable has its unit and meaning as attributes."""
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_contact(self))
 
     def __repr__(self) -> str:
         peak = self.resultants.normal_force.max(initial=0.0)

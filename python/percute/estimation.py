@@ -25,6 +25,8 @@ from percute.records import ElementMap, OverTime, Parts, Separation, Sources, So
 from percute.stored import StoredEstimate
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
     from matplotlib.axes import Axes
 
     from percute.exact import Effectivity, TrueError
@@ -224,6 +226,34 @@ class Estimate(Immutable):
             raise InputError(f"`path` is {file!r}, the file of the history that was estimated; give another name")
         of = None if self._history is None else self._history._data
         self._data.save(os.path.abspath(file), replace, self._name, of)
+
+    def to_pandas(self, over: Literal["time", "elements", "both"] = "time") -> pandas.DataFrame:
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "elements", "both"}, default: "time"
+            The rows: η with its parts and sources at each sample, e_E of each element, or the contributions of the elements at each
+            instant of ``maps``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units of the columns, and ``attrs`` the measures of the error.
+        """
+        from percute import contents, tables
+
+        rows = {"time": ("time",), "elements": ("element",), "both": ("instant", "element")}
+        return tables.to_pandas(contents.of_estimate(self), over, rows)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Make a data set (extra ``xarray``): the error over ``time``, over ``element``, and over both at each ``instant`` of the maps.
+
+        Each variable has its unit and meaning as attributes; the measures of the error are attributes of the data set.
+        """
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_estimate(self))
 
     def plot_map(self, *, axes: Axes | None = None) -> Axes:
         """Draw e_E, the contribution of each element (J^½), eq. [20].

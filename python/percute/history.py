@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,8 @@ from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 
 if TYPE_CHECKING:
+    import pandas
+    import xarray
     from matplotlib.axes import Axes
 
     from percute.exact import TrueError
@@ -159,7 +161,7 @@ class History(Immutable):
     @cached_property
     def balance(self) -> Balance:
         """Energies and works over time (J)."""
-        return Balance(**self._data.balance())
+        return Balance(time=self.time, **self._data.balance())
 
     @cached_property
     def contact(self) -> Contact:
@@ -220,6 +222,43 @@ class History(Immutable):
         from percute import plotting
 
         return plotting.plot_field(self, quantity, step, scale, axes)
+
+    def to_pandas(self, over: Literal["time", "nodes"] = "time", *, step: int | None = -1) -> pandas.DataFrame:
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "nodes"}, default: "time"
+            The rows: energies and contact resultants at each instant; or displacement, velocity and acceleration of each node.
+        step : int or None, default: -1
+            For nodes: which instant; negative ones count from the end. With None the table has the nodes at all instants.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With one column for each component, such as ``displacement_x``; ``attrs["units"]`` has the units of the columns.
+        """
+        from percute import contents, tables
+
+        return tables.of_history(self, over, None if step is None else contents.instant(self, step))
+
+    def to_xarray(self, fields: Iterable[str] = ("displacement", "reaction", "touching")) -> xarray.Dataset:
+        """Make a data set (extra ``xarray``): energies, contact resultants and fields over ``time``.
+
+        Parameters
+        ----------
+        fields : iterable of str, default: ("displacement", "reaction", "touching")
+            Which fields, at all instants, of ``displacement``, ``velocity``, ``acceleration``, ``reaction`` and ``touching``. Those of
+            the default are views without a copy.
+
+        Returns
+        -------
+        xarray.Dataset
+            Each variable has its unit and meaning as attributes.
+        """
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_history(self, contents.chosen(fields, contents.FIELDS)))
 
     def __repr__(self) -> str:
         held = f"{len(self)} instants to {self.time[-1]:.4g} s"

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import LARGEST, number, text, whole, wrong
+from percute.checks import number, text, wrong
+from percute.contents import instant
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
@@ -162,8 +163,7 @@ def field(history: History, quantity: str, step: int) -> tuple[Floats, str, str,
 
 def plot_field(history: History, quantity: str, step: int, scale: float, axes: Axes | None) -> Axes:
     """Draw a field of a history on the deformed body."""
-    if not -len(history) <= whole("step", step, least=-LARGEST) < len(history):
-        raise wrong("step", step, f"from {-len(history)} to {len(history) - 1}: the history holds {len(history)} instants")
+    step = instant(history, step)
     scale = number("scale", scale, finite=True)
     values, name, unit, colours = field(history, text("quantity", quantity), step)
     axes = _axes(axes)
@@ -175,6 +175,6 @@ def plot_field(history: History, quantity: str, step: int, scale: float, axes: A
     else:
         places = mesh.points + scale * history.displacement[step]
         _draw_body(axes, places, mesh.cells, values / factor, label, colours)
-    instant, second = _prefix(history.time[step : step + 1 or None])
-    axes.set_title(f"t = {history.time[step] / instant:.4g} {second}s")
+    seconds, prefix = _prefix(history.time[step : step + 1])
+    axes.set_title(f"t = {history.time[step] / seconds:.4g} {prefix}s")
     return axes

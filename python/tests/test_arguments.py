@@ -102,6 +102,12 @@ class Calls:
     def plot_bar(self, **wrong: Any) -> object:
         return self.bar.plot(**wrong)
 
+    def to_pandas(self, **wrong: Any) -> object:
+        return self.block.to_pandas(**({"over": "nodes"} | wrong))
+
+    def to_xarray(self, **wrong: Any) -> object:
+        return self.block.to_xarray(**wrong)
+
     def bar_impact(self, **wrong: Any) -> object:
         right = {"length": 0.1, "young": 7e10, "density": 2700.0, "section": 0.02, "speed": 400.0, "gap": 2e-4}
         return pc.exact.BarImpact(**(right | wrong))
@@ -184,6 +190,9 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.worst_elements, "n", (None, *NO_WHOLES, 10**20)),
     (Calls.plot_map, "axes", NO_AXES),
     (Calls.plot_over_time, "axes", NO_AXES),
+    (Calls.to_pandas, "over", (None, *NO_TEXTS, "space")),
+    (Calls.to_pandas, "step", (*NO_NUMBERS, 1.5, HUGE, 10000)),
+    (Calls.to_xarray, "fields", (None, 3, "x", [3], ["displacement", None])),
     (Calls.plot, "axes", NO_AXES),
     (Calls.plot, "quantity", (None, *NO_TEXTS, np.zeros(2), "x")),
     (Calls.plot, "step", (None, *NO_NUMBERS, 1.5, HUGE, 10000)),
