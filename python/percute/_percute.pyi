@@ -20,6 +20,7 @@ __all__ = [
     "Progress",
     "__version__",
     "command",
+    "element_field",
     "plausibility_warnings",
     "errors_against_history",
     "errors_against_simulation",
@@ -199,6 +200,7 @@ class ExactData:
     def evaluate(self, name: str, rows: _Floats) -> _Floats: ...
 
 def command(arguments: Sequence[str]) -> int: ...
+def element_field(problem: ProblemData, quantity: str, nodal: _Floats) -> _Floats: ...
 def meaning(reconstruction: str) -> str: ...
 def plausibility_warnings(
     problem: ProblemData,

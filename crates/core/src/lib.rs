@@ -9,6 +9,7 @@
 
 pub mod contact;
 pub mod dynamics;
+pub mod element_state;
 pub mod history;
 pub mod ids;
 pub mod load;

@@ -5,6 +5,7 @@ mod any;
 mod bridge;
 mod case;
 mod contact;
+mod element_fields;
 mod errors;
 mod estimate;
 mod exact;
@@ -30,6 +31,8 @@ mod _percute {
     use super::bridge::ProgressNow;
     #[pymodule_export]
     use super::case::CaseData;
+    #[pymodule_export]
+    use super::element_fields::element_field;
     #[pymodule_export]
     use super::estimate::{EstimateData, estimate, meaning};
     #[pymodule_export]

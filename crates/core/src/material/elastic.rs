@@ -132,6 +132,14 @@ impl Law for Elastic {
         stress
     }
 
+    /// λ tr ε in plane strain, where nothing moves across; otherwise 0.
+    fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64 {
+        match self.hypothesis {
+            Hypothesis::PlaneStrain => self.lambda * (0..D).map(|a| gradient[a][a]).sum::<f64>(),
+            Hypothesis::PlaneStress | Hypothesis::Bar => 0.0,
+        }
+    }
+
     fn tangent<const D: usize>(&self, _: &Tensor<D>, change: &Tensor<D>) -> Tensor<D> {
         self.stress(change)
     }

@@ -40,6 +40,9 @@ pub trait Law {
     /// Stress σ (Pa) of a displacement gradient.
     fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D>;
 
+    /// Normal stress (Pa) across the mesh, in the dimension that a plane body leaves out.
+    fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64;
+
     /// First-order change of the stress (Pa) for a change of the gradient.
     fn tangent<const D: usize>(&self, gradient: &Tensor<D>, change: &Tensor<D>) -> Tensor<D>;
 

@@ -9,6 +9,7 @@ mod contact;
 mod contact_results;
 mod critical_step;
 mod early_end;
+mod element_state;
 mod free_vibration;
 mod from_rest;
 mod invariance;

@@ -1,0 +1,79 @@
+//! Strain, stress and energies of the elements at an instant, from the motion of the nodes.
+
+use crate::ids::ElementId;
+use crate::material::{Law, Tensor};
+use crate::problem::Problem;
+
+/// The state of a P1 element at an instant: strain and stress are constant in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementState<const D: usize> {
+    /// ε, eq. \[5\].
+    pub strain: Tensor<D>,
+    /// σ_h (Pa), eq. \[9\].
+    pub stress: Tensor<D>,
+    /// σ_zz (Pa): λ tr ε in plane strain, 0 in plane stress and in a bar.
+    pub stress_across: f64,
+    /// ½∫σ:ε (J), over the element with its section or thickness.
+    pub strain_energy: f64,
+}
+
+impl<const D: usize> ElementState<D> {
+    /// The state of an element for these displacements of all nodes (m).
+    #[must_use]
+    pub fn new<const N: usize>(problem: &Problem<D, N>, element: ElementId, displacement: &[[f64; D]]) -> Self {
+        let (mesh, law) = (problem.mesh(), problem.material(element));
+        let (nodes, geometry) = (mesh.cells()[element.index()], mesh.cell_geometry(element));
+        let mut gradient = [[0.0; D]; D];
+        // Against the first node: a translation of the body leaves no rounding.
+        for k in 1..N {
+            for a in 0..D {
+                let motion = displacement[nodes[k].index()][a] - displacement[nodes[0].index()][a];
+                (0..D).for_each(|b| gradient[a][b] += motion * geometry.gradients[k][b]);
+            }
+        }
+        let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
+        let volume = geometry.volume * law.extent();
+        Self {
+            strain,
+            stress: law.stress(&gradient),
+            stress_across: law.stress_across(&gradient),
+            strain_energy: volume * law.strain_energy(&gradient),
+        }
+    }
+
+    /// Von Mises stress (Pa): √(½((σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²) + 3σ₁₂²), in a bar |σ|.
+    #[must_use]
+    pub fn von_mises(&self) -> f64 {
+        let [a, b, c] = self.normal_stresses();
+        let squares = (a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2);
+        let shears = (0..D).flat_map(|i| (0..i).map(move |j| (i, j)));
+        (0.5 * squares + 3.0 * shears.map(|(i, j)| self.stress[i][j].powi(2)).sum::<f64>()).sqrt()
+    }
+
+    /// Pressure −⅓ tr σ (Pa), positive in compression.
+    #[must_use]
+    pub fn pressure(&self) -> f64 {
+        -self.normal_stresses().iter().sum::<f64>() / 3.0
+    }
+
+    /// σ₁₁, σ₂₂ and σ₃₃ (Pa).
+    fn normal_stresses(&self) -> [f64; 3] {
+        std::array::from_fn(|a| match a {
+            a if a < D => self.stress[a][a],
+            2 => self.stress_across,
+            _ => 0.0,
+        })
+    }
+}
+
+/// Kinetic energy of an element (J) for these velocities of all nodes (m/s), with its share of their lumped masses, eq. \[35\].
+#[must_use]
+pub fn kinetic_energy<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    element: ElementId,
+    velocity: &[[f64; D]],
+) -> f64 {
+    let mass = problem.material(element).density() * problem.volume(element) / N as f64;
+    let nodes = &problem.mesh().cells()[element.index()];
+    0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
+}

@@ -1,0 +1,73 @@
+//! Fields of the elements from the motion of the nodes.
+
+use crate::bridge::Watch;
+use crate::problem::ProblemData;
+use crate::{bridge, errors};
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
+use percute_core::each_dimension;
+use percute_core::element_state::{ElementState, kinetic_energy};
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use pyo3::prelude::*;
+
+/// Numbers of one element, from the rows of all nodes at an instant.
+type Numbers<const D: usize, const N: usize> = fn(&Problem<D, N>, ElementId, &[[f64; D]], &mut Vec<f64>);
+
+/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, D, D). `nodal` are velocities
+/// (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, D).
+#[pyfunction]
+pub(crate) fn element_field<'py>(
+    py: Python<'py>,
+    problem: &ProblemData,
+    quantity: &str,
+    nodal: PyReadonlyArray3<'py, f64>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    each_dimension!(&problem.problem, problem => {
+        let shape = nodal.shape().to_vec();
+        let (numbers, order) = quantity_of(problem, quantity).ok_or_else(|| errors::input(py, "no such quantity"))?;
+        let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
+        let dimension = problem.mesh().points()[0].len();
+        if (shape[1], shape[2]) != (nodes, dimension) {
+            return Err(errors::input(py, format!("the field has the shape {shape:?}; it must be (instants, {nodes}, {dimension})")));
+        }
+        let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
+        let work = move |watch: Watch| over_time(&problem, &rows, numbers, watch);
+        let values = bridge::blocking(py, None, work)?;
+        let shape = [&[shape[0], elements], &[dimension; 2][..order]].concat();
+        let array = values.into_pyarray(py).reshape(shape)?;
+        array.readwrite().make_nonwriteable();
+        Ok(array)
+    })
+}
+
+/// The numbers of all elements at all instants, until `watch` asks for a stop.
+fn over_time<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    rows: &[f64],
+    numbers: Numbers<D, N>,
+    watch: Watch,
+) -> Vec<f64> {
+    let mut values = Vec::new();
+    for instant in rows.as_chunks::<D>().0.chunks_exact(problem.mesh().node_count()) {
+        if watch.0.stopped() {
+            break;
+        }
+        let elements = (0..problem.mesh().element_count()).map(ElementId::new);
+        elements.for_each(|element| numbers(problem, element, instant, &mut values));
+    }
+    values
+}
+
+/// The numbers of a quantity, and the order of its tensor.
+fn quantity_of<const D: usize, const N: usize>(_: &Problem<D, N>, quantity: &str) -> Option<(Numbers<D, N>, usize)> {
+    Some(match quantity {
+        "strain" => (|p, e, u, to| to.extend(ElementState::new(p, e, u).strain.as_flattened()), 2),
+        "stress" => (|p, e, u, to| to.extend(ElementState::new(p, e, u).stress.as_flattened()), 2),
+        "stress_across" => (|p, e, u, to| to.push(ElementState::new(p, e, u).stress_across), 0),
+        "von_mises" => (|p, e, u, to| to.push(ElementState::new(p, e, u).von_mises()), 0),
+        "pressure" => (|p, e, u, to| to.push(ElementState::new(p, e, u).pressure()), 0),
+        "strain_energy" => (|p, e, u, to| to.push(ElementState::new(p, e, u).strain_energy), 0),
+        "kinetic_energy" => (|p, e, v, to| to.push(kinetic_energy(p, e, v)), 0),
+        _ => return None,
+    })
+}
