@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -134,7 +135,14 @@ class Contact:
         """Normal component of the density (Pa), shape (instants, contact nodes)."""
         return _read_only(self.normal_force / self.area)
 
-    def plot(self, colour: Literal["status", "pressure"] = "status", *, axes: Sequence[Axes] | None = None) -> list[Axes]:
+    def plot(
+        self,
+        colour: Literal["status", "pressure"] = "status",
+        *,
+        axes: Sequence[Axes] | None = None,
+        save: str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
+    ) -> list[Axes]:
         """Draw the resultant forces over time, and for each plane the zone of contact over time.
 
         Parameters
@@ -143,15 +151,19 @@ class Contact:
             Quantity that the colour of the zone shows.
         axes : sequence of matplotlib.axes.Axes, optional
             Axes of the plot, one for the forces and one for each plane; new ones by default.
+        save : str or path, optional
+            A file (``.svg``, ``.png`` or ``.pdf``) for the figure.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
 
         Returns
         -------
         list of matplotlib.axes.Axes
             The axes of the plot.
         """
-        from percute import contact_picture
+        from percute.pictures import contact
 
-        return contact_picture.plot_contact(self, colour, axes)
+        return contact.plot_contact(self, colour, axes, save, overwrite)
 
     def to_pandas(self, over: Literal["time", "nodes", "both"] = "time") -> pandas.DataFrame:
         """Make a table of the contact results (extra ``pandas``).

@@ -17,18 +17,14 @@ from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
 from percute.history import History
-from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
+from percute.views import EstimateViews
 
 if TYPE_CHECKING:
-    import pandas
-    import xarray
-    from matplotlib.axes import Axes
-
     from percute.exact import Effectivity, TrueError
 
 __all__ = ["Estimate", "estimate"]
@@ -41,7 +37,7 @@ def _measure(name: str, meaning: str) -> cached_property[float]:
     return made
 
 
-class Estimate(Immutable):
+class Estimate(EstimateViews):
     """The constitutive relation error of a history.
 
     Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``meaning``
@@ -226,68 +222,6 @@ class Estimate(Immutable):
             raise InputError(f"`path` is {file!r}, the file of the history that was estimated; give another name")
         of = None if self._history is None else self._history._data
         self._data.save(os.path.abspath(file), replace, self._name, of)
-
-    def to_pandas(self, over: Literal["time", "elements", "both"] = "time") -> pandas.DataFrame:
-        """Make a table (extra ``pandas``).
-
-        Parameters
-        ----------
-        over : {"time", "elements", "both"}, default: "time"
-            The rows: η with its parts and sources at each sample, e_E of each element, or the contributions of the elements at each
-            instant of ``maps``.
-
-        Returns
-        -------
-        pandas.DataFrame
-            ``attrs["units"]`` has the units of the columns, and ``attrs`` the measures of the error.
-        """
-        from percute import contents, tables
-
-        rows = {"time": ("time",), "elements": ("element",), "both": ("instant", "element")}
-        return tables.to_pandas(contents.of_estimate(self), over, rows)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Make a data set (extra ``xarray``): the error over ``time``, over ``element``, and over both at each ``instant`` of the maps.
-
-        Each variable has its unit and meaning as attributes; the measures of the error are attributes of the data set.
-        """
-        from percute import contents, tables
-
-        return tables.to_xarray(contents.of_estimate(self))
-
-    def plot_map(self, *, axes: Axes | None = None) -> Axes:
-        """Draw e_E, the contribution of each element (J^½), eq. [20].
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Axes of the plot; new ones by default.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the plot.
-        """
-        from percute import plotting
-
-        return plotting.plot_map(self, axes)
-
-    def plot_over_time(self, *, axes: Axes | None = None) -> Axes:
-        """Draw √η and its parts over time (J^½).
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Axes of the plot; new ones by default.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the plot.
-        """
-        from percute import plotting
-
-        return plotting.plot_over_time(self, axes)
 
     def __repr__(self) -> str:
         return (

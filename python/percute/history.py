@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,15 +18,11 @@ from percute.checks import encodable, flag, instance, items, numbers, optional_n
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
-from percute.immutable import Immutable
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
+from percute.views import HistoryViews
 
 if TYPE_CHECKING:
-    import pandas
-    import xarray
-    from matplotlib.axes import Axes
-
     from percute.exact import TrueError
 
 __all__ = ["History", "simulate", "true_errors"]
@@ -34,7 +30,7 @@ __all__ = ["History", "simulate", "true_errors"]
 MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction": np.dtype("<f8"), "touching": np.dtype("u1")}
 
 
-class History(Immutable):
+class History(HistoryViews):
     """The steps of a simulation: displacements, contact reactions and touching status at each instant t_n.
 
     Made by `simulate` or `percute.open`. Its arrays are read-only views without copies, of memory that lives as long as any
@@ -198,67 +194,6 @@ class History(Immutable):
 
     def __len__(self) -> int:
         return self._data.count
-
-    def plot(self, quantity: str = "displacement", *, step: int = -1, scale: float = 1.0, axes: Axes | None = None) -> Axes:
-        """Draw a field on the deformed body.
-
-        Parameters
-        ----------
-        quantity : {"displacement", "velocity", "von_mises", "pressure"}
-            Magnitude of the displacement (m) or the velocity (m/s), von Mises stress or pressure (Pa); of a bar its
-            displacement, velocity or ``"stress"`` along it.
-        step : int, default: -1
-            Which instant; negative ones count from the end.
-        scale : float, default: 1.0
-            By how much the displacement is exaggerated.
-        axes : matplotlib.axes.Axes, optional
-            Axes of the plot; new ones by default.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the plot.
-        """
-        from percute import plotting
-
-        return plotting.plot_field(self, quantity, step, scale, axes)
-
-    def to_pandas(self, over: Literal["time", "nodes"] = "time", *, step: int | None = -1) -> pandas.DataFrame:
-        """Make a table (extra ``pandas``).
-
-        Parameters
-        ----------
-        over : {"time", "nodes"}, default: "time"
-            The rows: energies and contact resultants at each instant; or displacement, velocity and acceleration of each node.
-        step : int or None, default: -1
-            For nodes: which instant; negative ones count from the end. With None the table has the nodes at all instants.
-
-        Returns
-        -------
-        pandas.DataFrame
-            With one column for each component, such as ``displacement_x``; ``attrs["units"]`` has the units of the columns.
-        """
-        from percute import contents, tables
-
-        return tables.of_history(self, over, None if step is None else contents.instant(self, step))
-
-    def to_xarray(self, fields: Iterable[str] = ("displacement", "reaction", "touching")) -> xarray.Dataset:
-        """Make a data set (extra ``xarray``): energies, contact resultants and fields over ``time``.
-
-        Parameters
-        ----------
-        fields : iterable of str, default: ("displacement", "reaction", "touching")
-            Which fields, at all instants, of ``displacement``, ``velocity``, ``acceleration``, ``reaction`` and ``touching``. Those of
-            the default are views without a copy.
-
-        Returns
-        -------
-        xarray.Dataset
-            Each variable has its unit and meaning as attributes.
-        """
-        from percute import contents, tables
-
-        return tables.to_xarray(contents.of_history(self, contents.chosen(fields, contents.FIELDS)))
 
     def __repr__(self) -> str:
         held = f"{len(self)} instants to {self.time[-1]:.4g} s"

@@ -99,6 +99,12 @@ class Calls:
     def plot(self, **wrong: Any) -> object:
         return self.block.plot(**wrong)
 
+    def plot_energies(self, **wrong: Any) -> object:
+        return self.block.plot_energies(**wrong)
+
+    def plot_pressure(self, **wrong: Any) -> object:
+        return self.estimated.plot_pressure(**wrong)
+
     def plot_bar(self, **wrong: Any) -> object:
         return self.bar.plot(**wrong)
 
@@ -197,6 +203,12 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.plot, "quantity", (None, *NO_TEXTS, np.zeros(2), "x")),
     (Calls.plot, "step", (None, *NO_NUMBERS, 1.5, HUGE, 10000)),
     (Calls.plot, "scale", (None, *NO_NUMBERS, NAN, float("inf"))),
+    (Calls.plot_map, "scale", (None, *NO_NUMBERS, NAN, float("inf"))),
+    (Calls.plot_over_time, "by", (None, *NO_TEXTS, "x")),
+    (Calls.plot_energies, "axes", NO_AXES),
+    (Calls.plot_energies, "save", (*NO_PATHS, "x.gif")),
+    (Calls.plot_energies, "overwrite", NO_FLAGS),
+    (Calls.plot_pressure, "plane", (*NO_WHOLES, 5)),
     (Calls.plot_bar, "scale", (None, *NO_NUMBERS, NAN)),
     *((Calls.bar_impact, name, (None, *NO_NUMBERS, NAN, 0)) for name in ("length", "young", "gap")),
     (Calls.displacement, "x", (None, *NO_ARRAYS, NAN, 0.2)),

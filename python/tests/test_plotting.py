@@ -1,8 +1,10 @@
 """Pictures: what is drawn, with which labels."""
 
+import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -22,6 +24,7 @@ def test_a_map_shows_all_elements(block_history: pc.History) -> None:
     drawn = axes.collections[0].get_array()
     assert drawn is not None and np.array_equal(drawn, estimate.by_element)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (mm)", "y (mm)")
+    assert axes.lines and axes.get_ylim()[0] < -0.2  # Mesh lines, and the plane 0.2 mm below the body.
     assert "J" in axes.child_axes[0].get_ylabel()
 
 
@@ -57,6 +60,108 @@ def test_stresses_are_those_of_the_law() -> None:
         else:
             # tr σ = 3K tr ε with the bulk modulus K = E/(3(1-2ν)).
             assert np.allclose(pressure * -1e6, 2e11 / 1.2 * 0.7 * strain, rtol=1e-9)
+
+
+def test_colours_are_logarithmic_where_an_element_outshines_the_rest() -> None:
+    from percute.pictures.body import scale_of
+
+    assert scale_of(np.linspace(1.0, 9.9, 100)) == (0.0, 9.9, False)
+    values = np.ones(200)
+    values[:2], values[3] = 1e-9, 11.0
+    # From the hundredth part on.
+    assert scale_of(values) == (1.0, 11.0, True) and scale_of(values[:150])[2]
+    assert scale_of(np.array([1.0, 1e9])) == (0.0, 1e9, False) and scale_of(np.array([1.0, 1.0, 1e9])) == (1e5, 1e9, True)
+    assert scale_of(np.zeros(3)) == (0.0, 1.0, False)
+
+
+def test_the_map_of_a_local_error_is_logarithmic(block_history: pc.History) -> None:
+    estimate = pc.estimate(block_history)
+    values = np.full(96, 1e-3)
+    values[0] = 1.0
+    estimate.__dict__["by_element"] = values
+    axes = estimate.plot_map()
+    assert type(axes.collections[0].norm).__name__ == "LogNorm"
+
+
+def test_a_map_on_the_deformed_body(block_history: pc.History, tmp_path: Path) -> None:
+    estimate = pc.estimate(block_history, instants=3, fields=True)
+    step = int(np.argmin(abs(block_history.time - estimate.time_of_sup)))
+    x = estimate.plot_map(scale=2.0).collections[0].get_paths()[0].vertices[0, 0]  # type: ignore[index]
+    node = block_history.problem.mesh.cells[0, 0]
+    moved = block_history.problem.mesh.points[node] + 2 * block_history.displacement[step, node]
+    assert 1e-3 * float(x) == pytest.approx(moved[0], rel=1e-12)
+    estimate.save(tmp_path / "with.vtkhdf")
+    pc.estimate(block_history).save(tmp_path / "without.vtkhdf")
+    stored = pc.open(tmp_path / "with.vtkhdf")
+    assert isinstance(stored, pc.Estimate) and "× 1 at t = 13" in stored.plot_map(scale=1.0).get_title()
+    without = pc.open(tmp_path / "without.vtkhdf")
+    assert isinstance(without, pc.Estimate) and without.plot_map().get_title()
+    with pytest.raises(pc.InputError, match="`scale` needs displacements"):
+        without.plot_map(scale=1.0)
+
+
+def test_sources_over_time(block_history: pc.History) -> None:
+    estimate = pc.estimate(block_history)
+    assert estimate.sources is not None
+    axes = estimate.plot_over_time("sources")
+    drawn = {line.get_label(): line.get_ydata() for line in axes.lines}
+    assert np.allclose(drawn["dispersion"], np.sqrt(np.maximum(estimate.sources.over_time.dispersion, 0.0)))  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match='only the reconstruction "corrected" separates them'):
+        pc.estimate(block_history, reconstruction="published").plot_over_time("sources")
+
+
+def test_energies_of_a_history_and_of_a_file(block_history: pc.History, tmp_path: Path) -> None:
+    pc.estimate(block_history).save(tmp_path / "error.vtkhdf")
+    stored = pc.open(tmp_path / "error.vtkhdf")
+    for subject in (block_history, pc.estimate(block_history), stored):
+        axes = subject.plot_energies()
+        drawn = {line.get_label(): line.get_ydata() for line in axes.lines}
+        assert np.allclose(1e3 * drawn["strain"], block_history.balance.strain)  # type: ignore[operator]
+        # Nothing does work but contact.
+        assert list(drawn) == ["kinetic + strain", "kinetic", "strain", "work of contact", "dissipated by friction"]
+
+
+def test_force_and_pressure(block_history: pc.History, bar_history: pc.History, tmp_path: Path) -> None:
+    contact = block_history.contact
+    axes = block_history.plot_force()
+    assert np.allclose(1e6 * axes.lines[0].get_ydata(), contact.resultants.normal_force)  # type: ignore[operator]
+    zone = pc.estimate(block_history).plot_pressure()
+    values = zone.collections[0].get_array()
+    assert values is not None and 1e9 * values.max() == pytest.approx(contact.pressure[:-1].max()) and zone.get_xlabel() == "t (µs)"
+    bar = bar_history.plot_pressure()
+    assert np.allclose(1e9 * bar.lines[0].get_ydata(), bar_history.contact.pressure[:, 0])  # type: ignore[operator]
+    with pytest.raises(pc.InputError, match="`plane` is 1"):
+        block_history.plot_pressure(1)
+    rod = pc.Problem(pc.Mesh.bar(1.0, elements=2), material=pc.Elastic(young=1.0, density=1.0, section=1.0), initial_velocity=0.1)
+    free = pc.simulate(rod, end=1.0, courant=0.9)
+    for call in (free.plot_force, free.plot_pressure, pickle.loads(pickle.dumps(pc.estimate(block_history))).plot_force):
+        with pytest.raises(pc.InputError, match="there is nothing to draw: (the problem has no planes|there are no contact results)"):
+            call()
+
+
+@pytest.mark.parametrize("ending", ["svg", "png", "pdf"])
+def test_figures_are_saved_with_the_same_bytes(ending: str, block_history: pc.History, tmp_path: Path) -> None:
+    file, again = tmp_path / f"energies.{ending}", tmp_path / f"again.{ending}"
+    block_history.plot_energies(save=file)
+    block_history.plot_energies(save=str(again))
+    assert file.read_bytes() == again.read_bytes() and len(list(tmp_path.iterdir())) == 2
+    before = file.stat().st_mtime_ns
+    with pytest.raises(pc.ExistingFileError, match="the file exists already; give another name, or overwrite=True"):
+        block_history.plot_force(save=file)
+    assert file.stat().st_mtime_ns == before
+    block_history.plot_force(save=file, overwrite=True)
+    assert file.read_bytes() != again.read_bytes()
+
+
+def test_files_are_checked_before_anything_is_drawn(block_history: pc.History, tmp_path: Path) -> None:
+    with pytest.raises(pc.InputError, match=r"`save` is 'map.jpg'; the name must end in .svg or .png or .pdf"):
+        block_history.plot(save="map.jpg")
+    with pytest.raises(pc.StorageError, match="there is no folder"):
+        block_history.plot(save=tmp_path / "none" / "map.svg")
+    (tmp_path / "folder.svg").mkdir()
+    with pytest.raises(pc.StorageError, match="not a regular file"):
+        block_history.contact.plot(save=tmp_path / "folder.svg", overwrite=True)
+    assert not plt.get_fignums() and len(list(tmp_path.iterdir())) == 1
 
 
 def test_bars(bar_history: pc.History) -> None:

@@ -51,7 +51,8 @@ def test_every_public_name_is_in_the_reference() -> None:
     for name in pc.__all__:
         assert name == "__version__" or f"`{name}" in page or f".{name}" in page, name
     for kind in (pc.Mesh, pc.Problem, pc.History, pc.Contact, pc.Estimate, pc.exact.BarImpact):
-        for name, value in vars(kind).items():
+        for name in dir(kind):
+            value = getattr(kind, name)
             if not name.startswith("_") and (callable(value) or value.__doc__):
                 assert f"`{name}" in page or f".{name}(" in page, f"{kind.__name__}.{name}"
             assert name.startswith("_") or value.__doc__, f"{kind.__name__}.{name} says nothing"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import percute as pc
-from percute.plotting import field
+from percute.pictures.fields import field
 from percute.verification import figures
 from percute.verification.block import Block
 from percute.verification.choices import DEFAULT, RECONSTRUCTIONS

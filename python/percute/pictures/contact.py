@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import text, wrong
+from percute.checks import text, whole, wrong
 from percute.contact import Contact, ContactStatus
 from percute.errors import InputError
-from percute.plotting import FIELD, Floats, _axes, _prefix, _pyplot
+from percute.pictures.canvas import FIELD, Floats, legend_beside, new_axes, over_time, prefixed, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,39 +22,87 @@ MOST_COLUMNS = 2000
 """Largest number of drawn steps; more are thinned out."""
 
 
-def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None) -> list[Axes]:
+def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
     """Draw the resultant forces over time, and the zone of contact of each plane over time."""
+    file = writable("save", save, overwrite)
     known = ("status", "pressure")
     if text("colour", colour) not in known:
         raise InputError(f"`colour` is {colour!r}; it must be one of {', '.join(known)}")
-    if not contact.obstacles or len(contact.time) < 2:
-        what = "the problem has no planes" if not contact.obstacles else "the history has one instant only"
-        raise InputError(f"there is nothing to draw: {what}")
+    _check(contact)
     panels = _panels(axes, 1 + len(contact.obstacles))
     _draw_forces(panels[0], contact)
     for plane, panel in enumerate(panels[1:]):
         _draw_zone(panel, contact, plane, colour)
     # New axes share the time; only the last one is labelled.
     for panel in panels[-1:] if axes is None else panels:
-        panel.set_xlabel(f"t ({_prefix(contact.time)[1]}s)")
+        panel.set_xlabel(f"t ({prefixed(contact.time)[1]}s)")
+    save_figure(root(panels[0]), file)
     return panels
+
+
+def plot_force(contact: Contact | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
+    """Draw the resultant forces of each plane over time."""
+    file, results = writable("save", save, overwrite), _check(contact)
+    axes = new_axes(axes, (7.2, 4.0))
+    over_time(axes, results.time)
+    _draw_forces(axes, results)
+    save_figure(root(axes), file)
+    return axes
+
+
+def plot_pressure(contact: Contact | None, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
+    """Draw the pressure along the surface over time; of a bar, the pressure of its end."""
+    file, results = writable("save", save, overwrite), _check(contact)
+    if plane is None:
+        peaks = [each.normal_force.max(initial=0.0) for each in results.obstacles]
+        chosen = int(np.argmax(peaks))
+    else:
+        chosen = whole("plane", plane, least=0, most=len(results.obstacles) - 1)
+    axes = new_axes(axes, (7.2, 4.0))
+    over_time(axes, results.time)
+    if results.mesh.dimension == 1:
+        _draw_ends(axes, results, chosen)
+    else:
+        axes.grid(False)
+        _draw_zone(axes, results, chosen, "pressure")
+    save_figure(root(axes), file)
+    return axes
+
+
+def _draw_ends(axes: Axes, contact: Contact, plane: int) -> None:
+    """Draw the pressure of the ends of a bar that may touch a plane."""
+    seconds = prefixed(contact.time)[0]
+    factor, prefix = prefixed(contact.pressure)
+    for row in np.flatnonzero(contact.obstacle == plane):
+        axes.plot(contact.time / seconds, contact.pressure[:, row] / factor, label=f"node {contact.nodes[row]}")
+    axes.set_ylabel(f"contact pressure ({prefix}Pa)")
+    legend_beside(axes)
+
+
+def _check(contact: Contact | None) -> Contact:
+    """Make sure that there is something to draw."""
+    if contact is None or not contact.obstacles or len(contact.time) < 2:
+        none = "there are no contact results" if contact is None else "the problem has no planes"
+        what = none if contact is None or not contact.obstacles else "the history has one instant only"
+        raise InputError(f"there is nothing to draw: {what}")
+    return contact
 
 
 def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
     """Give some axes, by default one below the other with a common time."""
     if axes is None:
         size = (6.8, 2.6 + 2.6 * (count - 1))
-        return list(_pyplot().subplots(count, sharex=True, layout="constrained", figsize=size)[1])
+        return list(pyplot().subplots(count, sharex=True, layout="constrained", figsize=size)[1])
     given = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
     if len(given) != count:
         raise wrong("axes", axes, f"{count} axes of matplotlib: one for the forces and one for each plane")
-    return [_axes(each) for each in given]
+    return [new_axes(each) for each in given]
 
 
 def _draw_forces(axes: Axes, contact: Contact) -> None:
     """Draw normal and tangential resultants of each plane."""
-    seconds, _ = _prefix(contact.time)
-    factor, prefix = _prefix(contact.resultants.normal_force)
+    seconds, _ = prefixed(contact.time)
+    factor, prefix = prefixed(contact.resultants.normal_force)
     several = len(contact.obstacles) > 1
     for plane, resultants in enumerate(contact.obstacles):
         of, line = (f", plane {plane}" if several else ""), ("-", "--", ":")[min(plane, 2)]
@@ -67,7 +115,7 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
     axes.set_ylabel(f"force of contact ({prefix}N)")
     axes.margins(x=0.0)
     axes.grid(alpha=0.3)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
+    legend_beside(axes)
 
 
 def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
@@ -81,14 +129,14 @@ def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
 
 def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
     """Draw the nodes of a plane in contact over time. The status at t_n fills the step after it."""
-    seconds, _ = _prefix(contact.time)
+    seconds, _ = prefixed(contact.time)
     rows = np.flatnonzero(contact.obstacle == plane)
     thin = -(-(len(contact.time) - 1) // MOST_COLUMNS)
     steps = np.arange(0, len(contact.time) - 1, thin)
     time = np.append(contact.time[steps], contact.time[-1]) / seconds
     status = contact.status[np.ix_(steps, rows)]
     values = np.asarray(status, dtype=np.float64) if colour == "status" else contact.pressure[np.ix_(steps, rows)]
-    factor, prefix = (1.0, "") if colour == "status" else _prefix(values)
+    factor, prefix = (1.0, "") if colour == "status" else prefixed(values)
     shown = np.ma.masked_where(status == ContactStatus.FREE, values / factor)
     style = _style(colour, float(shown.max()) if shown.count() else 1.0)
     drawn: Any = None
@@ -100,17 +148,17 @@ def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
     if colour == "pressure":
         axes.figure.colorbar(drawn, cax=axes.inset_axes((1.02, 0.0, 0.03, 1.0)), label=f"pressure ({prefix}Pa)")
         return
-    patch = _pyplot().matplotlib.patches.Patch
+    patch = pyplot().matplotlib.patches.Patch
     handles = [patch(color=shade, label=name.name.lower()) for name, shade in COLOURS.items() if (status == name).any()]
     if handles:
-        axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0.0)
+        legend_beside(axes, handles=handles)
 
 
 def _style(colour: str, most: float) -> dict[str, Any]:
     """Give colours and their range."""
     if colour == "pressure":
         return {"cmap": FIELD, "vmin": 0.0, "vmax": most}
-    colours = _pyplot().matplotlib.colors.ListedColormap([COLOURS[ContactStatus.STICK], COLOURS[ContactStatus.SLIP]])
+    colours = pyplot().matplotlib.colors.ListedColormap([COLOURS[ContactStatus.STICK], COLOURS[ContactStatus.SLIP]])
     return {"cmap": colours, "vmin": int(ContactStatus.STICK), "vmax": int(ContactStatus.SLIP)}
 
 
@@ -123,7 +171,7 @@ def _cells(
         return [(slice(None), np.arange(len(rows) + 1, dtype=np.float64) - 0.5)]
     along, name = _along(contact, plane)
     places: Floats = contact.points[rows] @ along
-    factor, prefix = _prefix(places)
+    factor, prefix = prefixed(places)
     axes.set_ylabel(f"{name} ({prefix}m)")
     pieces: list[tuple[slice, Floats]] = []
     seen: list[Floats] = []

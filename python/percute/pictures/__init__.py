@@ -1,0 +1,1 @@
+"""Pictures of histories, estimates and contact results, with matplotlib (the extra ``plot``)."""

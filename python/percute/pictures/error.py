@@ -1,0 +1,94 @@
+"""Pictures of the error: over the elements, and over time."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from percute.checks import number, text
+from percute.errors import InputError
+from percute.pictures.body import Line, draw_bar, draw_body, scale_of
+from percute.pictures.canvas import COLOURS, Floats, legend_beside, new_axes, over_time, prefixed, root, save_figure, writable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from percute.estimation import Estimate
+
+PARTS = ("kinetic", "elastic", "contact")
+SOURCES = ("surface", "front", "dispersion", "mesh")
+
+
+def planes_of(estimate: Estimate) -> list[Line]:
+    """Give the planes; an estimate from a file has them in its report."""
+    if estimate.problem is not None:
+        return [(each.point, each.normal) for each in estimate.problem.obstacles]
+    return [(each["point"], each["normal"]) for each in json.loads(estimate.to_json())["problem"]["obstacles"]]
+
+
+def _displacement(estimate: Estimate) -> tuple[Floats, float]:
+    """Give the displacement near the time of the sup, and its time: of the history, or of the maps of a file."""
+    if estimate.history is not None:
+        step = int(np.argmin(np.abs(estimate.history.time - estimate.time_of_sup)))
+        return estimate.history.displacement[step], float(estimate.history.time[step])
+    maps = [each for each in estimate.maps if each.displacement is not None]
+    if not maps:
+        raise InputError(
+            "`scale` needs displacements, which the estimate has not; take it from its history, or store it with instants and fields"
+        )
+    nearest = min(maps, key=lambda each: abs(each.time - estimate.time_of_sup))
+    assert nearest.displacement is not None
+    return nearest.displacement, nearest.time
+
+
+def plot_map(estimate: Estimate, scale: float, axes: Axes | None, save: object, overwrite: object) -> Axes:
+    """Draw e_E of each element (J^½), eq. [20]."""
+    file, factor = writable("save", save, overwrite), number("scale", scale, finite=True)
+    mesh, values, label = estimate.mesh, estimate.by_element, "error of the element, $e_E$ (J$^{1/2}$)"
+    places, told = mesh.points, ""
+    if factor != 0.0 and mesh.dimension == 2:
+        moved, time = _displacement(estimate)
+        places = places + factor * moved
+        seconds, prefix = prefixed(np.array([time]))
+        told = f"; displacement × {factor:.3g} at t = {time / seconds:.4g} {prefix}s"
+    axes = new_axes(axes)
+    colours, planes = scale_of(values), planes_of(estimate)
+    if mesh.dimension == 1:
+        draw_bar(axes, places, mesh.cells, values, label, scale=colours, planes=planes)
+    else:
+        draw_body(axes, places, mesh.cells, values, label, scale=colours, planes=planes)
+    axes.set_title(
+        f"sup {estimate.sup:.4g} J$^{{1/2}}$ ({100 * estimate.relative_sup:.3g} %), "
+        f"mean {estimate.mean:.4g} J$^{{1/2}}$ ({100 * estimate.relative_mean:.3g} %)\nmean² = sum of the $e_E$²{told}",
+        fontsize="medium",
+    )
+    save_figure(root(axes), file)
+    return axes
+
+
+def plot_over_time(estimate: Estimate, by: str, axes: Axes | None, save: object, overwrite: object) -> Axes:
+    """Draw √η, with the square roots of its parts or of its sources."""
+    file = writable("save", save, overwrite)
+    known = ("parts", "sources")
+    if text("by", by) not in known:
+        raise InputError(f"`by` is {by!r}; it must be one of {', '.join(known)}")
+    if by == "sources" and estimate.sources is None:
+        raise InputError('`by` is "sources", but the estimate has none; only the reconstruction "corrected" separates them')
+    axes = new_axes(axes, (7.2, 4.0))
+    samples = estimate.over_time
+    time = samples.time / (seconds := over_time(axes, samples.time))
+    axes.plot(time, np.sqrt(np.maximum(samples.total, 0.0)), color=COLOURS["total"], linewidth=1.6, label="error √η")
+    values = samples if by == "parts" else estimate.sources.over_time  # type: ignore[union-attr]
+    for name in PARTS if by == "parts" else SOURCES:
+        # A part may be below zero by rounding, a source a little more.
+        part = np.sqrt(np.maximum(getattr(values, name), 0.0))
+        axes.plot(time, part, color=COLOURS[name], linewidth=1.1, label=f"{name} part" if by == "parts" else name)
+    axes.axhline(estimate.mean, color="black", linestyle=":", linewidth=1, label="mean error")
+    axes.plot(estimate.time_of_sup / seconds, estimate.sup, "ko", markersize=4, label="sup")
+    axes.set_ylabel("error (J$^{1/2}$)")
+    axes.set_ylim(bottom=0.0)
+    legend_beside(axes)
+    save_figure(root(axes), file)
+    return axes

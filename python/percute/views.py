@@ -1,0 +1,254 @@
+"""Pictures and tables of histories and estimates: methods that both classes inherit."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal
+
+from percute.immutable import Immutable
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.axes import Axes
+
+    from percute.estimation import Estimate
+    from percute.history import History
+
+__all__ = ["EstimateViews", "HistoryViews"]
+
+File = str | os.PathLike[str] | None
+
+
+class _Views(Immutable):
+    """Pictures that histories and estimates have in common."""
+
+    def plot_energies(self: History | Estimate, *, axes: Axes | None = None, save: File = None, overwrite: bool = False) -> Axes:  # type: ignore[misc]
+        """Draw kinetic and strain energy and the works of loads, supports, contact and friction over time (J).
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes of the plot; new ones by default.
+        save : str or path, optional
+            A file (``.svg``, ``.png`` or ``.pdf``) for the figure.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        from percute.pictures import fields
+
+        return fields.plot_energies(self, axes, save, overwrite)
+
+    def plot_force(self: History | Estimate, *, axes: Axes | None = None, save: File = None, overwrite: bool = False) -> Axes:  # type: ignore[misc]
+        """Draw the normal and the tangential contact force of each plane over time (N).
+
+        Parameters
+        ----------
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+
+        Raises
+        ------
+        InputError
+            There are no planes or no contact results.
+        """
+        from percute.pictures import contact
+
+        return contact.plot_force(self.contact, axes, save, overwrite)
+
+    def plot_pressure(  # type: ignore[misc]
+        self: History | Estimate,
+        plane: int | None = None,
+        *,
+        axes: Axes | None = None,
+        save: File = None,
+        overwrite: bool = False,
+    ) -> Axes:
+        """Draw the contact pressure along the surface over time (Pa); of a bar, the pressure of its end over time.
+
+        Parameters
+        ----------
+        plane : int, optional
+            Number of the plane; by default the one with the largest force.
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot: time along x, place along the surface along y.
+
+        Raises
+        ------
+        InputError
+            There are no planes or no contact results.
+        """
+        from percute.pictures import contact
+
+        return contact.plot_pressure(self.contact, plane, axes, save, overwrite)
+
+
+class HistoryViews(_Views):
+    """Pictures and tables of a history."""
+
+    def plot(  # type: ignore[misc]
+        self: History,
+        quantity: str = "displacement",
+        *,
+        step: int = -1,
+        scale: float = 1.0,
+        axes: Axes | None = None,
+        save: File = None,
+        overwrite: bool = False,
+    ) -> Axes:
+        """Draw a field on the deformed body, with mesh lines and planes.
+
+        Parameters
+        ----------
+        quantity : {"displacement", "velocity", "von_mises", "pressure"}
+            Magnitude of the displacement (m) or the velocity (m/s), von Mises stress or pressure (Pa); of a bar its
+            displacement, velocity or ``"stress"`` along it.
+        step : int, default: -1
+            Which instant; negative ones count from the end.
+        scale : float, default: 1.0
+            By how much the displacement is exaggerated.
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        from percute.pictures import fields
+
+        return fields.plot_field(self, quantity, step, scale, axes, save, overwrite)
+
+    def to_pandas(self: History, over: Literal["time", "nodes"] = "time", *, step: int | None = -1) -> pandas.DataFrame:  # type: ignore[misc]
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "nodes"}, default: "time"
+            The rows: energies and contact resultants at each instant; or displacement, velocity and acceleration of each node.
+        step : int or None, default: -1
+            For nodes: which instant; negative ones count from the end. With None the table has the nodes at all instants.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With one column for each component, such as ``displacement_x``; ``attrs["units"]`` has the units of the columns.
+        """
+        from percute import contents, tables
+
+        return tables.of_history(self, over, None if step is None else contents.instant(self, step))
+
+    def to_xarray(self: History, fields: Iterable[str] = ("displacement", "reaction", "touching")) -> xarray.Dataset:  # type: ignore[misc]
+        """Make a data set (extra ``xarray``): energies, contact resultants and fields over ``time``.
+
+        Parameters
+        ----------
+        fields : iterable of str, default: ("displacement", "reaction", "touching")
+            Which fields, at all instants, of ``displacement``, ``velocity``, ``acceleration``, ``reaction`` and ``touching``. Those of
+            the default are views without a copy.
+
+        Returns
+        -------
+        xarray.Dataset
+            Each variable has its unit and meaning as attributes.
+        """
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_history(self, contents.chosen(fields, contents.FIELDS)))
+
+
+class EstimateViews(_Views):
+    """Pictures and tables of an estimate."""
+
+    def plot_map(  # type: ignore[misc]
+        self: Estimate, *, scale: float = 0.0, axes: Axes | None = None, save: File = None, overwrite: bool = False
+    ) -> Axes:
+        """Draw e_E, the contribution of each element (J^½), eq. [20], with mesh lines and planes.
+
+        The colours are logarithmic if the largest contribution exceeds ten times the median.
+
+        Parameters
+        ----------
+        scale : float, default: 0.0
+            By how much the displacement at the time of the sup is exaggerated; 0 draws the undeformed mesh.
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        from percute.pictures import error
+
+        return error.plot_map(self, scale, axes, save, overwrite)
+
+    def plot_over_time(  # type: ignore[misc]
+        self: Estimate,
+        by: Literal["parts", "sources"] = "parts",
+        *,
+        axes: Axes | None = None,
+        save: File = None,
+        overwrite: bool = False,
+    ) -> Axes:
+        """Draw √η over time, with the square roots of its parts or of its sources (J^½).
+
+        Parameters
+        ----------
+        by : {"parts", "sources"}, default: "parts"
+            Kinetic, elastic and contact part, eq. [14], or surface, front, dispersion and mesh.
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        from percute.pictures import error
+
+        return error.plot_over_time(self, by, axes, save, overwrite)
+
+    def to_pandas(self: Estimate, over: Literal["time", "elements", "both"] = "time") -> pandas.DataFrame:  # type: ignore[misc]
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "elements", "both"}, default: "time"
+            The rows: η with its parts and sources at each sample, e_E of each element, or the contributions of the elements at each
+            instant of ``maps``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units of the columns, and ``attrs`` the measures of the error.
+        """
+        from percute import contents, tables
+
+        rows = {"time": ("time",), "elements": ("element",), "both": ("instant", "element")}
+        return tables.to_pandas(contents.of_estimate(self), over, rows)
+
+    def to_xarray(self: Estimate) -> xarray.Dataset:  # type: ignore[misc]
+        """Make a data set (extra ``xarray``): the error over ``time``, over ``element``, and over both at each ``instant`` of the maps.
+
+        Each variable has its unit and meaning as attributes; the measures of the error are attributes of the data set.
+        """
+        from percute import contents, tables
+
+        return tables.to_xarray(contents.of_estimate(self))
