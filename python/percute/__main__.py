@@ -12,6 +12,10 @@ def main() -> int:
         from percute.verification.command import main as reproduce
 
         return reproduce(sys.argv[2:])
+    if sys.argv[1:2] == ["plot"]:
+        from percute.pictures.command import main as plot
+
+        return plot(sys.argv[2:])
     # Ctrl-C is the command's own: Python would answer only once the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return command(["percute", *sys.argv[1:]])

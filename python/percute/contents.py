@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import LARGEST, whole, wrong
+from percute.checks import wrong
+from percute.element_fields import OF_ELEMENTS, element_field
 
 if TYPE_CHECKING:
     from percute.balance import Balance
@@ -93,6 +94,12 @@ FIELDS = {
     "acceleration": (("time", "node", "component"), "m/s2", "acceleration"),
     "reaction": (("time", "contact_node", "component"), "N", "reaction of the planes on the node"),
     "touching": (("time", "contact_node"), "1", "whether the node touches"),
+    "strain": (("time", "element", "component", "component2"), "1", "strain"),
+    "stress": (("time", "element", "component", "component2"), "Pa", "stress"),
+    "von_mises": (("time", "element"), "Pa", "von Mises stress"),
+    "pressure": (("time", "element"), "Pa", "pressure in the element, positive in compression"),
+    "strain_energy": (("time", "element"), "J", "strain energy of the element"),
+    "kinetic_energy": (("time", "element"), "J", "kinetic energy of the element, of the lumped mass"),
 }
 SAMPLES = {
     "kinetic": ("J", "kinetic part of eta"),
@@ -171,9 +178,12 @@ def of_history(history: History, fields: Iterable[str], steps: NDArray[np.intp] 
     if any(name in ("reaction", "touching") for name in wanted):
         nodes = history.contact_nodes
         coordinates |= _places("contact_node", mesh.points[nodes], nodes, "contact_")
+    if any(name in OF_ELEMENTS for name in wanted):
+        coordinates |= _places("element", mesh.points[mesh.cells].mean(axis=1), np.arange(len(mesh.cells)), "element_")
     for name in wanted:
         dims, unit, text = FIELDS[name]
-        quantities[name] = Quantity(dims, getattr(history, name)[rows], unit, text)
+        values = element_field(history, name, rows) if name in OF_ELEMENTS else getattr(history, name)[rows]
+        quantities[name] = Quantity(dims, values, unit, text)
     if over_time:
         quantities |= of_balance(history.balance).quantities
         if history.problem.obstacles:
@@ -200,14 +210,6 @@ def of_estimate(estimate: Estimate) -> Contents:
     if any("node" in quantity.dims for quantity in quantities.values()):
         coordinates |= _places("node", mesh.points, np.arange(len(mesh.points)), "node_")
     return Contents(coordinates, quantities, {name: getattr(estimate, name) for name in MEASURES} | dict(estimate.options))
-
-
-def instant(history: History, step: object) -> int:
-    """Check the number of an instant; negative ones count from the end."""
-    count = len(history)
-    if not -count <= (given := whole("step", step, least=-LARGEST)) < count:
-        raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {count} instants")
-    return given % count
 
 
 def at_one_instant(contents: Contents) -> Contents:

@@ -11,6 +11,7 @@ from percute._percute import __version__
 from percute.checks import text
 from percute.contents import AXES, Contents, Quantity, at_one_instant
 from percute.contents import of_history as of_fields
+from percute.element_fields import NODAL, OF_ELEMENTS
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
@@ -78,12 +79,14 @@ def of_history(history: History, over: object, step: int | None) -> pandas.DataF
     """Make a table of a history: over time, or over nodes at one instant or at all."""
     if text("over", over) == "time":
         return to_pandas(of_fields(history, ()), over, {"time": ("time",)})
-    rows: dict[str, tuple[str, ...]] = {"time": ("time",), "nodes": ("time", "node") if step is None else ("node",)}
+    rows: dict[str, tuple[str, ...]] = {"time": ("time",), "nodes": ("time", "node"), "elements": ("time", "element")}
     if over not in rows:
         raise InputError(f"`over` is {over!r}; it must be one of {', '.join(rows)}")
-    names = ("displacement", "velocity", "acceleration")
+    names = NODAL if over == "nodes" else OF_ELEMENTS
     found = of_fields(history, names, None if step is None else np.array([step]), over_time=False)
-    return to_pandas(found if step is None else at_one_instant(found), over, rows)
+    if step is None:
+        return to_pandas(found, over, rows)
+    return to_pandas(at_one_instant(found), over, {name: dims[1:] or dims for name, dims in rows.items()})
 
 
 def to_xarray(contents: Contents) -> xarray.Dataset:

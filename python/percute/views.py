@@ -6,7 +6,9 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal
 
+from percute.history_fields import HistoryFields
 from percute.immutable import Immutable
+from percute.progress import ProgressOption
 
 if TYPE_CHECKING:
     import pandas
@@ -99,8 +101,8 @@ class _Views(Immutable):
         return contact.plot_pressure(self.contact, plane, axes, save, overwrite)
 
 
-class HistoryViews(_Views):
-    """Pictures and tables of a history."""
+class HistoryViews(HistoryFields, _Views):
+    """Fields, probes, pictures and tables of a history."""
 
     def plot(  # type: ignore[misc]
         self: History,
@@ -116,9 +118,10 @@ class HistoryViews(_Views):
 
         Parameters
         ----------
-        quantity : {"displacement", "velocity", "von_mises", "pressure"}
-            Magnitude of the displacement (m) or the velocity (m/s), von Mises stress or pressure (Pa); of a bar its
-            displacement, velocity or ``"stress"`` along it.
+        quantity : str, default: "displacement"
+            Magnitude of ``displacement`` (m), ``velocity`` (m/s) or ``acceleration`` (m/s²); ``von_mises``, ``pressure``, ``stress_xx``,
+            ``stress_yy`` or ``stress_xy`` (Pa); ``strain_energy`` or ``kinetic_energy`` of the elements (J). Of a bar its displacement,
+            velocity, acceleration, ``stress`` or energies along it.
         step : int, default: -1
             Which instant; negative ones count from the end.
         scale : float, default: 1.0
@@ -135,24 +138,71 @@ class HistoryViews(_Views):
 
         return fields.plot_field(self, quantity, step, scale, axes, save, overwrite)
 
-    def to_pandas(self: History, over: Literal["time", "nodes"] = "time", *, step: int | None = -1) -> pandas.DataFrame:  # type: ignore[misc]
+    def animate(  # type: ignore[misc]
+        self: History,
+        path: str | os.PathLike[str],
+        quantity: str | None = None,
+        *,
+        frames: int = 60,
+        rate: float = 15.0,
+        scale: float = 1.0,
+        overwrite: bool = False,
+        progress: ProgressOption = None,
+    ) -> None:
+        """Write an animation of a field on the moving body.
+
+        Colours have one scale, and the picture one frame, for all instants. The file is complete or not there: an exception or Ctrl-C
+        removes what has been written.
+
+        Parameters
+        ----------
+        path : str or path
+            A file that ends in ``.gif``, or in ``.mp4``, for which the program ffmpeg must be installed.
+        quantity : str, optional
+            As for `plot`; by default ``von_mises``, of a bar ``stress``.
+        frames : int, default: 60
+            Number of frames, at most 10 000, at evenly spaced steps from the first to the last; at most one for each step.
+        rate : float, default: 15
+            Frames per second, from 0.1 to 100.
+        scale : float, default: 1.0
+            By how much the displacement is exaggerated.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+        progress : bool or callable, optional
+            As for `simulate`; the stage is ``animating``, and frames are counted.
+
+        Raises
+        ------
+        InputError
+            An argument is wrong.
+        PercuteError
+            There is no matplotlib, or no ffmpeg for an ``.mp4``.
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        """
+        from percute.pictures import animation
+
+        animation.animate(self, path, quantity, frames, rate, scale, overwrite, progress)
+
+    def to_pandas(self: History, over: Literal["time", "nodes", "elements"] = "time", *, step: int | None = -1) -> pandas.DataFrame:  # type: ignore[misc]
         """Make a table (extra ``pandas``).
 
         Parameters
         ----------
-        over : {"time", "nodes"}, default: "time"
-            The rows: energies and contact resultants at each instant; or displacement, velocity and acceleration of each node.
+        over : {"time", "nodes", "elements"}, default: "time"
+            The rows: energies and contact resultants at each instant; displacement, velocity and acceleration of each node; or
+            strain, stress and energies of each element.
         step : int or None, default: -1
-            For nodes: which instant; negative ones count from the end. With None the table has the nodes at all instants.
+            For nodes and elements: which instant; negative ones count from the end. With None the table has all instants.
 
         Returns
         -------
         pandas.DataFrame
             With one column for each component, such as ``displacement_x``; ``attrs["units"]`` has the units of the columns.
         """
-        from percute import contents, tables
+        from percute import element_fields, tables
 
-        return tables.of_history(self, over, None if step is None else contents.instant(self, step))
+        return tables.of_history(self, over, None if step is None else element_fields.instant(self, step))
 
     def to_xarray(self: History, fields: Iterable[str] = ("displacement", "reaction", "touching")) -> xarray.Dataset:  # type: ignore[misc]
         """Make a data set (extra ``xarray``): energies, contact resultants and fields over ``time``.
@@ -160,8 +210,9 @@ class HistoryViews(_Views):
         Parameters
         ----------
         fields : iterable of str, default: ("displacement", "reaction", "touching")
-            Which fields, at all instants, of ``displacement``, ``velocity``, ``acceleration``, ``reaction`` and ``touching``. Those of
-            the default are views without a copy.
+            Which fields, at all instants: ``displacement``, ``velocity``, ``acceleration``, ``reaction``, ``touching``, and of the
+            elements ``strain``, ``stress``, ``von_mises``, ``pressure``, ``strain_energy`` and ``kinetic_energy``. Those of the
+            default are views without a copy.
 
         Returns
         -------

@@ -102,6 +102,15 @@ class Calls:
     def plot_energies(self, **wrong: Any) -> object:
         return self.block.plot_energies(**wrong)
 
+    def probe(self, **wrong: Any) -> object:
+        return self.block.probe(**({"where": "bottom"} | wrong))
+
+    def stress(self, **wrong: Any) -> object:
+        return self.block.stress(**({"step": 0} | wrong))
+
+    def animate(self, **wrong: Any) -> object:
+        return self.block.animate(**({"path": self.folder / "block.gif"} | wrong))  # type: ignore[func-returns-value]
+
     def plot_pressure(self, **wrong: Any) -> object:
         return self.estimated.plot_pressure(**wrong)
 
@@ -208,6 +217,17 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.plot_energies, "axes", NO_AXES),
     (Calls.plot_energies, "save", (*NO_PATHS, "x.gif")),
     (Calls.plot_energies, "overwrite", NO_FLAGS),
+    (Calls.probe, "where", (None, *NO_ARRAYS, 3.0, [NAN, 0.0], [1.0, 1.0])),
+    (Calls.probe, "quantity", (None, *NO_TEXTS, "x")),
+    (Calls.probe, "each", NO_FLAGS),
+    (Calls.stress, "step", (None, *NO_NUMBERS[:4], 1.5, HUGE, 10000, [10000], slice("a"))),
+    (Calls.animate, "path", (None, *NO_PATHS, "x.png")),
+    (Calls.animate, "quantity", (*NO_TEXTS, "x")),
+    (Calls.animate, "frames", (None, *NO_WHOLES, 1)),
+    (Calls.animate, "rate", (None, *NO_NUMBERS, NAN, 0.0, 1000.0)),
+    (Calls.animate, "scale", (None, *NO_NUMBERS, NAN)),
+    (Calls.animate, "overwrite", NO_FLAGS),
+    (Calls.animate, "progress", NO_PROGRESS),
     (Calls.plot_pressure, "plane", (*NO_WHOLES, 5)),
     (Calls.plot_bar, "scale", (None, *NO_NUMBERS, NAN)),
     *((Calls.bar_impact, name, (None, *NO_NUMBERS, NAN, 0)) for name in ("length", "young", "gap")),

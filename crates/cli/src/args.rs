@@ -15,6 +15,10 @@ const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interru
 pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
     in the source folder. Its command `percute` computes the evidence";
 
+/// The remedy for `percute plot` without the Python package.
+pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
+    in the source folder. Its command `percute` draws the pictures. `percute run` draws the error map with --picture, without Python";
+
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "percute", version, after_help = EXIT_CODES)]
@@ -39,6 +43,8 @@ pub enum Command {
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
+    /// Draw a picture of a case, a history or an estimate file (with the Python package): error, energies, contact, fields, animations
+    Plot(PlotArguments),
     /// Compute the evidence again (with the Python package): the paper's tables and figures, exact solutions, effectivity indices
     Reproduce(ReproduceArguments),
 }
@@ -148,6 +154,15 @@ pub struct RecoverArguments {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = NEEDS_PYTHON)]
 pub struct ReproduceArguments {
+    /// Its arguments, which the Python package reads
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub all: Vec<OsString>,
+}
+
+/// Arguments of `percute plot`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = PLOT_NEEDS_PYTHON)]
+pub struct PlotArguments {
     /// Its arguments, which the Python package reads
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
     pub all: Vec<OsString>,

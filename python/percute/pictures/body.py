@@ -75,11 +75,16 @@ def draw_body(
     colours: str = FIELD,
     scale: Scale | None = None,
     planes: Sequence[Line] = (),
+    extent: Floats | None = None,
 ) -> None:
-    """Draw values of nodes or elements on a plane body with its mesh lines and planes, coordinates in a suitable unit."""
+    """Draw values of nodes or elements on a plane body with its mesh lines and planes, coordinates in a suitable unit.
+
+    ``extent`` has points (m) that the picture must hold, by default those of the body.
+    """
     if len(values) == 0:
         raise InputError("there is nothing to draw")
-    factor, prefix = prefixed(points)
+    held = points if extent is None else extent
+    factor, prefix = prefixed(held)
     x, y = points.T / factor
     shown = linear(values, colours) if scale is None else scale
     style: dict[str, Any] = {"cmap": colours, "norm": shown.norm(), "rasterized": len(cells) > 5000}
@@ -93,7 +98,7 @@ def draw_body(
         # In two colours, so that lines are seen on dark and on light elements.
         axes.triplot(x, y, cells, color="white", linewidth=0.35, alpha=0.5)
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
-    _frame(axes, points / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
+    _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
     smaller = shown.logarithmic and bool(np.any(values < shown.low))
     # As high as the body, or below a slim one.
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())

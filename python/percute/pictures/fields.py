@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percute.checks import number, text
-from percute.contents import instant
+from percute.element_fields import instant
 from percute.errors import InputError
 from percute.pictures.body import Line, Scale, draw_bar, draw_body
 from percute.pictures.canvas import (
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from percute.estimation import Estimate
     from percute.history import History
-    from percute.problem import Problem
 
 WORKS = {
     "work_of_loads": "work of loads",
@@ -40,41 +39,33 @@ WORKS = {
 }
 
 
-def _stress(problem: Problem, displacement: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """σ_xx, σ_yy, σ_xy, σ_zz of each element (Pa)."""
-    mesh = problem.mesh
-    corners, moves = mesh.points[mesh.cells], displacement[mesh.cells]
-    along, across, shear, out_of_plane = problem._data.stiffness()
-    edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-    changes = np.swapaxes(moves[:, 1:] - moves[:, :1], 1, 2)
-    gradient = changes @ np.linalg.inv(edges)
-    if mesh.dimension == 1:
-        xx = along * gradient[:, 0, 0]
-        zero = np.zeros_like(xx)
-        return xx, zero, zero, zero
-    exx, eyy = gradient[:, 0, 0], gradient[:, 1, 1]
-    xy = shear * (gradient[:, 0, 1] + gradient[:, 1, 0])
-    return along * exx + across * eyy, across * exx + along * eyy, xy, out_of_plane * (exx + eyy)
+MOTION = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
+STRESSES = {"stress_xx": (0, 0), "stress_yy": (1, 1), "stress_xy": (0, 1)}
+SCALARS = {
+    "von_mises": ("von Mises stress", "Pa", FIELD),
+    "pressure": ("pressure", "Pa", SIGNED),
+    "strain_energy": ("strain energy of the element", "J", FIELD),
+    "kinetic_energy": ("kinetic energy of the element", "J", FIELD),
+}
 
 
-def field(history: History, quantity: str, step: int) -> tuple[Floats, str, str, str]:
-    """Give the values of a quantity at a step, with its name, unit and colours."""
-    problem = history.problem
-    bar = problem.mesh.dimension == 1
-    if quantity in ("displacement", "velocity"):
-        vectors: Floats = getattr(history, quantity)[step]
-        values: Floats = vectors[:, 0] if bar else np.linalg.norm(vectors, axis=1)
-        return values, quantity, "m" if quantity == "displacement" else "m/s", FIELD
-    known = ("displacement", "velocity", "stress") if bar else ("displacement", "velocity", "von_mises", "pressure")
-    if quantity not in known:
+def field(history: History, quantity: object, step: int) -> tuple[Floats, str, str, str]:
+    """Give the values of a quantity at an instant, with its name, unit and colours."""
+    bar = history.problem.mesh.dimension == 1
+    name = text("quantity", quantity)
+    scalars = ("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES)
+    if name not in (known := (*MOTION, *scalars)):
         raise InputError(f"`quantity` is {quantity!r}; it must be one of {', '.join(known)}")
-    xx, yy, xy, zz = _stress(problem, history.displacement[step])
-    if quantity == "stress":
-        return xx, "stress", "Pa", FIELD
-    if quantity == "pressure":
-        return -(xx + yy + zz) / 3, "pressure", "Pa", SIGNED
-    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.sqrt(squares / 2 + 3 * xy**2), "von Mises stress", "Pa", FIELD
+    if name in MOTION:
+        vectors: Floats = getattr(history, name)[step]
+        return vectors[:, 0] if bar else np.linalg.norm(vectors, axis=1), name, MOTION[name], FIELD
+    if name == "stress":
+        return history.stress(step)[:, 0, 0], name, "Pa", FIELD
+    if name in STRESSES:
+        row, column = STRESSES[name]
+        return history.stress(step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
+    values: Floats = getattr(history, name)(step)
+    return values, *SCALARS[name]
 
 
 def plot_field(
@@ -83,7 +74,7 @@ def plot_field(
     """Draw a field of a history on the deformed body."""
     file, row = writable("save", save, overwrite), instant(history, step)
     factor = number("scale", scale, finite=True)
-    found = field(history, text("quantity", quantity), row)
+    found = field(history, quantity, row)
     axes = new_axes(axes)
     draw_field(axes, history, row, factor, found)
     save_figure(root(axes), file)
@@ -91,9 +82,15 @@ def plot_field(
 
 
 def draw_field(
-    axes: Axes, history: History, step: int, scale: float, found: tuple[Floats, str, str, str], span: tuple[float, float] | None = None
+    axes: Axes,
+    history: History,
+    step: int,
+    scale: float,
+    found: tuple[Floats, str, str, str],
+    span: tuple[float, float] | None = None,
+    extent: Floats | None = None,
 ) -> None:
-    """Draw a field on axes, by default with a scale of its own."""
+    """Draw a field on axes. A frame of an animation has the range of the values and the outermost places (m) of all frames."""
     values, name, unit, colours = found
     mesh = history.problem.mesh
     factor, prefix = prefixed(values if span is None else np.array(span))
@@ -104,7 +101,7 @@ def draw_field(
         draw_bar(axes, mesh.points, mesh.cells, values / factor, label, scale=limits, planes=planes)
     else:
         places = mesh.points + scale * history.displacement[step]
-        draw_body(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes)
+        draw_body(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes, extent=extent)
     seconds, small = prefixed(history.time[step : step + 1])
     axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s", fontsize="medium")
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import percute as pc
-from percute.pictures.fields import field
 from percute.verification import figures
 from percute.verification.block import Block
 from percute.verification.choices import DEFAULT, RECONSTRUCTIONS
@@ -51,7 +50,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     def draw(values: Sequence[Floats], colours: figures.Colours) -> figures.Drawing:
         return figures.mesh_maps(list(zip(titles, bodies, values, strict=True)), colours, columns=3, plane=height)
 
-    stresses = [1e-9 * field(history, "von_mises", n)[0] for n in steps]
+    stresses = [1e-9 * history.von_mises(n) for n in steps]
     highest = float(np.max(stresses))
     caption = "Von Mises stress of each element (by its centroid at the start) at each instant."
     table = _table("stress-maps-von-mises", caption, [Column(title, "GPa", "[9]") for title in titles])

@@ -9,7 +9,7 @@ mod result;
 mod run;
 mod simulate;
 
-use crate::args::{Arguments, Command, NEEDS_PYTHON};
+use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
 use crate::exit::{BAD_INPUT, DONE, FAILED, code};
 use clap::Parser;
 use percute_io::is_hdf5;
@@ -52,11 +52,9 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
-            // The command of the Python package does it.
-            Command::Reproduce(_) => {
-                console.say(&format!("error: {NEEDS_PYTHON}"));
-                Ok(FAILED)
-            }
+            // The command of the Python package does these.
+            Command::Plot(_) => Ok(console.refuse(PLOT_NEEDS_PYTHON)),
+            Command::Reproduce(_) => Ok(console.refuse(NEEDS_PYTHON)),
         },
         Err(error) => return clap_says(&error, console),
     };
@@ -89,6 +87,12 @@ impl Console<'_> {
     /// Says something beside the result; what cannot be said must not cost it.
     fn say(&mut self, text: &str) {
         let _ = writeln!(self.err, "{text}");
+    }
+
+    /// Says why nothing was done.
+    fn refuse(&mut self, why: &str) -> u8 {
+        self.say(&format!("error: {why}"));
+        FAILED
     }
 
     /// Prints the plausibility warnings about a case and returns their names.

@@ -229,14 +229,17 @@ fn a_device_is_no_case() {
 }
 
 #[test]
-fn the_help_of_reproduce_names_the_python_package() {
+fn the_help_of_commands_in_python_names_the_package() {
     let bench = Bench::new(BLOCK);
-    for flag in ["--help", "-h"] {
-        let help = bench.percute(&["reproduce", flag]);
-        assert!(help.status.success() && help.stderr.is_empty(), "{flag}: {}", stderr(&help));
-        assert!(stdout(&help).contains("needs the Python package"), "{flag}: {}", stdout(&help));
+    for arguments in [["reproduce", "table1", "--small"], ["plot", "case.toml", "--kind"]] {
+        let command = arguments[0];
+        for flag in ["--help", "-h"] {
+            let help = bench.percute(&[command, flag]);
+            assert!(help.status.success() && help.stderr.is_empty(), "{command} {flag}: {}", stderr(&help));
+            assert!(stdout(&help).contains("needs the Python package"), "{command} {flag}: {}", stdout(&help));
+        }
+        let refused = bench.percute(&arguments);
+        assert_eq!(refused.status.code(), Some(1));
+        assert!(stderr(&refused).starts_with(&format!("error: `percute {command}` needs the Python package")));
     }
-    let refused = bench.percute(&["reproduce", "table1", "--small"]);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(stderr(&refused).starts_with("error: `percute reproduce` needs the Python package"));
 }

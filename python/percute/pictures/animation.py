@@ -1,0 +1,101 @@
+"""Animations of fields: GIF through Pillow, MP4 through ffmpeg."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from percute.checks import number, whole, wrong
+from percute.errors import PercuteError
+from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable
+from percute.pictures.fields import draw_field, field
+from percute.progress import Progress, ProgressOption, shown
+
+if TYPE_CHECKING:
+    from matplotlib.animation import AbstractMovieWriter
+
+    from percute.history import History
+
+ENDINGS = (".gif", ".mp4")
+DOTS = 100
+"""Dots per inch: 640 pixels in width."""
+MOST_FRAMES = 10_000
+
+
+def animate(
+    history: History,
+    path: object,
+    quantity: object,
+    frames: object,
+    rate: object,
+    scale: object,
+    overwrite: object,
+    progress: ProgressOption,
+) -> None:
+    """Write a field on the moving body at evenly spaced steps."""
+    plt = pyplot()
+    if path is None:
+        raise wrong("path", path, "the name of a file that ends in .gif or .mp4")
+    file = writable("path", path, overwrite, ENDINGS)
+    assert file is not None
+    count = whole("frames", frames, least=2, most=MOST_FRAMES)
+    per_second, factor = number("rate", rate, finite=True), number("scale", scale, finite=True)
+    if not 0.1 <= per_second <= 100.0:
+        raise wrong("rate", rate, "from 0.1 to 100 frames per second")
+    name = ("stress" if history.problem.mesh.dimension == 1 else "von_mises") if quantity is None else quantity
+    steps = np.unique(np.linspace(0, len(history) - 1, min(count, len(history))).round().astype(np.intp)).tolist()
+    field(history, name, 0)  # Raises an error for an unknown quantity.
+    writer = _writer(plt, os.path.splitext(file)[1].lower(), per_second)
+    with shown(progress) as tell, replacing(file) as temporary, plt.rc_context():
+        span, extent = _span(history, name, steps, factor)
+        figure = plt.matplotlib.figure.Figure(figsize=(6.4, 4.8), dpi=DOTS, layout="constrained")
+        plt.matplotlib.backends.backend_agg.FigureCanvasAgg(figure)
+        place = None
+        with writer.saving(figure, temporary, DOTS):
+            for done, step in enumerate(steps):
+                figure.clear()
+                axes = figure.add_subplot() if place is None else figure.add_axes(place)
+                draw_field(axes, history, step, factor, field(history, name, step), span, extent)
+                if place is None:
+                    # All frames have the place of the first.
+                    figure.draw_without_rendering()
+                    place = axes.get_position(original=True)
+                    figure.set_layout_engine("none")
+                writer.grab_frame()
+                if tell is not None:
+                    tell(Progress("animating", done + 1, len(steps)))
+
+
+def _writer(plt: Any, ending: str, rate: float) -> AbstractMovieWriter:
+    """Give the writer of a kind of file."""
+    from matplotlib import animation
+
+    if ending == ".gif":
+        return animation.PillowWriter(fps=rate)  # type: ignore[arg-type]
+    if not animation.FFMpegWriter.isAvailable():
+        raise PercuteError("an .mp4 needs the program ffmpeg, which is not installed; install it, or write a .gif")
+    # Even numbers of pixels and this format are those that all players show.
+    return animation.FFMpegWriter(fps=rate, extra_args=["-pix_fmt", "yuv420p"])  # type: ignore[arg-type]
+
+
+def _span(history: History, name: object, steps: list[int], scale: float) -> tuple[tuple[float, float], Floats]:
+    """Give the range of the values at all instants, and the outermost places of the body."""
+    low, high, colours = np.inf, -np.inf, ""
+    planes = [np.asarray(plane.normal, dtype=np.float64).ravel() for plane in history.problem.obstacles]
+    sides = np.vstack([np.eye(history.problem.mesh.dimension), *planes])
+    outermost = []
+    for step in steps:
+        values, _, _, colours = field(history, name, step)
+        low, high = min(low, float(values.min())), max(high, float(values.max()))
+        places = history.problem.mesh.points + scale * history.displacement[step]
+        along = places @ sides.T
+        outermost.append(places[np.concatenate([along.argmin(axis=0), along.argmax(axis=0)])])
+    if colours == SIGNED:
+        low, high = -max(-low, high), max(-low, high)
+    elif history.problem.mesh.dimension == 2:
+        low = min(0.0, low)
+    if not low < high:
+        low, high = low - 0.5, high + 0.5
+    return (low, high), np.concatenate(outermost)
