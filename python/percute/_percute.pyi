@@ -128,7 +128,21 @@ class HistoryData:
         reaction: _Floats,
         touching: NDArray[np.bool_],
         options: tuple[str, str | None, int | str],
+        motion: tuple[_Floats | None, _Floats | None],
+        derived: Sequence[str] | None,
     ) -> HistoryData: ...
+    @staticmethod
+    def foreign(
+        problem: ProblemData,
+        times: Sequence[float],
+        displacement: _Floats,
+        reaction: _Floats | None,
+        touching: NDArray[np.bool_] | None,
+        velocity: _Floats | None,
+        acceleration: _Floats | None,
+    ) -> tuple[HistoryData, str | None]: ...
+    derived: Final[list[str] | None]
+    given: Final[list[bool]]
     problem: Final[ProblemData]
     times: Final[_Floats]
     count: Final[int]

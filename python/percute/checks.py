@@ -20,7 +20,7 @@ LARGEST = 2**63 - 1
 """The largest whole number of the engine."""
 
 MADE_BY = {
-    "History": "percute.simulate, percute.run or percute.open",
+    "History": "percute.simulate, percute.run, percute.open or History.from_arrays",
     "Estimate": "percute.estimate, percute.run or percute.open",
     "TrueError": "percute.true_errors, History.error or an exact solution",
 }

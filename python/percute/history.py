@@ -18,6 +18,7 @@ from percute.checks import encodable, flag, instance, items, numbers, optional_n
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
+from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.views import HistoryViews
@@ -33,8 +34,8 @@ MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction":
 class History(HistoryViews):
     """The steps of a simulation: displacements, contact reactions and touching status at each instant t_n.
 
-    Made by `simulate` or `percute.open`. Its arrays are read-only views without copies, of memory that lives as long as any
-    of them, or of the file.
+    Made by `simulate`, `percute.open` or `from_arrays`. Its arrays are read-only views without copies, of memory that lives as
+    long as any of them, or of the file.
     """
 
     _problem: Problem | None
@@ -42,7 +43,72 @@ class History(HistoryViews):
     _file: str | None
 
     def __init__(self) -> None:
-        raise TypeError("histories are made by percute.simulate, percute.run and percute.open")
+        raise TypeError("histories are made by percute.simulate, percute.run, percute.open and History.from_arrays")
+
+    @classmethod
+    def from_arrays(
+        cls,
+        problem: Problem,
+        time: ArrayLike,
+        displacement: ArrayLike,
+        reaction: ArrayLike | None = None,
+        touching: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        contact_nodes: ArrayLike | None = None,
+    ) -> History:
+        """Make a history of the arrays of another program.
+
+        Missing contact forces are derived from the balance M a + K u − F at the nodes of the planes, and a missing touching
+        status from gaps and forces; ``derived`` and the report name both.
+
+        Parameters
+        ----------
+        problem : Problem
+            What the other program simulated.
+        time : (instants,) floats
+            t_n (s), from 0 on.
+        displacement : (instants, nodes, dimension) floats
+            u_n (m). Of a bar the last axis may be missing, here and below.
+        reaction : (instants, contact nodes, dimension) floats, optional
+            R_n (N): the forces of the planes on the nodes in the step from t_n to t_{n+1}, in global axes. Those of the last
+            instant may be missing, or NaN.
+        touching : (instants, contact nodes) booleans, optional
+            Whether a node touches at t_n: in percute if and only if R_{n−1} is not zero.
+        velocity, acceleration : (instants, nodes, dimension) floats, optional
+            v_n (m/s) and a_n (m/s²). By default they follow from the scheme.
+        contact_nodes : (contact nodes,) ints, optional
+            The nodes of the rows of ``reaction`` and ``touching``, by default `Problem.contact_nodes`. Arrays of all nodes are
+            accepted without it.
+
+        Returns
+        -------
+        History
+            In memory, with copies of the arrays.
+
+        Warns
+        -----
+        InputWarning
+            The last instant is left out, because its contact forces are not known.
+
+        Raises
+        ------
+        InputError
+            An array has a wrong shape, is transposed, masked, of half precision or not finite; a node that can touch no plane
+            has a contact force.
+        """
+        arrays = ForeignArrays(instance("problem", problem, Problem), time, displacement, contact_nodes)
+        data, notice = _percute.HistoryData.foreign(
+            problem._data,
+            arrays.time.tolist(),
+            arrays.displacement,
+            arrays.reaction(reaction),
+            arrays.touching(touching),
+            arrays.optional("velocity", velocity),
+            arrays.optional("acceleration", acceleration),
+        )
+        warn([] if notice is None else [notice])
+        return cls._of(data, problem)
 
     @classmethod
     def _of(cls, data: _percute.HistoryData, problem: Problem | None = None, name: str = "") -> History:
@@ -188,6 +254,11 @@ class History(HistoryViews):
         return _errors(_percute.errors_against_history([self._data], other._data))[0]
 
     @property
+    def derived(self) -> tuple[str, ...]:
+        """The parts of a history of another program that were derived: "reaction", "touching"."""
+        return tuple(self._data.derived or ())
+
+    @property
     def complete(self) -> bool:
         """Whether all planned steps are present."""
         return self._data.complete
@@ -205,7 +276,9 @@ class History(HistoryViews):
         if self.path is not None:
             return _reopen, (str(self.path),)
         arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
-        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options())
+        velocity, acceleration = self._data.given
+        motion = (self.velocity.copy() if velocity else None, self.acceleration.copy() if acceleration else None)
+        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options(), motion, self._data.derived)
 
 
 def _reopen(path: str) -> History:

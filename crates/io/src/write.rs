@@ -34,6 +34,12 @@ pub struct Provenance {
 }
 
 impl Provenance {
+    /// Whether any version of percute is the writer.
+    #[must_use]
+    pub fn is_percute(&self) -> bool {
+        self.program.starts_with("percute ")
+    }
+
     /// This program on this machine.
     fn here() -> Self {
         Self {

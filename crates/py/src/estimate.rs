@@ -17,6 +17,7 @@ use percute_io::estimate_file::EstimateContents;
 use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
+use percute_workflow::foreign::{Checked, Graded};
 use percute_workflow::report::{PARTS, Report, SOURCES, Subject};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
@@ -36,6 +37,8 @@ pub(crate) struct Made<const D: usize, const N: usize> {
     pub(crate) options: Options,
     pub(crate) estimate: Estimate<D>,
     pub(crate) report: ReportSource<D>,
+    /// What was found about a history of another program.
+    pub(crate) checked: Option<Checked>,
 }
 
 /// Where the report comes from.
@@ -112,12 +115,15 @@ fn estimate_one<const D: usize, const N: usize>(
         let run = run.clone();
         move |mut watch: bridge::Watch| {
             let source = run.stoppable(watch.clone());
-            percute_workflow::run::estimate(&run.problem, &source, &analysis, &mut watch)
+            run.graded(&source, &analysis, &mut watch)
         }
     };
-    let results = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+    let Graded { results, times, checked } =
+        bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
-    Ok(Arc::new(Made::new(run.problem.clone(), run.times().clone(), options, results, held, seconds)))
+    let mut made = Made::new(run.problem.clone(), times, options, results, held, seconds);
+    made.checked = checked;
+    Ok(Arc::new(made))
 }
 
 impl<const D: usize, const N: usize> Made<D, N> {
@@ -132,7 +138,14 @@ impl<const D: usize, const N: usize> Made<D, N> {
         }
         let (times, options, estimate, report) = postcard::from_bytes::<State<D>>(rest).map_err(|_| refused())?;
         let times = TimeGrid::from_instants(times).map_err(|_| refused())?;
-        Ok(Self { problem: problem.clone(), times, options, estimate, report: ReportSource::Before(report) })
+        Ok(Self {
+            problem: problem.clone(),
+            times,
+            options,
+            estimate,
+            report: ReportSource::Before(report),
+            checked: None,
+        })
     }
 
     /// The estimate of a run, or of a stored history with `held` instants, that took so many seconds.
@@ -146,17 +159,18 @@ impl<const D: usize, const N: usize> Made<D, N> {
     ) -> Self {
         let Results { simulation, estimate, contact } = results;
         let report = ReportSource::Now { simulation, contact: Arc::new(contact), held, seconds };
-        Self { problem, times, options: options.filled(D), estimate, report }
+        Self { problem, times, options: options.filled(D), estimate, report, checked: None }
     }
 
     /// The document of `percute run --json`.
     fn report(&self, name: &str) -> Result<String, String> {
-        let Self { problem, times, options, estimate, report } = self;
+        let Self { problem, times, options, estimate, report, checked } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
             ReportSource::Now { simulation, contact, held, seconds } => {
                 let critical_step = critical_time_step(problem);
-                let subject = Subject { name, problem, times, critical_step, held: *held };
+                let checked = checked.as_ref();
+                let subject = Subject { name, problem, times, critical_step, held: *held, checked };
                 let report = Report::new(&subject, *options, simulation, estimate, contact, *seconds);
                 report.to_json().map_err(|error| error.to_string())
             }

@@ -8,13 +8,14 @@ use crate::run::{AnyRun, Run};
 use crate::{bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
-use percute_core::history::{History, Step};
+use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
+use percute_workflow::foreign::{Completed, Derived, Lacks, Origin};
 use percute_workflow::report::Named;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -30,8 +31,10 @@ pub(crate) struct HistoryData {
 
 #[pymethods]
 impl HistoryData {
-    /// A history put together from its arrays; `times` are the instants planned.
+    /// A history put together from its arrays; `times` are the instants planned. With `derived`, the names of the parts
+    /// that were derived before, it is one of another program.
     #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
     fn from_arrays(
         py: Python<'_>,
         problem: &ProblemData,
@@ -40,17 +43,69 @@ impl HistoryData {
         reaction: PyReadonlyArray3<'_, f64>,
         touching: PyReadonlyArray2<'_, bool>,
         options: Stated,
+        motion: (Option<PyReadonlyArray3<'_, f64>>, Option<PyReadonlyArray3<'_, f64>>),
+        derived: Option<Vec<String>>,
     ) -> PyResult<Self> {
-        let (reconstruction, acceleration, every) = options;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
-            options: options::options(py, &reconstruction, acceleration.as_deref(), &every)?,
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
-            reaction: reaction.as_slice()?,
-            touching: touching.as_slice()?,
+            reaction: Some(reaction.as_slice()?),
+            touching: Some(touching.as_slice()?),
+            motion: [slice(motion.0.as_ref())?, slice(motion.1.as_ref())?],
         };
-        Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times)?)) })
+        let options = stated(py, &options)?;
+        let origin = derived.map(|names| Origin { lacks: Lacks::default(), derived: derived_parts(&names) });
+        Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times, options, origin)?)) })
+    }
+
+    /// A history of another program; its missing parts are derived. With it the last instant (s), if it was left out.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn foreign(
+        py: Python<'_>,
+        problem: &ProblemData,
+        times: Vec<f64>,
+        displacement: PyReadonlyArray3<'_, f64>,
+        reaction: Option<PyReadonlyArray3<'_, f64>>,
+        touching: Option<PyReadonlyArray2<'_, bool>>,
+        velocity: Option<PyReadonlyArray3<'_, f64>>,
+        acceleration: Option<PyReadonlyArray3<'_, f64>>,
+    ) -> PyResult<(Self, Option<String>)> {
+        let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, format!("`time`: {error}")))?;
+        let given = Given {
+            count: times.instants().len(),
+            displacement: displacement.as_slice()?,
+            reaction: slice(reaction.as_ref())?,
+            touching: touching.as_ref().map(PyReadonlyArray2::as_slice).transpose()?,
+            motion: [slice(velocity.as_ref())?, slice(acceleration.as_ref())?],
+        };
+        let left_out;
+        let run = map_dimension!(&problem.problem, p => {
+            let (run, last) = given.completed(py, p, &times)?;
+            left_out = last;
+            Arc::new(run)
+        });
+        Ok((Self { run }, left_out.map(percute_workflow::report::left_out)))
+    }
+
+    /// Names of the parts that were derived; none for a history of percute.
+    #[getter]
+    fn derived(&self) -> Option<Vec<&'static str>> {
+        each_dimension!(&self.run, run => {
+            let origin = run.origin.as_ref()?;
+            Some(origin.derived.iter().map(|derived| derived.name()).collect())
+        })
+    }
+
+    /// Whether it has velocities and accelerations of its own.
+    #[getter]
+    fn given(&self) -> [bool; 2] {
+        each_dimension!(&self.run, run => match (run.file(), run.memory().and_then(|history| history.step(0))) {
+            (Some(file), _) => file.given(),
+            (None, Some(step)) => [step.velocity.is_some(), step.acceleration.is_some()],
+            (None, None) => [false; 2],
+        })
     }
 
     #[getter]
@@ -202,13 +257,26 @@ fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyD
     view::columns(py, balance, &numbers)
 }
 
+/// The parts with these names.
+fn derived_parts(names: &[String]) -> Vec<Derived> {
+    [Derived::Reaction, Derived::Touching].into_iter().filter(|part| names.iter().any(|n| n == part.name())).collect()
+}
+
+fn stated(py: Python<'_>, (reconstruction, acceleration, every): &Stated) -> PyResult<Options> {
+    options::options(py, reconstruction, acceleration.as_deref(), every)
+}
+
+fn slice<'a>(array: Option<&'a PyReadonlyArray3<'_, f64>>) -> PyResult<Option<&'a [f64]>> {
+    Ok(array.map(PyReadonlyArray3::as_slice).transpose()?)
+}
+
 /// Arrays of a history.
 struct Given<'a> {
-    options: Options,
     count: usize,
     displacement: &'a [f64],
-    reaction: &'a [f64],
-    touching: &'a [bool],
+    reaction: Option<&'a [f64]>,
+    touching: Option<&'a [bool]>,
+    motion: [Option<&'a [f64]>; 2],
 }
 
 impl Given<'_> {
@@ -217,22 +285,55 @@ impl Given<'_> {
         py: Python<'_>,
         problem: &Arc<Problem<D, N>>,
         times: &TimeGrid,
+        options: Options,
+        origin: Option<Origin>,
     ) -> PyResult<Run<D, N>> {
+        let history = self.history(py, problem, times)?;
+        Ok(match origin {
+            Some(origin) => Run::foreign(problem.clone(), history, options, origin),
+            None => Run::new(problem.clone(), history, options, None),
+        })
+    }
+
+    /// With what it lacks, and the last instant (s) if it was left out.
+    fn completed<const D: usize, const N: usize>(
+        &self,
+        py: Python<'_>,
+        problem: &Arc<Problem<D, N>>,
+        times: &TimeGrid,
+    ) -> PyResult<(Run<D, N>, Option<f64>)> {
+        let history = self.history(py, problem, times)?;
+        let lacks = Lacks { reaction: self.reaction.is_none(), touching: self.touching.is_none() };
+        let refused = |error: SinkError| errors::input(py, error);
+        let complete = Completed::new(problem, &history, lacks).map_err(refused)?;
+        let mut all = History::new(complete.times());
+        complete.replay(&mut |step| all.push(step)).map_err(refused)?;
+        let origin = Origin { lacks: Lacks::default(), derived: complete.derived().to_vec() };
+        Ok((Run::foreign(problem.clone(), all, Options::default(), origin), complete.left_out()))
+    }
+
+    fn history<const D: usize, const N: usize>(
+        &self,
+        py: Python<'_>,
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+    ) -> PyResult<History<D>> {
         let mut history = History::new(times);
         let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
+        let (no_force, no_touch) = (vec![[0.0; D]; contact], vec![false; contact]);
         for (index, &time) in times.instants().iter().enumerate().take(self.count) {
             let step = Step {
                 index,
                 time,
                 displacement: rows(self.displacement.as_chunks().0, index, nodes),
-                reaction: rows(self.reaction.as_chunks().0, index, contact),
-                touching: rows(self.touching, index, contact),
-                velocity: None,
-                acceleration: None,
+                reaction: self.reaction.map_or(&no_force, |r| rows(r.as_chunks().0, index, contact)),
+                touching: self.touching.map_or(&no_touch, |t| rows(t, index, contact)),
+                velocity: self.motion[0].map(|a| rows(a.as_chunks().0, index, nodes)),
+                acceleration: self.motion[1].map(|a| rows(a.as_chunks().0, index, nodes)),
             };
             history.push(&step).map_err(|error| errors::input(py, error))?;
         }
-        Ok(Run::new(problem.clone(), history, self.options, None))
+        Ok(history)
     }
 }
 

@@ -10,7 +10,10 @@ use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::{HistoryFile, HistorySource};
+use percute_workflow::Failure;
+use percute_workflow::foreign::{self, Graded, Origin};
 use percute_workflow::history::Stored;
+use percute_workflow::run::Analysis;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
@@ -20,6 +23,8 @@ pub(crate) struct Run<const D: usize, const N: usize> {
     pub(crate) steps: Steps<D, N>,
     /// Options that its estimate takes unless told otherwise.
     pub(crate) options: Options,
+    /// Of a history of another program.
+    pub(crate) origin: Option<Origin>,
     balance: OnceLock<Vec<Balance>>,
     contact: OnceLock<Arc<ContactResults<D>>>,
 }
@@ -49,15 +54,21 @@ impl<const D: usize, const N: usize> Run<D, N> {
         balance: Option<Vec<Balance>>,
     ) -> Self {
         let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
-        Self { problem, steps: Steps::Memory(history), options, balance, contact: OnceLock::new() }
+        Self { problem, steps: Steps::Memory(history), options, origin: None, balance, contact: OnceLock::new() }
+    }
+
+    /// A history of another program, in memory.
+    pub(crate) fn foreign(problem: Arc<Problem<D, N>>, history: History<D>, options: Options, origin: Origin) -> Self {
+        Self { origin: Some(origin), ..Self::new(problem, history, options, None) }
     }
 
     /// A history in a file.
     pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
         let source = stored.file.source(&stored.problem)?;
+        let origin = stored.origin();
         let steps = Steps::File(stored.file, source);
         let (problem, options) = (Arc::new(stored.problem), stored.options);
-        Ok(Self { problem, steps, options, balance: OnceLock::new(), contact: OnceLock::new() })
+        Ok(Self { problem, steps, options, origin, balance: OnceLock::new(), contact: OnceLock::new() })
     }
 
     /// The steps, one after the other.
@@ -115,6 +126,20 @@ impl<const D: usize, const N: usize> Run<D, N> {
     /// Instants and nodes of the contact surface.
     pub(crate) fn contact_shape(&self) -> [usize; 2] {
         [self.count(), self.contact_nodes().len()]
+    }
+
+    /// Analyses the steps that `source` hands on, those of this run.
+    pub(crate) fn graded(
+        &self,
+        source: &dyn StepSource<D>,
+        analysis: &Analysis,
+        watch: &mut Watch,
+    ) -> Result<Graded<D>, Failure> {
+        if let Some(origin) = &self.origin {
+            return foreign::estimate(&self.problem, source, origin, analysis, watch);
+        }
+        let results = percute_workflow::run::estimate(&self.problem, source, analysis, watch)?;
+        Ok(Graded { results, times: self.times().clone(), checked: None })
     }
 
     /// Energies and works at every step, computed once.

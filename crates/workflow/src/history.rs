@@ -2,8 +2,9 @@
 
 use crate::case::{NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
+use crate::foreign::{self, Graded, Lacks, Origin};
 use crate::report::Subject;
-use crate::run::{self, Analysis, Results};
+use crate::run::{self, Analysis};
 use percute_core::dynamics::critical_time_step;
 use percute_core::map_dimension;
 use percute_core::observer::Observer;
@@ -69,22 +70,40 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         Ok(Self { file, problem, options, name })
     }
 
+    /// Where it comes from; none if percute wrote it.
+    #[must_use]
+    pub fn origin(&self) -> Option<Origin> {
+        if self.file.provenance().is_percute() {
+            return None;
+        }
+        let [reaction, touching] = self.file.given_contact().map(|given| !given);
+        Some(Origin { lacks: Lacks { reaction, touching }, derived: Vec::new() })
+    }
+
     /// What a report on it is about: computes the critical step, which takes a while on a large mesh and
     /// which only reports need.
     #[must_use]
     pub fn subject(&self) -> Subject<'_, D, N> {
         let Self { file, problem, name, .. } = self;
         let critical_step = critical_time_step(problem);
-        Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()) }
+        Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()), checked: None }
     }
 
-    /// Analyses the steps that the file holds.
+    /// Analyses the steps that the file holds; a history of another program is completed before.
     ///
     /// # Errors
-    /// As [`run::estimate`].
-    pub fn estimate(&self, analysis: &Analysis, observer: &mut dyn Observer) -> Result<Results<D>, Failure> {
+    /// As [`foreign::estimate`].
+    pub fn estimate(&self, analysis: &Analysis, observer: &mut dyn Observer) -> Result<Graded<D>, Failure> {
         let source = self.file.source(&self.problem)?;
-        run::estimate(&self.problem, &source, analysis, observer).map_err(|failure| match failure {
+        let done = match self.origin() {
+            Some(origin) => foreign::estimate(&self.problem, &source, &origin, analysis, observer),
+            None => run::estimate(&self.problem, &source, analysis, observer).map(|results| Graded {
+                results,
+                times: self.file.times().clone(),
+                checked: None,
+            }),
+        };
+        done.map_err(|failure| match failure {
             // The history is good.
             failure @ Failure::Run(RunError::Estimate(EstimateError::Scratch(_))) => failure,
             Failure::Run(RunError::Estimate(cause)) => Failure::History { file: self.file.path().to_path_buf(), cause },

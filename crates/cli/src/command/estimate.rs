@@ -11,8 +11,10 @@ use percute_core::each_dimension;
 use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
+use percute_workflow::foreign::Graded;
 use percute_workflow::history::{Stored, open};
 use percute_workflow::outputs::OutputFile;
+use percute_workflow::report::Subject;
 use percute_workflow::run::Analysis;
 use std::time::Instant;
 
@@ -42,9 +44,10 @@ where
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
     let analysis = Analysis { options, request, contact_steps: output.is_some() };
-    let results = stored.estimate(&analysis, watch)?;
+    let Graded { results, times, checked } = stored.estimate(&analysis, watch)?;
     watch.clear();
-    let (case, seconds, subject) = (stored.file.case().cloned(), start.elapsed().as_secs_f64(), stored.subject());
+    let (case, seconds) = (stored.file.case().cloned(), start.elapsed().as_secs_f64());
+    let subject = Subject { times: &times, checked: checked.as_ref(), ..stored.subject() };
     give(&Finished { subject, options, case, results, seconds, told: Vec::new() }, print, output, work, console)
 }
 

@@ -53,6 +53,7 @@ pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) complete: bool,
     pub(super) contact_nodes: Vec<usize>,
     pub(super) given: [bool; 2],
+    pub(super) given_contact: [bool; 2],
 }
 
 /// A history in a file. Steps are read on demand, and the file is open only during reading.
@@ -156,6 +157,12 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         self.contents.given
     }
 
+    /// Whether the file has contact forces and touching status.
+    #[must_use]
+    pub fn given_contact(&self) -> [bool; 2] {
+        self.contents.given_contact
+    }
+
     /// u_n at the nodes (m), node by node and step after step.
     ///
     /// # Errors
@@ -204,6 +211,10 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     /// # Errors
     /// As for [`HistoryFile::displacement`].
     pub fn touching(&self, steps: Range<usize>) -> Result<Vec<bool>, FileError> {
+        if !self.given_contact()[1] {
+            let count = steps.len() * self.contact_nodes().len();
+            return self.steps(steps, |_| Ok(vec![false; count]));
+        }
         self.contact(steps, "touching", |data, steps| data.flag_rows(steps))
     }
 
@@ -265,7 +276,8 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
                 }
             }
             if let Some(contact) = opened.root().group("percute")?.optional_group("contact")? {
-                for name in ["reaction", "touching"] {
+                let given = ["reaction", "touching"].into_iter().zip(self.given_contact());
+                for (name, _) in given.filter(|(_, given)| *given) {
                     let data = contact.data(name)?;
                     let offset =
                         if name == "reaction" { data.native_offset::<f64>()? } else { data.native_offset::<u8>()? };

@@ -52,7 +52,7 @@ where
     velocity.expect(&[nodes, D], "(nodes, dimension)")?;
     let initial_velocity = velocity.floats()?.as_chunks::<D>().0.to_vec();
     finite(&velocity.name, &initial_velocity)?;
-    let contact_nodes = contact_nodes(&ours, instants, nodes, D)?;
+    let (contact_nodes, given_contact) = contact(&ours, instants, nodes, D)?;
     let statement = ours.optional_text("problem")?;
     let statement = statement.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
     Ok(HistoryFile::new(Contents {
@@ -70,6 +70,7 @@ where
         complete,
         contact_nodes,
         given,
+        given_contact,
     }))
 }
 
@@ -162,9 +163,15 @@ fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCau
     }
 }
 
-/// Nodes of the rows of the contact data, if any.
-fn contact_nodes(ours: &Part<'_>, instants: usize, nodes: usize, dimension: usize) -> Result<Vec<usize>, FileCause> {
-    let Some(contact) = ours.optional_group("contact")? else { return Ok(Vec::new()) };
+/// Nodes of the rows of the contact data, if any, and whether forces and touching status are there. Status without forces
+/// is not read: it does not follow from the scheme.
+fn contact(
+    ours: &Part<'_>,
+    instants: usize,
+    nodes: usize,
+    dimension: usize,
+) -> Result<(Vec<usize>, [bool; 2]), FileCause> {
+    let Some(contact) = ours.optional_group("contact")? else { return Ok((Vec::new(), [false; 2])) };
     let listed = contact.data("nodes")?;
     listed.expect_dimensions(1, "(contact nodes)")?;
     let of_rows = listed.indices(nodes, "nodes")?;
@@ -175,11 +182,22 @@ fn contact_nodes(ours: &Part<'_>, instants: usize, nodes: usize, dimension: usiz
         return Err(FileCause::Value { name: listed.name, detail });
     }
     let count = of_rows.len();
-    let reaction = contact.data("reaction")?;
-    reaction.expect(&[instants, count, dimension], "(instants, contact nodes, dimension)")?;
-    reaction.check_floats()?;
-    contact.data("touching")?.expect(&[instants, count], "(instants, contact nodes)")?;
-    Ok(of_rows)
+    let missing = |name: &str| match provenance(ours)?.is_percute() {
+        true => contact.data(name).map(Some),
+        false => contact.optional(name),
+    };
+    let (reaction, touching) = (missing("reaction")?, missing("touching")?);
+    if let Some(reaction) = &reaction {
+        reaction.expect(&[instants, count, dimension], "(instants, contact nodes, dimension)")?;
+        reaction.check_floats()?;
+    }
+    if let Some(touching) = &touching {
+        touching.expect(&[instants, count], "(instants, contact nodes)")?;
+    }
+    match reaction {
+        Some(_) => Ok((of_rows, [true, touching.is_some()])),
+        None => Ok((Vec::new(), [false; 2])),
+    }
 }
 
 pub(crate) fn case(ours: &Part<'_>) -> Result<Option<Case>, FileCause> {

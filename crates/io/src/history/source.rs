@@ -110,7 +110,10 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         let data = contact.data("reaction")?;
         let values = data.float_rows(steps.clone())?;
         let reaction = values.as_chunks::<D>().0;
-        let touching = contact.data("touching")?.flag_rows(steps.clone())?;
+        let touching = match self.file.given_contact()[1] {
+            true => contact.data("touching")?.flag_rows(steps.clone())?,
+            false => vec![false; reaction.len()],
+        };
         self.finite(&data.name, reaction, steps.start, |row| listed[row])?;
         for (k, step) in steps.clone().enumerate() {
             let here = |row: usize| k * listed.len() + row;

@@ -148,7 +148,7 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     #[must_use]
     pub fn subject(&self) -> Subject<'_, D, N> {
         let Self { source, problem, times, critical_step, .. } = self;
-        Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None }
+        Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None, checked: None }
     }
 
     /// The files that a run reads and must not replace, each with what it is; `case` is its own.

@@ -39,12 +39,13 @@ impl Report {
         contact: &ContactResults<D>,
         seconds: f64,
     ) -> Self {
-        let Subject { name, times, critical_step, held, .. } = *subject;
+        let Subject { name, times, critical_step, held, checked, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let balances = simulation.balance_over_time.iter().copied();
         let over_time = times.instants().iter().copied().zip(balances).collect();
         let facts = Facts {
             problem: &problem,
+            left_out: checked.and_then(|checked| checked.left_out),
             plausibility_warnings: &foreseen(subject, estimate),
             drift: simulation.balance.energy_drift,
             interrupted: estimate.steps < times.step_count(),
@@ -68,6 +69,7 @@ impl Report {
             steps_planned: times.step_count(),
             interrupted,
             given: estimate.given,
+            derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
             held,
             error: estimate.error,
             meaning: meaning(Some(options.reconstruction)),

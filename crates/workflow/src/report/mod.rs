@@ -16,10 +16,11 @@ pub use meaning::meaning;
 pub use simulated::simulated;
 pub use sources::SourceReport;
 pub use summary::summary;
-pub use warnings::Warning;
 pub(crate) use warnings::few_samples;
 pub use warnings::reported;
+pub use warnings::{Warning, left_out};
 
+use crate::foreign::{Checked, Derived};
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -44,6 +45,8 @@ pub struct Subject<'a, const D: usize, const N: usize> {
     pub critical_step: f64,
     /// Number of instants that a stored history holds; `None` beside a run.
     pub held: Option<usize>,
+    /// What was found about a history of another program.
+    pub checked: Option<&'a Checked>,
 }
 
 /// The report of a run. SI units; energies, errors and forces of a plane body are those of its
@@ -63,6 +66,7 @@ pub struct Report {
     pub end: f64,
     pub interrupted: bool,
     pub given: Given,
+    pub derived: Vec<Derived>,
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: ErrorMeasures,

@@ -76,6 +76,10 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
     if !given.is_empty() {
         lines.push(("given", format!("{} of the history itself", given.join(" and "))));
     }
+    if !report.derived.is_empty() {
+        let derived = report.derived.iter().map(|derived| derived.name()).collect::<Vec<_>>().join(" and ");
+        lines.push(("derived", format!("{derived}: not in the history")));
+    }
     lines
 }
 

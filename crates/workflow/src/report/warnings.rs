@@ -1,7 +1,7 @@
 //! What the user should look at before trusting a result.
 
 use super::{LargestResidual, ProblemSummary};
-use crate::message::{counted, percent};
+use crate::message::{counted, percent, trimmed};
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
 use percute_estimator::{Reconstruction, Sampling};
@@ -28,6 +28,8 @@ pub struct Warning {
 
 /// What the warnings look at.
 pub(super) struct Facts<'a> {
+    /// The last instant of a history (s), if it was left out.
+    pub(super) left_out: Option<f64>,
     pub(super) problem: &'a ProblemSummary,
     pub(super) plausibility_warnings: &'a [PlausibilityWarning],
     pub(super) drift: f64,
@@ -42,6 +44,7 @@ pub(super) struct Facts<'a> {
 pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
     [
         not_admissible(facts),
+        last_instant(facts),
         energy_drift(facts),
         kept_impulse(facts),
         no_contact(facts),
@@ -78,6 +81,20 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
         super::ADMISSIBLE
     );
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
+}
+
+fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
+    let message = left_out(facts.left_out?);
+    warning("last_instant", "the last instant of the history is left out", message)
+}
+
+/// The reason why the last instant (s) of a history is left out.
+pub fn left_out(time: f64) -> String {
+    let time = trimmed(time, 5);
+    format!(
+        "the last instant, {time} s, is left out: the contact forces there are not known, since they determine the \
+         displacement one step later; give one instant more, or the accelerations"
+    )
 }
 
 fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
