@@ -131,7 +131,7 @@ def _point(mesh: Mesh, where: object, nodal: bool) -> Place:
     return Place(np.array([element]), np.ones(1))
 
 
-def _boundary(mesh: Mesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def boundary(mesh: Mesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Give the edges that belong to one element only (of a bar: nodes), and this element."""
     count = mesh.dimension + 1
     edges = np.concatenate([np.delete(mesh.cells, k, axis=1) for k in range(count)]).astype(np.int64)
@@ -142,7 +142,7 @@ def _boundary(mesh: Mesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def _nearest(mesh: Mesh, point: Floats, where: object) -> tuple[int, Floats]:
     """Give the nearest point of the boundary, and its element; a point farther away than rounding is an error."""
-    edges, owners = _boundary(mesh)
+    edges, owners = boundary(mesh)
     start = mesh.points[edges[:, 0]]
     along = mesh.points[edges[:, -1]] - start
     squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -169,7 +169,7 @@ def _group(mesh: Mesh, name: str, nodal: bool) -> Place:
         lengths = np.ones(len(edges)) if mesh.dimension == 1 else np.linalg.norm(np.diff(mesh.points[edges], axis=1)[:, 0], axis=1)
         if nodal:
             return _weighted(edges, lengths)
-        outer, owners = _boundary(mesh)
+        outer, owners = boundary(mesh)
         of = {tuple(sorted(edge)): owner for edge, owner in zip(outer.tolist(), owners.tolist(), strict=True)}
         return _weighted(np.array([[of[tuple(sorted(edge))]] for edge in edges.tolist()]), lengths)
     if name in mesh.element_groups:

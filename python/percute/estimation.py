@@ -16,13 +16,13 @@ from percute.checks import flag, instance, numbers, text, whole, wrong
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
+from percute.estimate_views import EstimateViews
 from percute.history import History
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
-from percute.views import EstimateViews
 
 if TYPE_CHECKING:
     from percute.exact import Effectivity, TrueError

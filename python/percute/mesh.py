@@ -274,6 +274,11 @@ class Mesh(Immutable):
         # Adding 0 turns −0 into 0, which is equal to it.
         return hash(((self.points + 0.0).tobytes(), self.cells.tobytes()))
 
+    def _repr_html_(self) -> str:
+        from percute import notebook
+
+        return notebook.of_mesh(self)
+
     def __repr__(self) -> str:
         kind = "bars" if self.dimension == 1 else "triangles"
         return f"<percute.Mesh: {len(self.cells)} {kind}, {len(self.points)} nodes>"

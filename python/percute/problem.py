@@ -157,6 +157,11 @@ class Problem(Immutable):
         """Largest speed of waves (m/s)."""
         return self._data.wave_speed
 
+    def _repr_html_(self) -> str:
+        from percute import notebook
+
+        return notebook.of_problem(self)
+
     def __repr__(self) -> str:
         parts = [repr(self.mesh)[len("<percute.Mesh: ") : -1]]
         for name in ("obstacles", "supports", "tractions", "body_forces"):

@@ -1,4 +1,4 @@
-"""Pictures and tables of histories and estimates: methods that both classes inherit."""
+"""Pictures and tables of histories, and pictures that estimates have too: methods that the classes inherit."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from percute.estimation import Estimate
     from percute.history import History
 
-__all__ = ["EstimateViews", "HistoryViews"]
+__all__ = ["HistoryViews", "Views"]
 
 File = str | os.PathLike[str] | None
 
 
-class _Views(Immutable):
+class Views(Immutable):
     """Pictures that histories and estimates have in common."""
 
     def plot_energies(self: History | Estimate, *, axes: Axes | None = None, save: File = None, overwrite: bool = False) -> Axes:  # type: ignore[misc]
@@ -101,8 +101,13 @@ class _Views(Immutable):
         return contact.plot_pressure(self.contact, plane, axes, save, overwrite)
 
 
-class HistoryViews(HistoryFields, _Views):
+class HistoryViews(HistoryFields, Views):
     """Fields, probes, pictures and tables of a history."""
+
+    def _repr_html_(self: History) -> str:  # type: ignore[misc]
+        from percute import notebook
+
+        return notebook.of_history(self)
 
     def plot(  # type: ignore[misc]
         self: History,
@@ -222,84 +227,3 @@ class HistoryViews(HistoryFields, _Views):
         from percute import contents, tables
 
         return tables.to_xarray(contents.of_history(self, contents.chosen(fields, contents.FIELDS)))
-
-
-class EstimateViews(_Views):
-    """Pictures and tables of an estimate."""
-
-    def plot_map(  # type: ignore[misc]
-        self: Estimate, *, scale: float = 0.0, axes: Axes | None = None, save: File = None, overwrite: bool = False
-    ) -> Axes:
-        """Draw e_E, the contribution of each element (J^½), eq. [20], with mesh lines and planes.
-
-        The colours are logarithmic if the largest contribution exceeds ten times the median.
-
-        Parameters
-        ----------
-        scale : float, default: 0.0
-            By how much the displacement at the time of the sup is exaggerated; 0 draws the undeformed mesh.
-        axes, save, overwrite
-            As for `plot_energies`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the plot.
-        """
-        from percute.pictures import error
-
-        return error.plot_map(self, scale, axes, save, overwrite)
-
-    def plot_over_time(  # type: ignore[misc]
-        self: Estimate,
-        by: Literal["parts", "sources"] = "parts",
-        *,
-        axes: Axes | None = None,
-        save: File = None,
-        overwrite: bool = False,
-    ) -> Axes:
-        """Draw √η over time, with the square roots of its parts or of its sources (J^½).
-
-        Parameters
-        ----------
-        by : {"parts", "sources"}, default: "parts"
-            Kinetic, elastic and contact part, eq. [14], or surface, front, dispersion and mesh.
-        axes, save, overwrite
-            As for `plot_energies`.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes of the plot.
-        """
-        from percute.pictures import error
-
-        return error.plot_over_time(self, by, axes, save, overwrite)
-
-    def to_pandas(self: Estimate, over: Literal["time", "elements", "both"] = "time") -> pandas.DataFrame:  # type: ignore[misc]
-        """Make a table (extra ``pandas``).
-
-        Parameters
-        ----------
-        over : {"time", "elements", "both"}, default: "time"
-            The rows: η with its parts and sources at each sample, e_E of each element, or the contributions of the elements at each
-            instant of ``maps``.
-
-        Returns
-        -------
-        pandas.DataFrame
-            ``attrs["units"]`` has the units of the columns, and ``attrs`` the measures of the error.
-        """
-        from percute import contents, tables
-
-        rows = {"time": ("time",), "elements": ("element",), "both": ("instant", "element")}
-        return tables.to_pandas(contents.of_estimate(self), over, rows)
-
-    def to_xarray(self: Estimate) -> xarray.Dataset:  # type: ignore[misc]
-        """Make a data set (extra ``xarray``): the error over ``time``, over ``element``, and over both at each ``instant`` of the maps.
-
-        Each variable has its unit and meaning as attributes; the measures of the error are attributes of the data set.
-        """
-        from percute import contents, tables
-
-        return tables.to_xarray(contents.of_estimate(self))

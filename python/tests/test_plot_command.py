@@ -118,6 +118,12 @@ def test_the_frames_of_a_bar_have_one_scale(bar_history: pc.History, tmp_path: P
     assert len(spans) == 3 and set(spans) == {(values.min(), values.max())}
 
 
+def test_the_command_writes_an_animation(files: tuple[Path, Path], tmp_path: Path) -> None:
+    """In a process of its own: nothing but the animation imports what it needs."""
+    done = plot(files[0], "--kind", "animation", "--frames", "2", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "block-animation.gif\n", "")
+
+
 def test_a_stopped_animation_leaves_nothing(block_history: pc.History, tmp_path: Path) -> None:
     def stop(progress: pc.Progress) -> None:
         if progress.done == 2:

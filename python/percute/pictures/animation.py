@@ -9,12 +9,14 @@ import numpy as np
 
 from percute.checks import number, whole, wrong
 from percute.errors import PercuteError
+from percute.pictures.body import SLIM
 from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable
 from percute.pictures.fields import draw_field, field
 from percute.progress import Progress, ProgressOption, shown
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
+    from matplotlib.figure import Figure
 
     from percute.history import History
 
@@ -50,22 +52,28 @@ def animate(
     writer = _writer(plt, os.path.splitext(file)[1].lower(), per_second)
     with shown(progress) as tell, replacing(file) as temporary, plt.rc_context():
         span, extent = _span(history, name, steps, factor)
-        figure = plt.matplotlib.figure.Figure(figsize=(6.4, 4.8), dpi=DOTS, layout="constrained")
-        plt.matplotlib.backends.backend_agg.FigureCanvasAgg(figure)
-        place = None
+        figure = _figure(history, extent)
         with writer.saving(figure, temporary, DOTS):
             for done, step in enumerate(steps):
                 figure.clear()
-                axes = figure.add_subplot() if place is None else figure.add_axes(place)
-                draw_field(axes, history, step, factor, field(history, name, step), span, extent)
-                if place is None:
-                    # All frames have the place of the first.
-                    figure.draw_without_rendering()
-                    place = axes.get_position(original=True)
-                    figure.set_layout_engine("none")
+                draw_field(figure.add_subplot(), history, step, factor, field(history, name, step), span, extent)
                 writer.grab_frame()
                 if tell is not None:
                     tell(Progress("animating", done + 1, len(steps)))
+
+
+def _figure(history: History, extent: Floats) -> Figure:
+    """Make a figure that no window or notebook shows, lower for a slim body."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    sides = np.ptp(extent, axis=0)
+    slim = history.problem.mesh.dimension == 2 and sides[1] < SLIM * sides[0]
+    # An even number of pixels, which .mp4 needs.
+    height = round(50 * (2.2 + 6.0 * sides[1] / sides[0])) / 50 if slim else 4.8
+    figure = Figure(figsize=(6.4, height), dpi=DOTS, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def _writer(plt: Any, ending: str, rate: float) -> AbstractMovieWriter:

@@ -171,8 +171,9 @@ def draw_bar(
         axes.plot(x[order], values[order])
     if scale is not None:
         axes.set_yscale("log" if scale.logarithmic else "linear")
-        room = (0.9, 1.1) if scale.logarithmic else (1.0, 1.05)
-        axes.set_ylim(scale.low * room[0], scale.high * room[1])
+        room = 0.05 * (scale.high - scale.low)
+        ends = (0.9 * scale.low, 1.1 * scale.high) if scale.logarithmic else (scale.low - room if scale.low < 0.0 else scale.low, scale.high + room)
+        axes.set_ylim(*ends)
     axes.set(xlabel=f"x ({prefix}m)", ylabel=label)
     axes.grid(alpha=0.3)
     length = float(np.ptp(x))
