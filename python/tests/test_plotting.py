@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import percute as pc
 import pytest
+from conftest import block
 
 
 @pytest.fixture(autouse=True)
@@ -137,6 +138,17 @@ def test_force_and_pressure(block_history: pc.History, bar_history: pc.History, 
     for call in (free.plot_force, free.plot_pressure, pickle.loads(pickle.dumps(pc.estimate(block_history))).plot_force):
         with pytest.raises(pc.InputError, match="there is nothing to draw: (the problem has no planes|there are no contact results)"):
             call()
+
+
+def test_the_plane_with_the_largest_force_is_drawn() -> None:
+    base = block(2, 2)
+    mesh = pc.Mesh(base.mesh.points, base.mesh.cells, {"bottom": [[0, 1], [1, 2]], "left": [[3, 6]]})
+    planes = [pc.Plane(point=(0, -1e-5), normal=(0, 1), friction=0.0, group="bottom"), pc.Plane(point=(-1e-5, 0), normal=(1, 0), friction=0.0, group="left")]
+    history = pc.simulate(pc.Problem(mesh, material=base.material, obstacles=planes, initial_velocity=(-40, -1)), end=3e-6, courant=0.5)
+    peaks = [each.normal_force.max() for each in history.contact.obstacles]
+    assert peaks[1] > peaks[0] > 0.0
+    assert [history.plot_pressure(plane).get_title() for plane in (None, 0, 1)] == ["plane 1", "plane 0", "plane 1"]
+    assert [line.get_label() for line in history.plot_force().lines][2] == "normal, plane 1"
 
 
 @pytest.mark.parametrize("ending", ["svg", "png", "pdf"])
