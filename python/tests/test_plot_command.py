@@ -1,5 +1,6 @@
 """`percute plot` and animations: the same pictures as from Python, and nothing left behind."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -131,7 +132,34 @@ def test_a_stopped_animation_leaves_nothing(block_history: pc.History, tmp_path:
 
     with pytest.raises(KeyboardInterrupt):
         block_history.animate(tmp_path / "block.gif", frames=5, progress=stop)
+    # Ctrl-C within matplotlib, where an exception may be lost: it acts after the frame.
+    frames: list[int] = []
+
+    def press(progress: pc.Progress) -> None:
+        frames.append(progress.done)
+        signal.raise_signal(signal.SIGINT)
+        frames.append(0)
+
+    with pytest.raises(KeyboardInterrupt):
+        block_history.animate(tmp_path / "block.gif", frames=5, progress=press)
+    assert frames == [1, 0] and signal.getsignal(signal.SIGINT) is signal.default_int_handler and not list(tmp_path.iterdir())
+
+    def fail(progress: pc.Progress) -> None:
+        raise OSError("mine")
+
+    with pytest.raises(OSError, match="^mine$"):
+        block_history.animate(tmp_path / "block.gif", frames=5, progress=fail)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a script in place of ffmpeg")
+def test_a_failure_of_ffmpeg_is_told(block_history: pc.History, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "ffmpeg").write_text("#!/bin/sh\ncat > /dev/null\nexit 3\n")
+    (tmp_path / "ffmpeg").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    with pytest.raises(pc.StorageError, match="block.mp4: ffmpeg cannot write it: exit code 3; write a .gif instead"):
+        block_history.animate(tmp_path / "block.mp4", frames=2)
+    assert [each.name for each in tmp_path.iterdir()] == ["ffmpeg"]
 
 
 def test_without_ffmpeg_the_way_out_is_named(block_history: pc.History, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

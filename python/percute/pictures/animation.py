@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from percute.checks import number, whole, wrong
-from percute.errors import PercuteError
+from percute.checks import encodable, number, whole, wrong
+from percute.errors import PercuteError, StorageError
 from percute.pictures.body import SLIM
-from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable
+from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable, writing
 from percute.pictures.fields import draw_field, field
 from percute.progress import Progress, ProgressOption, shown
 
@@ -50,16 +55,56 @@ def animate(
     steps = np.unique(np.linspace(0, len(history) - 1, min(count, len(history))).round().astype(np.intp)).tolist()
     field(history, name, 0)  # Raises an error for an unknown quantity.
     writer = _writer(plt, os.path.splitext(file)[1].lower(), per_second)
-    with shown(progress) as tell, replacing(file) as temporary, plt.rc_context():
+    with shown(progress) as tell, replacing(file) as temporary, _interrupts() as check:
         span, extent = _span(history, name, steps, factor)
         figure = _figure(history, extent)
-        with writer.saving(figure, temporary, DOTS):
+        with writing(file):
+            writer.setup(figure, temporary, DOTS)
+        try:
             for done, step in enumerate(steps):
                 figure.clear()
                 draw_field(figure.add_subplot(), history, step, factor, field(history, name, step), span, extent)
-                writer.grab_frame()
+                with writing(file):
+                    writer.grab_frame()
                 if tell is not None:
                     tell(Progress("animating", done + 1, len(steps)))
+                check()
+            _finish(writer, file)
+            check()
+        except BaseException:
+            with suppress(Exception):
+                writer.finish()
+            # Ctrl-C ends ffmpeg, too: its broken pipe is not the cause.
+            check()
+            raise
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], None]]:
+    """Keep Ctrl-C for a function that is called after each frame: within matplotlib, its exception could be lost."""
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield lambda: None
+        return
+    asked: list[int] = []
+
+    def check() -> None:
+        if asked:
+            raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, lambda number, _: asked.append(number))
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _finish(writer: AbstractMovieWriter, file: str) -> None:
+    """Write the rest of an animation."""
+    try:
+        with writing(file):
+            writer.finish()
+    except subprocess.CalledProcessError as error:
+        raise StorageError(f"{encodable(file)}: ffmpeg cannot write it: exit code {error.returncode}; write a .gif instead") from error
 
 
 def _figure(history: History, extent: Floats) -> Figure:

@@ -96,22 +96,28 @@ def writable(name: str, file: object, overwrite: object, endings: tuple[str, ...
 
 
 @contextmanager
+def writing(path: str) -> Iterator[None]:
+    """Name the file of an error of the system."""
+    try:
+        yield
+    except OSError as error:
+        raise StorageError(f"{encodable(path)}: cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
 def replacing(path: str) -> Iterator[str]:
     """Give a name in the same folder; the file gets its own name when it is complete, and is removed otherwise."""
     ending = os.path.splitext(path)[1].lower()
-    try:
+    with writing(path):
         handle, temporary = tempfile.mkstemp(suffix=ending, prefix=".percute-", dir=os.path.dirname(path))
         os.close(handle)
-    except OSError as error:
-        raise StorageError(f"{encodable(path)}: cannot be written: {error.strerror}") from error
     try:
         yield temporary
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(temporary, 0o666 & ~mask)
-        os.replace(temporary, path)
-    except OSError as error:
-        raise StorageError(f"{encodable(path)}: cannot be written: {error.strerror}") from error
+        with writing(path):
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(temporary, 0o666 & ~mask)
+            os.replace(temporary, path)
     finally:
         with suppress(FileNotFoundError):
             os.remove(temporary)
@@ -122,7 +128,7 @@ def save_figure(figure: Figure, path: str | None) -> None:
     if path is None:
         return
     ending = os.path.splitext(path)[1].lower()
-    with replacing(path) as temporary, pyplot().rc_context({"svg.hashsalt": "percute"}):
+    with replacing(path) as temporary, writing(path), pyplot().rc_context({"svg.hashsalt": "percute"}):
         figure.savefig(temporary, dpi=DOTS, metadata=METADATA[ending], bbox_inches="tight", pad_inches=0.1)
 
 
