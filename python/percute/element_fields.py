@@ -131,18 +131,17 @@ def _point(mesh: Mesh, where: object, nodal: bool) -> Place:
     return Place(np.array([element]), np.ones(1))
 
 
-def boundary(mesh: Mesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def boundary(cells: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Give the edges that belong to one element only (of a bar: nodes), and this element."""
-    count = mesh.dimension + 1
-    edges = np.concatenate([np.delete(mesh.cells, k, axis=1) for k in range(count)]).astype(np.int64)
+    edges = np.concatenate([np.delete(cells, k, axis=1) for k in range(cells.shape[1])]).astype(np.int64)
     _, first, times = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
     outer = first[times == 1]
-    return edges[outer], outer % len(mesh.cells)
+    return edges[outer], outer % len(cells)
 
 
 def _nearest(mesh: Mesh, point: Floats, where: object) -> tuple[int, Floats]:
     """Give the nearest point of the boundary, and its element; a point farther away than rounding is an error."""
-    edges, owners = boundary(mesh)
+    edges, owners = boundary(mesh.cells)
     start = mesh.points[edges[:, 0]]
     along = mesh.points[edges[:, -1]] - start
     squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
@@ -169,7 +168,7 @@ def _group(mesh: Mesh, name: str, nodal: bool) -> Place:
         lengths = np.ones(len(edges)) if mesh.dimension == 1 else np.linalg.norm(np.diff(mesh.points[edges], axis=1)[:, 0], axis=1)
         if nodal:
             return _weighted(edges, lengths)
-        outer, owners = boundary(mesh)
+        outer, owners = boundary(mesh.cells)
         of = {tuple(sorted(edge)): owner for edge, owner in zip(outer.tolist(), owners.tolist(), strict=True)}
         return _weighted(np.array([[of[tuple(sorted(edge))]] for edge in edges.tolist()]), lengths)
     if name in mesh.element_groups:

@@ -129,7 +129,7 @@ def _outline(mesh: Mesh) -> str:
     if mesh.dimension == 1:
         return _strip(places, mesh.cells, ["none"] * len(mesh.cells), width)
     every = len(mesh.cells) <= MOST
-    lines = _path(places, mesh.cells, True) if every else _path(places, boundary(mesh)[0], False)
+    lines = _path(places, mesh.cells, True) if every else _path(places, boundary(mesh.cells)[0], False)
     return _svg(width, height, f'<path d="{lines}" fill="none" stroke="currentColor" stroke-width="{0.5 if every else 1}"/>')
 
 
@@ -154,7 +154,7 @@ def _map(mesh: Mesh, values: Floats) -> str:
     # Strokes of the same colour close the gaps between neighbours.
     body = "".join(f'<path d="{_path(places, cells, True)}" fill="{shade}" stroke="{shade}" stroke-width="0.3"/>' for shade, cells in colours.items())
     if len(mesh.cells) > MOST:
-        body += f'<path d="{_path(places, boundary(mesh)[0], False)}" fill="none" stroke="currentColor"/>'
+        body += f'<path d="{_path(places, boundary(mesh.cells)[0], False)}" fill="none" stroke="currentColor"/>'
     return _svg(width, height, body)
 
 

@@ -118,5 +118,8 @@ def test_fields_in_tables(block_history: pc.History) -> None:
 def test_fields_are_drawn(quantity: str, block_history: pc.History) -> None:
     import matplotlib.pyplot as plt
 
-    assert block_history.plot(quantity, step=12).child_axes[0].get_ylabel()
+    axes = block_history.plot(quantity, step=12)
+    assert axes.child_axes[0].get_ylabel()
+    # Signed values are light: the outline of 28 edges shows the body.
+    assert [len(each.get_paths()) for each in axes.collections[1:]] == ([28] if "stress" in quantity else [])
     plt.close("all")

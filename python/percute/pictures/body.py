@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from percute.element_fields import boundary
 from percute.errors import InputError
 from percute.pictures.canvas import FIELD, SIGNED, Floats, prefixed, pyplot
 
@@ -97,6 +98,10 @@ def draw_body(
     if _size(points, cells) > LINES:
         # In two colours, so that lines are seen on dark and on light elements.
         axes.triplot(x, y, cells, color="white", linewidth=0.35, alpha=0.5)
+    if colours == SIGNED:
+        # Small values are as light as the paper.
+        outline = np.column_stack([x, y])[boundary(cells)[0]]
+        axes.add_collection(pyplot().matplotlib.collections.LineCollection(outline, colors="#6e6e78", linewidths=0.6))
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
     smaller = shown.logarithmic and bool(np.any(values < shown.low))
