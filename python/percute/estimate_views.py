@@ -29,7 +29,7 @@ class EstimateViews(Views):
     ) -> Axes:
         """Draw e_E, the contribution of each element (J^½), eq. [20], with mesh lines and planes.
 
-        The colours are logarithmic if the largest contribution exceeds ten times the median.
+        The colours are logarithmic if the largest contribution exceeds five times the median.
 
         Parameters
         ----------

@@ -223,6 +223,54 @@ class Estimate(EstimateViews):
         of = None if self._history is None else self._history._data
         self._data.save(os.path.abspath(file), replace, self._name, of)
 
+    def picture(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the picture of ``percute run --picture``: e_E of each element (J^½), eq. [20], on the mesh. It needs no matplotlib.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, ``.svg`` or ``.png``.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        InputError
+            The name of the file ends otherwise.
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        """
+        self._present(False, path, overwrite)
+
+    def report(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the page of ``percute report``: one HTML file to read, to print and to hand over, described in ``docs/report.md``.
+
+        It shows the pressure along the surface unless the estimate was unpickled without its history.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, ``.html``.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        InputError
+            The name of the file ends otherwise, or is that of the estimate.
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        """
+        self._present(True, path, overwrite)
+
+    def _present(self, page: bool, path: str | os.PathLike[str], overwrite: bool) -> None:
+        file, replace = os.path.abspath(file_name("path", path)), flag("overwrite", overwrite)
+        if isinstance(self._data, StoredEstimate):
+            _percute.present_file(self._data.path, page, file, replace)
+            return
+        history = None if self._history is None else self._history._data
+        _percute.present(self._data, page, file, replace, self._name, history)
+
     def __repr__(self) -> str:
         return (
             f"<percute.Estimate: sup {self.sup:.4g} J^½ ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "

@@ -39,6 +39,8 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate the error of a stored history
     Estimate(EstimateArguments),
+    /// Write a page on an estimate, a history (estimated first) or a case (run first): one HTML file to hand over
+    Report(ReportArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file
     Info(InfoArguments),
     /// Finish the history file of a run that was killed
@@ -133,6 +135,18 @@ pub struct EstimateArguments {
     pub work: WorkArguments,
 }
 
+/// Arguments of `percute report`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ReportArguments {
+    /// An estimate file, a history (.vtkhdf) or a case
+    pub file: PathBuf,
+    /// The page (.html) [default: named after the file, in the working directory]
+    pub page: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub work: WorkArguments,
+}
+
 /// Arguments of `percute info`.
 #[derive(Clone, Debug, Default, Args)]
 pub struct InfoArguments {
@@ -185,9 +199,12 @@ pub struct PrintArguments {
     /// Print one JSON document instead of the summary
     #[arg(long)]
     pub json: bool,
-    /// Draw the error of each element on the mesh; the name must end in .svg, and a file of that name is replaced
+    /// Draw the error of each element on the mesh, as SVG or PNG by the end of the name (.svg, .png)
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
+    /// Write a page with verdict, figures and tables (.html)
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
 /// How the work is done; nothing of it changes the result.

@@ -1,5 +1,5 @@
-//! The `percute` command as a library: arguments, progress, printing and pictures. Cases, runs and reports are in
-//! `percute-workflow`.
+//! The `percute` command as a library: arguments, progress and printing. Cases, runs and reports are in
+//! `percute-workflow`, pictures in `percute-presentation`.
 //!
 //! [`command_line`] is the whole command; it prints to the writers of a [`Console`] only and
 //! returns its exit code, so that other programs can offer the same command; [`process`] runs it on
@@ -8,7 +8,6 @@
 pub mod args;
 mod command;
 mod exit;
-pub mod picture;
 mod process;
 mod progress;
 

@@ -1,6 +1,6 @@
 //! New files: written completely under another name, with reserved space, and then renamed.
 
-use crate::error::FileCause;
+use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, refused};
 use crate::write::Texts;
@@ -98,7 +98,16 @@ impl Unnamed {
     }
 }
 
-/// Creates a file of these bytes, completely or not at all.
+/// Creates a file of these bytes, such as a picture, completely or not at all.
+///
+/// # Errors
+/// A file that exists and may not be replaced, one that is being written, no room, whatever the system reports.
+pub fn write_bytes(path: impl AsRef<Path>, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileError> {
+    let path = path.as_ref();
+    whole(path, overwrite, bytes).map_err(|cause| cause.at(path))
+}
+
+/// The same, inside this crate.
 pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileCause> {
     let (path, old) = destination(path, overwrite)?;
     let (folder, length) = (folder_of(&path), bytes.len() as u64);

@@ -18,7 +18,7 @@ mod read;
 mod steps;
 mod write;
 
-pub use create::Overwrite;
+pub use create::{Overwrite, write_bytes};
 pub use error::{FileCause, FileError};
 pub use kind::Kind;
 pub use library::hdf5_version;

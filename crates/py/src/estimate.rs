@@ -163,7 +163,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
     }
 
     /// The document of `percute run --json`.
-    fn report(&self, name: &str) -> Result<String, String> {
+    pub(crate) fn report(&self, name: &str) -> Result<String, String> {
         let Self { problem, times, options, estimate, report, checked } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
@@ -191,6 +191,18 @@ impl<const D: usize, const N: usize> Made<D, N> {
         Ok(estimate_file::write(path, overwrite, &contents)?)
     }
 
+    /// The contact results of all nodes at all instants, its own or those of its history if that is there.
+    pub(crate) fn contact_steps(
+        &self,
+        py: Python<'_>,
+        history: Option<&Arc<Run<D, N>>>,
+    ) -> PyResult<Option<Arc<ContactResults<D>>>> {
+        match &self.report {
+            ReportSource::Now { contact, .. } if contact.steps.is_some() => Ok(Some(contact.clone())),
+            _ => history.map(|run| contact::of_run(py, run)).transpose(),
+        }
+    }
+
     /// Writes an estimate file, with the contact results of its history if that is there.
     fn saved(
         self: &Arc<Self>,
@@ -200,10 +212,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         name: String,
         history: Option<&Arc<Run<D, N>>>,
     ) -> PyResult<()> {
-        let contact = match &self.report {
-            ReportSource::Now { contact, .. } if contact.steps.is_some() => Some(contact.clone()),
-            _ => history.map(|run| contact::of_run(py, run)).transpose()?,
-        };
+        let contact = self.contact_steps(py, history)?;
         let made = self.clone();
         let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
         bridge::blocking(py, None, work)?.map_err(|error| errors::failure(py, &error))

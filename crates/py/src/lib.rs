@@ -12,6 +12,7 @@ mod exact;
 mod history;
 mod mesh;
 mod options;
+mod present;
 mod problem;
 mod reference;
 mod run;
@@ -41,6 +42,8 @@ mod _percute {
     use super::history::HistoryData;
     #[pymodule_export]
     use super::mesh::MeshData;
+    #[pymodule_export]
+    use super::present::{present, present_file};
     #[pymodule_export]
     use super::problem::ProblemData;
     #[pymodule_export]

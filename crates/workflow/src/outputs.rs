@@ -24,17 +24,12 @@ pub fn chosen<'a>(
 }
 
 /// Makes sure that all files can be made, that no two of them are one, and that none is an input; `inputs` say what
-/// they are. Only a picture may replace a file unless `force` says so.
+/// they are. No file is replaced unless `force` says so.
 ///
 /// # Errors
 /// [`Failure::Argument`] for two names of one file, [`Failure::Exists`] and [`Failure::Unwritable`].
-pub fn check(
-    inputs: &[(&str, &Path)],
-    outputs: &[Option<OutputFile<'_>>],
-    picture: Option<OutputFile<'_>>,
-    force: bool,
-) -> Result<(), Failure> {
-    let all: Vec<OutputFile<'_>> = outputs.iter().copied().chain([picture]).flatten().collect();
+pub fn check(inputs: &[(&str, &Path)], outputs: &[Option<OutputFile<'_>>], force: bool) -> Result<(), Failure> {
+    let all: Vec<OutputFile<'_>> = outputs.iter().copied().flatten().collect();
     for (i, OutputFile { what, file }) in all.iter().enumerate() {
         let shown = file.display();
         if let Some((name, _)) = inputs.iter().find(|(_, input)| writable::same(file, input)) {

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Normalize
 
-OUTSHONE = 10.0
+OUTSHONE = 5.0
 """Colours are logarithmic if the largest value exceeds the median by this factor, as in the pictures of the command: on a linear scale all
 but a few elements would be dark."""
 SPAN = 1e4

@@ -5,10 +5,8 @@ use super::outputs::check;
 use super::result::{Finished, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
-use crate::picture::Drawn;
 use crate::progress::Watch;
 use percute_core::each_dimension;
-use percute_core::problem::Problem;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
 use percute_workflow::foreign::Graded;
@@ -20,8 +18,7 @@ use std::time::Instant;
 
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     let output = arguments.output.as_deref().map(|file| OutputFile { what: "--output", file });
-    let picture = arguments.print.picture.as_deref();
-    check(&[("history", &arguments.history)], &[output], picture, arguments.work.force)?;
+    check(&[("history", &arguments.history)], &[output], Some(&arguments.print), arguments.work.force)?;
     each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, arguments, console))
 }
 
@@ -30,10 +27,7 @@ fn estimate<const D: usize, const N: usize>(
     output: Option<OutputFile<'_>>,
     arguments: &EstimateArguments,
     console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Problem<D, N>: Drawn,
-{
+) -> Result<u8, Failure> {
     let EstimateArguments { maps, print, work, .. } = arguments;
     let options = options(stored.options, arguments);
     let instants = maps.instants.clone().unwrap_or_default();
@@ -43,7 +37,7 @@ where
     let request = request(output, "--output", maps, wanted)?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let analysis = Analysis { options, request, contact_steps: output.is_some() };
+    let analysis = Analysis { options, request, contact_steps: output.is_some() || print.report.is_some() };
     let Graded { results, times, checked } = stored.estimate(&analysis, watch)?;
     watch.clear();
     let (case, seconds) = (stored.file.case().cloned(), start.elapsed().as_secs_f64());

@@ -4,7 +4,9 @@ mod estimate;
 mod info;
 mod new;
 mod outputs;
+mod present;
 mod recover;
+mod report;
 mod result;
 mod run;
 mod simulate;
@@ -50,6 +52,7 @@ where
             Command::Run(arguments) => run::command(&arguments, console),
             Command::Simulate(arguments) => simulate::command(&arguments, console),
             Command::Estimate(arguments) => estimate::command(&arguments, console),
+            Command::Report(arguments) => report::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
             // The command of the Python package does these.

@@ -1,9 +1,10 @@
 //! How a command makes its files.
 
 use super::Console;
-use crate::picture::check_path;
+use crate::args::PrintArguments;
 use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
+use percute_presentation::file;
 use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::history;
@@ -11,15 +12,27 @@ use percute_workflow::message::bytes;
 use percute_workflow::outputs::{self, OutputFile};
 use std::path::Path;
 
-/// Checks all files that a command makes, before any work; a picture, which may replace a file, as well.
+/// Checks all files that a command makes, before any work.
 pub(super) fn check(
     inputs: &[(&str, &Path)],
     outputs: &[Option<OutputFile<'_>>],
-    picture: Option<&Path>,
+    print: Option<&PrintArguments>,
     force: bool,
 ) -> Result<(), Failure> {
-    outputs::check(inputs, outputs, picture.map(|file| OutputFile { what: "--picture", file }), force)?;
-    picture.map_or(Ok(()), check_path)
+    let (picture, page) = (print.and_then(picture), print.and_then(page));
+    outputs::check(inputs, &[outputs, &[picture, page]].concat(), force)?;
+    picture.as_ref().map_or(Ok(()), |picture| file::picture(picture).map(drop))?;
+    page.as_ref().map_or(Ok(()), file::page)
+}
+
+/// The picture to draw.
+pub(super) fn picture(print: &PrintArguments) -> Option<OutputFile<'_>> {
+    print.picture.as_deref().map(|file| OutputFile { what: "--picture", file })
+}
+
+/// The page to write.
+pub(super) fn page(print: &PrintArguments) -> Option<OutputFile<'_>> {
+    print.report.as_deref().map(|file| OutputFile { what: "report", file })
 }
 
 /// A file that somebody else has made since it was checked.

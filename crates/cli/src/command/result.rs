@@ -2,13 +2,13 @@
 
 use super::Console;
 use super::outputs::taken;
+use super::present::{Shown, present};
 use crate::args::{PrintArguments, WorkArguments};
 use crate::exit::{DONE, INTERRUPTED};
-use crate::picture::{self, Drawn};
-use percute_core::problem::Problem;
 use percute_estimator::Options;
 use percute_io::estimate_file::EstimateContents;
 use percute_io::{Case, Overwrite, estimate_file};
+use percute_presentation::{Body, Document, Surface};
 use percute_workflow::Failure;
 use percute_workflow::case::statement;
 use percute_workflow::outputs::OutputFile;
@@ -34,10 +34,7 @@ pub(super) fn give<const D: usize, const N: usize>(
     stored: Option<OutputFile<'_>>,
     work: &WorkArguments,
     console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Problem<D, N>: Drawn,
-{
+) -> Result<u8, Failure> {
     let Finished { subject, options, results, seconds, told, .. } = finished;
     let Results { simulation, estimate, contact } = results;
     let report = &Report::new(subject, *options, simulation, estimate, contact, *seconds);
@@ -47,8 +44,15 @@ where
     let json = report.to_json()?;
     // The result first: a file that cannot be written must not cost it.
     console.print(&if print.json { json.clone() } else { summary(report) })?;
-    if let Some(file) = &print.picture {
-        picture::write(subject.problem, report, file)?;
+    if print.picture.is_some() || print.report.is_some() {
+        let shown = Shown {
+            body: Body::new(subject.problem.mesh()),
+            document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,
+            statement: statement(subject.problem, Some(options))?,
+            case: finished.case.as_ref(),
+            surface: Surface::new(contact),
+        };
+        present(&shown, print, work, console)?;
     }
     if let Some(output) = stored {
         store(finished, &json, output, work.force)?;

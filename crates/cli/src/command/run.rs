@@ -5,10 +5,8 @@ use super::result::{Finished, give};
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments};
 use crate::exit::INTERRUPTED;
-use crate::picture::Drawn;
 use crate::progress::Watch;
 use percute_core::each_dimension;
-use percute_core::problem::Problem;
 use percute_estimator::{EstimateError, Options, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants};
@@ -25,13 +23,10 @@ fn run_case<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     arguments: &RunArguments,
     console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Problem<D, N>: Drawn,
-{
+) -> Result<u8, Failure> {
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
-    check(&case.inputs(Some(&arguments.case)), &[history, stored], print.picture.as_deref(), work.force)?;
+    check(&case.inputs(Some(&arguments.case)), &[history, stored], Some(print), work.force)?;
     let options = Options { threads: work.threads, window: work.window, ..case.options };
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
@@ -42,8 +37,10 @@ where
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let (analysis, storage) =
-        (Analysis { options, request, contact_steps: stored.is_some() }, Storage { file: history, memory: None });
+    let (analysis, storage) = (
+        Analysis { options, request, contact_steps: stored.is_some() || print.report.is_some() },
+        Storage { file: history, memory: None },
+    );
     let done = run(&case.problem, &case.times, &analysis, storage, watch).map_err(|failure| located(case, failure));
     let results = match done {
         // Nothing can be estimated from a run stopped at its very start.

@@ -81,7 +81,7 @@ fn last_lines_and_pictures() {
         let committed = std::fs::read_to_string(folder().join(format!("{name}.svg"))).unwrap();
         assert!(
             drawn == committed,
-            "examples/{name}.svg is not what `percute run {name}.toml --picture {name}.svg` draws"
+            "examples/{name}.svg is not what `percute run {name}.toml --picture {name}.svg --force` draws"
         );
     }
 }

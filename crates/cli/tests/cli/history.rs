@@ -152,7 +152,7 @@ fn outputs_are_checked_before_any_work() {
         (&["run", "case.toml", "--history", "none/a"], 1, "--history: cannot write none/a"),
         (&["run", "case.toml", "--estimate", "none/a"], 1, "--estimate: cannot write none/a"),
         (&["simulate", "case.toml", "--history", "folder", "--force"], 1, "not a regular file"),
-        (&["run", "case.toml", "--history", "a", "--picture", "a.png"], 2, "ends in .svg"),
+        (&["run", "case.toml", "--history", "a", "--picture", "a.jpg"], 2, "ends in .svg or .png"),
     ];
     for (arguments, code, phrase) in wrong {
         let output = bench.percute(arguments);

@@ -14,4 +14,5 @@ mod interrupt;
 mod mesh_file;
 mod mistakes;
 mod picture;
+mod report;
 mod run;

@@ -29,8 +29,9 @@ fn triangles_planes_and_units_are_drawn() {
     let output = bench.percute(&["run", "case.toml", "--picture", "map.svg"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let svg = std::fs::read_to_string(bench.path("map.svg")).unwrap();
-    assert_eq!(tags(&svg).iter().filter(|tag| *tag == "polygon").count(), 40);
-    for word in ["J^½", "x (m)", "y (m)", "Constitutive relation error", "case.toml", "viewBox"] {
+    // The elements, and 64 shades of the scale.
+    assert_eq!(tags(&svg).iter().filter(|tag| *tag == "polygon").count(), 40 + 64);
+    for word in ["½</tspan>", "x (mm)", "y (mm)", "Constitutive relation error", "case.toml", "viewBox"] {
         assert!(svg.contains(word), "no `{word}`");
     }
 }
@@ -38,12 +39,46 @@ fn triangles_planes_and_units_are_drawn() {
 #[test]
 fn the_error_of_a_bar_is_a_curve() {
     let bench = Bench::new(BAR);
-    std::fs::write(bench.path("bar.svg"), "old").unwrap();
     assert_eq!(bench.percute(&["run", "case.toml", "--picture", "bar.svg"]).status.code(), Some(0));
     let svg = std::fs::read_to_string(bench.path("bar.svg")).unwrap();
     let tags = tags(&svg);
     assert!(tags.contains(&"polyline".to_string()) && !tags.contains(&"polygon".to_string()), "{tags:?}");
-    assert!(svg.contains("e_E (J^½)"));
+    assert!(svg.contains("x (mm)"));
+}
+
+#[test]
+fn the_end_of_the_name_chooses_the_format() {
+    let bench = Bench::new(BLOCK);
+    let output = bench.percute(&["run", "case.toml", "--picture", "map.PNG"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let png = std::fs::read(bench.path("map.PNG")).unwrap();
+    assert!(png.starts_with(b"\x89PNG") && png.len() > 10_000, "{} bytes", png.len());
+    // Width and height, two pixels for each of the SVG.
+    assert_eq!(bench.percute(&["run", "case.toml", "--picture", "map.svg"]).status.code(), Some(0));
+    let svg = std::fs::read_to_string(bench.path("map.svg")).unwrap();
+    let width: u32 = svg.split("width=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+    assert_eq!(u32::from_be_bytes(png[16..20].try_into().unwrap()), 2 * width);
+}
+
+#[test]
+fn existing_pictures_and_pages_are_kept_unless_forced() {
+    let bench = Bench::new(BAR);
+    for (flag, file) in [("--picture", "a.svg"), ("--picture", "a.png"), ("--report", "a.html")] {
+        std::fs::write(bench.path(file), "old").unwrap();
+        let output = bench.percute(&["run", "case.toml", flag, file]);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "before any work");
+        assert!(
+            stderr(&output).contains("exists already") && stderr(&output).contains("--force"),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(std::fs::read_to_string(bench.path(file)).unwrap(), "old");
+        let output = bench.percute(&["run", "case.toml", flag, file, "--force"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert!(std::fs::read(bench.path(file)).unwrap() != b"old");
+    }
+    // What was written under temporary names has got its own.
+    assert_eq!(bench.files(), ["a.html", "a.png", "a.svg", "case.toml"]);
 }
 
 #[test]

@@ -174,7 +174,7 @@ fn wrong_arguments_are_bad_input() {
         (&["run"], "<CASE>"),
         (&["rum", "case.toml"], "run"),
         (&["run", "none.toml"], "none.toml: there is no file of this name"),
-        (&["run", "case.toml", "--picture", "map.png"], "ends in .svg"),
+        (&["run", "case.toml", "--picture", "map.jpg"], "ends in .svg or .png"),
     ];
     for (arguments, phrase) in wrong {
         let output = bench.percute(arguments);

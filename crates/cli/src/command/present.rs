@@ -1,0 +1,48 @@
+//! The picture and the page of an estimate.
+
+use super::Console;
+use super::outputs::{page, picture, taken};
+use crate::args::{PrintArguments, WorkArguments};
+use percute_io::{Case, Overwrite};
+use percute_presentation::{Body, Contents, Document, Surface, file};
+use percute_workflow::Failure;
+use percute_workflow::message::bytes;
+
+/// An estimate to show.
+pub(super) struct Shown<'a> {
+    pub(super) body: Body,
+    pub(super) document: Document,
+    pub(super) statement: String,
+    pub(super) case: Option<&'a Case>,
+    pub(super) surface: Option<Surface>,
+}
+
+/// Writes the picture and the page, as far as they are wanted.
+pub(super) fn present(
+    shown: &Shown<'_>,
+    print: &PrintArguments,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<(), Failure> {
+    let Shown { body, document, statement, case, surface } = shown;
+    let overwrite = Overwrite::allowed(work.force);
+    if let Some(output) = picture(print) {
+        file::write_picture(&output, overwrite, body, document).map_err(refused)?;
+    }
+    if let Some(output) = page(print) {
+        let contents = Contents { document, body, statement, case: *case, surface: surface.as_ref() };
+        let size = file::write_page(&output, overwrite, &contents).map_err(refused)?;
+        if !work.quiet {
+            console.say(&format!("report {}: {}", output.file.display(), bytes(size)));
+        }
+    }
+    Ok(())
+}
+
+/// A file that appeared since it was checked.
+fn refused(failure: Failure) -> Failure {
+    match failure {
+        Failure::File(error) => taken(error),
+        other => other,
+    }
+}

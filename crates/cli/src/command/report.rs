@@ -1,0 +1,52 @@
+//! `percute report`.
+
+use super::outputs::check;
+use super::present::{Shown, present};
+use super::{Console, estimate, run};
+use crate::args::{EstimateArguments, PrintArguments, ReportArguments, RunArguments, WorkArguments};
+use crate::exit::DONE;
+use percute_core::each_dimension;
+use percute_io::{Kind, estimate_file, is_hdf5, kind};
+use percute_presentation::{Body, Document, Surface};
+use percute_workflow::Failure;
+use std::path::{Path, PathBuf};
+
+pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    let ReportArguments { file, page, work } = arguments;
+    let page = page.clone().unwrap_or_else(|| named_after(file));
+    let (print, work) = (PrintArguments { report: Some(page), ..PrintArguments::default() }, work.clone());
+    // A file that cannot be read is refused by the reader of cases, which says what it can of it.
+    if !is_hdf5(file).unwrap_or(false) {
+        let case = file.clone();
+        return run::command(&RunArguments { case, print, work, ..RunArguments::default() }, console);
+    }
+    if kind(file)? == Kind::Estimate {
+        return stored(file, &print, &work, console);
+    }
+    let history = file.clone();
+    estimate::command(&EstimateArguments { history, print, work, ..EstimateArguments::default() }, console)
+}
+
+/// The page of an estimate file, which holds all that it needs.
+fn stored(file: &Path, print: &PrintArguments, work: &WorkArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    check(&[("estimate", file)], &[], Some(print), work.force)?;
+    let found = estimate_file::open(file)?;
+    let contact = estimate_file::contact(file)?;
+    let unusable = |error| Failure::Argument(format!("{}: {error}", file.display()));
+    let shown = Shown {
+        body: Body::of(&found.mesh),
+        document: Document::parse(&found.report).map_err(unusable)?,
+        statement: found.statement,
+        case: found.case.as_ref(),
+        surface: contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results))),
+    };
+    present(&shown, print, work, console)?;
+    Ok(DONE)
+}
+
+/// The name of the file with another ending, in the working directory.
+fn named_after(file: &Path) -> PathBuf {
+    let mut name = file.file_stem().unwrap_or_default().to_os_string();
+    name.push(".html");
+    name.into()
+}

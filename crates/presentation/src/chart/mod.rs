@@ -1,0 +1,38 @@
+//! Charts: quantities over time, pressure along the surface over time, convergence.
+
+mod convergence;
+mod over_time;
+mod space_time;
+mod surface;
+
+pub use convergence::{Level, convergence};
+pub(crate) use over_time::{Line, OverTime};
+pub(crate) use space_time::space_time;
+pub use surface::Surface;
+
+use crate::axes::Plot;
+use crate::scale::Scale;
+use crate::svg::{Anchor, Svg};
+
+/// Size of a chart, and room around its plot: left, top, right, below (pixels).
+const SIZE: [f64; 2] = [720.0, 300.0];
+const ROOM: [f64; 4] = [76.0, 34.0, 20.0, 50.0];
+
+/// The plot of a chart of the usual size.
+fn plot(x: Scale, y: Scale) -> Plot {
+    let [left, top, right, below] = ROOM;
+    Plot { corner: [left, top], size: [SIZE[0] - left - right, SIZE[1] - top - below], x, y }
+}
+
+/// Draws names beside samples of their lines, in a row above the plot.
+fn legend(svg: &mut Svg, names: &[&str]) {
+    /// Mean width of a letter, length of a sample, gaps (pixels).
+    const LETTER: f64 = 6.9;
+    const SAMPLE: f64 = 26.0;
+    let mut x = ROOM[0];
+    for (k, name) in names.iter().enumerate() {
+        svg.line(&format!("s{k}"), [x, 14.0], [x + SAMPLE, 14.0]);
+        svg.text("label", [x + SAMPLE + 6.0, 18.5], Anchor::Start, false, name);
+        x += SAMPLE + 6.0 + LETTER * name.chars().count() as f64 + 18.0;
+    }
+}

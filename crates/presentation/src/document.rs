@@ -1,0 +1,90 @@
+//! The JSON document of an estimate, read by its keys. Documents of earlier versions lack some of them.
+
+use serde_json::Value;
+use thiserror::Error;
+
+/// A text that is no document of an estimate.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("the report is no JSON document of an estimate: {0}")]
+pub struct NoDocument(String);
+
+/// The document that `percute run --json` prints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Document(Value);
+
+impl Document {
+    /// Reads a document.
+    ///
+    /// # Errors
+    /// A text that is no JSON object, or one without the error.
+    pub fn parse(text: &str) -> Result<Self, NoDocument> {
+        let value: Value = serde_json::from_str(text).map_err(|error| NoDocument(error.to_string()))?;
+        if !value["error"]["sup"].is_number() {
+            return Err(NoDocument("it has no `error.sup`".to_string()));
+        }
+        Ok(Self(value))
+    }
+
+    /// The value at a path of keys, such as `error.sup`; null if it is missing.
+    pub(crate) fn at(&self, path: &str) -> &Value {
+        path.split('.').fold(&self.0, |value, key| &value[key])
+    }
+
+    /// The whole document.
+    pub(crate) fn all(&self) -> &Value {
+        &self.0
+    }
+
+    /// A finite number.
+    pub(crate) fn number(&self, path: &str) -> Option<f64> {
+        self.at(path).as_f64()
+    }
+
+    /// A text; empty if it is missing.
+    pub(crate) fn text(&self, path: &str) -> &str {
+        self.at(path).as_str().unwrap_or_default()
+    }
+
+    /// Whether a flag is set.
+    pub(crate) fn flag(&self, path: &str) -> bool {
+        self.at(path).as_bool().unwrap_or_default()
+    }
+
+    /// A list; empty if it is missing.
+    pub(crate) fn list(&self, path: &str) -> &[Value] {
+        self.at(path).as_array().map_or(&[], Vec::as_slice)
+    }
+
+    /// A list of numbers; null, which stands for a number that is not finite, is NaN.
+    pub(crate) fn column(&self, path: &str) -> Vec<f64> {
+        numbers(self.at(path))
+    }
+
+    /// The name of the case or history without its folder.
+    pub(crate) fn name(&self) -> String {
+        let name = std::path::Path::new(self.text("case")).file_name();
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    }
+}
+
+/// The numbers of a list.
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().into_iter().flatten().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_that_are_missing_are_nothing() {
+        let document = Document::parse(r#"{"error": {"sup": 2.5}, "list": [1, null], "case": "a/b.toml"}"#).unwrap();
+        assert_eq!(document.number("error.sup"), Some(2.5));
+        assert_eq!((document.number("contact.peak"), document.text("meaning")), (None, ""));
+        assert!(document.column("list")[1].is_nan() && document.list("nothing.at.all").is_empty());
+        assert_eq!(document.name(), "b.toml");
+        for wrong in ["", "[]", "{}", "{\"error\": 1}"] {
+            assert!(Document::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Contact: force, zone and pressure over time.
+
+use super::Contents;
+use super::error::seconds;
+use super::html::{Table, figure, number, paragraph, remark, section, vector};
+use crate::chart::{Line, OverTime, space_time};
+use crate::document::Document;
+
+/// Chart names of the first planes; more are left out of the chart.
+const PLANES: [&str; 5] = ["plane 0", "plane 1", "plane 2", "plane 3", "plane 4"];
+
+pub(super) fn section_of(contents: &Contents<'_>) -> String {
+    let document = contents.document;
+    if document.at("contact").is_null() {
+        return String::new();
+    }
+    if document.number("contact.first_touch").is_none() {
+        return section("Contact", &paragraph("No node touches a plane."));
+    }
+    let all = [facts(document), force(document), zone(document), pressure(contents), rebound(document)];
+    section("Contact", &all.join(""))
+}
+
+fn facts(document: &Document) -> String {
+    let mut table = Table::new(&["", "#value"]);
+    let value = |path: &str| document.number(path);
+    let mut row = |name: &str, value: String| table.row(&[name.to_string(), value]);
+    row("first touch", seconds(value("contact.first_touch")));
+    row("peak of the normal force (N)", number(value("contact.peak_normal_force")));
+    row("time of the peak", seconds(value("contact.time_of_peak")));
+    row("largest pressure at a node (Pa)", number(value("contact.peak_pressure")));
+    row("at node", number(value("contact.node_of_peak_pressure")));
+    if let Some(impulse) = document.list("contact.total.impulse").last() {
+        row("impulse on the body (N s)", vector(&crate::document::numbers(impulse)));
+    }
+    row("energy dissipated by friction (J)", number(document.column("contact.total.friction_energy").last().copied()));
+    row("impulse kept by the admissible force", number(value("kept_impulse")));
+    table.html()
+}
+
+fn force(document: &Document) -> String {
+    let planes = document.list("contact.obstacles");
+    let mut lines = vec![Line { name: "all planes", values: document.column("contact.total.normal_force") }];
+    if planes.len() > 1 {
+        let normal = |plane| crate::document::numbers(&serde_json::Value::clone(plane)["normal_force"]);
+        lines.extend(planes.iter().zip(PLANES).map(|(plane, name)| Line { name, values: normal(plane) }));
+    }
+    let mark = document.number("contact.time_of_peak").map(|time| (time, "peak"));
+    let time = document.column("contact.time");
+    let chart = OverTime { time, quantity: "normal force", unit: "N", prefixes: true, lines, mark };
+    chart
+        .draw()
+        .map_or_else(String::new, |svg| figure(&svg, "contact force over time", "Sum of the normal contact forces."))
+}
+
+fn zone(document: &Document) -> String {
+    let lines = vec![
+        Line { name: "nodes in contact", values: document.column("contact.total.in_contact") },
+        Line { name: "of which slipping", values: document.column("contact.total.slipping") },
+    ];
+    let time = document.column("contact.time");
+    let chart = OverTime { time, quantity: "nodes", unit: "", prefixes: false, lines, mark: None };
+    let Some(svg) = chart.draw() else { return String::new() };
+    figure(&svg, "contact zone over time", "Contact zone: nodes in contact, and how many of them slip.")
+}
+
+fn pressure(contents: &Contents<'_>) -> String {
+    let Some(surface) = contents.surface else {
+        // A bar has a single node at each end.
+        let plane = contents.body.dimension == 2;
+        let text = "The pressure along the surface is not drawn: the report has no contact results of all nodes at all instants.";
+        return if plane { remark(text) } else { String::new() };
+    };
+    let Ok(svg) = space_time(surface) else { return String::new() };
+    let [from, to] = surface.ends.each_ref().map(|end| vector(end));
+    let caption = format!(
+        "Pressure over time along the part of the surface that comes into contact, from {from} m (below) to {to} m (above), \
+         undeformed. No colour: no pressure."
+    );
+    figure(&svg, "pressure along the surface over time", &caption)
+}
+
+/// The rebound, where the document has it.
+fn rebound(document: &Document) -> String {
+    let Some(rebound) = document.at("rebound").as_object() else { return String::new() };
+    let mut table = Table::new(&["rebound", "#value"]);
+    for (key, value) in rebound {
+        let shown = match value {
+            serde_json::Value::Array(_) => vector(&crate::document::numbers(value)),
+            serde_json::Value::Bool(flag) => if *flag { "yes" } else { "no" }.to_string(),
+            value => number(value.as_f64()),
+        };
+        table.row(&[key.replace('_', " "), shown]);
+    }
+    table.html()
+}

@@ -1,0 +1,124 @@
+//! The error over elements, over time and by its sources.
+
+use super::Contents;
+use super::html::{Table, figure, number, paragraph, section};
+use crate::chart::{Line, OverTime};
+use crate::document::{Document, numbers};
+use crate::picture;
+use crate::scale::{hatted, prefixed};
+use percute_workflow::message::{percent, short, trimmed};
+
+/// The map, and the worst elements.
+pub(super) fn map(contents: &Contents<'_>) -> String {
+    let Contents { document, body, .. } = contents;
+    let worst = document.list("worst_elements");
+    let svg = picture::map(body, document, worst.len());
+    let mut caption =
+        "Contribution e_E of each element to the mean error [20]; the squares add up to e_mean^2.".to_string();
+    if body.dimension == 2 {
+        caption += " The numbers are the ranks of the worst elements. The colours are logarithmic where the largest value is more \
+                    than five times the median.";
+    }
+    if body.elements() > picture::MOST_POLYGONS {
+        caption += &format!(" Above {} elements, the map is stored as pixels.", picture::MOST_POLYGONS);
+    }
+    let mean = document.number("error.mean").unwrap_or(f64::NAN);
+    let mut table = Table::new(&["#rank", "#element", "#e_E (J^½)", "#share of e_mean^2", "centroid (m)"]);
+    for (k, element) in worst.iter().enumerate() {
+        let error = element["error"].as_f64();
+        let share = error.map_or("–".to_string(), |error| percent((error / mean).powi(2)));
+        let centroid =
+            numbers(&element["centroid"]).iter().map(|&x| hatted(&short(x, 4))).collect::<Vec<_>>().join(", ");
+        let name = element["element"].as_u64().map_or("–".to_string(), |e| e.to_string());
+        table.row(&[(k + 1).to_string(), name, number(error), share, format!("({centroid})")]);
+    }
+    section("Error of the elements", &(figure(&svg, "map of the error of each element", &caption) + &table.html()))
+}
+
+/// √η and its parts.
+pub(super) fn over_time(document: &Document) -> String {
+    let column = |name: &str| document.column(&format!("over_time.{name}"));
+    let root = |name: &str| column(name).iter().map(|eta| eta.max(0.0).sqrt()).collect();
+    let line = |name: &'static str, column: &str| Line { name, values: root(column) };
+    let chart = OverTime {
+        time: column("time"),
+        quantity: "√η and its parts",
+        unit: "J^½",
+        prefixes: false,
+        lines: vec![
+            line("√η", "total"),
+            line("kinetic", "kinetic"),
+            line("elastic", "elastic"),
+            line("contact", "contact"),
+        ],
+        mark: document.number("time_of_sup").map(|time| (time, "sup")),
+    };
+    let Some(svg) = chart.draw() else { return String::new() };
+    let caption = "√η over time and the roots of its parts [14]: the misfits of inertia (kinetic), of stress (elastic) and of the \
+                   contact law. The parts of η, not their roots, add up.";
+    let figure = figure(&svg, "error over time with its parts", caption);
+    let parts = ["kinetic", "elastic", "contact"].map(|name| (name, document.number(&format!("parts.{name}"))));
+    let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();
+    let mut table = Table::new(&["part of η at the sup", "#J", "#share"]);
+    for (name, part) in parts {
+        let share = part.filter(|_| total > 0.0).map_or("–".to_string(), |part| percent(part / total));
+        table.row(&[name.to_string(), number(part), share]);
+    }
+    section("Error over time", &(figure + &table.html()))
+}
+
+/// The sources of η and what would change it.
+pub(super) fn sources(document: &Document) -> String {
+    const SOURCES: [(&str, &str); 4] = [
+        ("surface", "the contact surface"),
+        ("front", "energy that contact takes from arriving nodes"),
+        ("dispersion", "dispersion of the waves"),
+        ("mesh", "the mesh elsewhere"),
+    ];
+    let value = |key: &str, name: &str| document.number(&format!("sources.{key}.{name}"));
+    let total: f64 = SOURCES.iter().filter_map(|(name, _)| value("mean", name)).sum();
+    if document.at("sources").is_null() || total <= 0.0 {
+        return String::new();
+    }
+    let mut table = Table::new(&[
+        "source",
+        "~meaning",
+        "#mean (J)",
+        "#share of e_mean^2",
+        "",
+        "#at the sup (J)",
+        "#mean, half size (J)",
+    ]);
+    for (name, meaning) in SOURCES {
+        let mean = value("mean", name);
+        let share = mean.unwrap_or(0.0) / total;
+        let bar = format!("<span class=\"bar\" style=\"width:{:.1}rem\"></span>", 6.0 * share.clamp(0.0, 1.0));
+        let cells = [name.to_string(), meaning.to_string(), number(mean), percent(share)]
+            .map(|cell| crate::typeset::html(&cell));
+        let others = ["at_sup", "half_size"].map(|key| number(value(key, name)));
+        table.marked("", cells.into_iter().chain([bar]).chain(others).collect());
+    }
+    section("Sources of the error", &(table.html() + &outlook(document)))
+}
+
+/// The mean error that a finer mesh, and a shorter step, would have.
+fn outlook(document: &Document) -> String {
+    let Some(mean) = document.number("error.mean").filter(|mean| *mean > 0.0) else { return String::new() };
+    let change = |key: &str| {
+        let expected = document.number(&format!("sources.{key}"))?;
+        Some(format!("{} J^½ ({:+.0} %)", trimmed(expected, 4), 100.0 * (expected / mean - 1.0)).replace('-', "−"))
+    };
+    let (Some(size), Some(step)) = (change("mean_with_half_size"), change("mean_with_half_step")) else {
+        return String::new();
+    };
+    paragraph(&format!(
+        "Expected mean error with elements and steps half as long: {size}; with steps half as long alone: {step}."
+    ))
+}
+
+/// A duration with its prefix.
+pub(super) fn seconds(value: Option<f64>) -> String {
+    let Some(value) = value else { return "–".to_string() };
+    let (factor, unit) = prefixed("s", value);
+    format!("{} {unit}", trimmed(value * factor, 5))
+}

@@ -1,0 +1,105 @@
+//! Pieces of HTML. Texts are escaped and symbols typeset here, and nowhere else.
+
+use crate::scale::hatted;
+use crate::svg::Svg;
+use crate::typeset::{escaped, html};
+use percute_workflow::message::trimmed;
+
+/// A section with its title; nothing without contents.
+pub(super) fn section(title: &str, contents: &str) -> String {
+    if contents.is_empty() {
+        return String::new();
+    }
+    format!("<section>\n<h2>{}</h2>\n{contents}</section>\n", html(title))
+}
+
+pub(super) fn heading(title: &str) -> String {
+    format!("<h3>{}</h3>\n", html(title))
+}
+
+pub(super) fn paragraph(text: &str) -> String {
+    format!("<p>{}</p>\n", html(text))
+}
+
+pub(super) fn remark(text: &str) -> String {
+    format!("<p class=\"faint\">{}</p>\n", html(text))
+}
+
+/// A text as it is, in a font of equal widths.
+pub(super) fn verbatim(text: &str) -> String {
+    format!("<pre>{}</pre>\n", escaped(text.trim_end()))
+}
+
+/// A picture with its caption, inside a frame that scrolls.
+pub(super) fn figure(svg: &Svg, label: &str, caption: &str) -> String {
+    let picture = svg.inside(label);
+    format!("<figure><div class=\"scroll\">{picture}</div>\n<figcaption>{}</figcaption></figure>\n", html(caption))
+}
+
+/// A number with five digits.
+pub(super) fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_string(), |value| hatted(&trimmed(value, 5)))
+}
+
+/// The same for a list.
+pub(super) fn vector(values: &[f64]) -> String {
+    let all: Vec<String> = values.iter().map(|&value| number(Some(value))).collect();
+    if all.len() == 1 { all[0].clone() } else { format!("({})", all.join(", ")) }
+}
+
+/// A table under construction.
+#[derive(Clone, Debug)]
+pub(super) struct Table {
+    /// Titles of the columns; those that begin with `#` hold numbers, with `~` long texts.
+    titles: Vec<&'static str>,
+    rows: Vec<String>,
+    long: bool,
+}
+
+impl Table {
+    pub(super) fn new(titles: &[&'static str]) -> Self {
+        Self { titles: titles.to_vec(), rows: Vec::new(), long: false }
+    }
+
+    /// One that paper may break between rows.
+    pub(super) fn long(titles: &[&'static str]) -> Self {
+        Self { long: true, ..Self::new(titles) }
+    }
+
+    fn class(title: &str) -> &'static str {
+        match title.chars().next() {
+            Some('#') => " class=\"n\"",
+            Some('~') => " class=\"wide\"",
+            _ => "",
+        }
+    }
+
+    /// Adds a row of texts.
+    pub(super) fn row(&mut self, cells: &[String]) {
+        self.marked("", cells.iter().map(|cell| html(cell)).collect());
+    }
+
+    /// Adds a row of HTML with a class.
+    pub(super) fn marked(&mut self, class: &str, cells: Vec<String>) {
+        let cell = |(title, cell): (&&str, String)| format!("<td{}>{cell}</td>", Self::class(title));
+        let cells: String = self.titles.iter().zip(cells).map(cell).collect();
+        let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
+        self.rows.push(format!("<tr{class}>{cells}</tr>\n"));
+    }
+
+    /// The table inside a frame that scrolls; nothing without rows.
+    pub(super) fn html(&self) -> String {
+        if self.rows.is_empty() {
+            return String::new();
+        }
+        let title =
+            |title: &&str| format!("<th{}>{}</th>", Self::class(title), html(title.trim_start_matches(['#', '~'])));
+        let titles: String = self.titles.iter().map(title).collect();
+        // Pairs of a name and a value need no titles.
+        let head =
+            if self.titles[0].is_empty() { String::new() } else { format!("<thead><tr>{titles}</tr></thead>\n") };
+        let long = if self.long { " class=\"long\"" } else { "" };
+        let rows = self.rows.join("");
+        format!("<div class=\"scroll\"><table{long}>\n{head}<tbody>\n{rows}</tbody>\n</table></div>\n")
+    }
+}

@@ -1,0 +1,112 @@
+//! The verdict and the numbers that come first.
+
+use super::html::number;
+use crate::document::Document;
+use crate::scale::{hatted, prefixed};
+use crate::typeset::{escaped, html};
+use percute_workflow::message::{percent, short, trimmed};
+
+/// The title of the page.
+pub(super) fn head(document: &Document) -> String {
+    let text = |path: &str| escaped(document.text(path));
+    let mut line = format!(
+        "percute {} on {} {}",
+        text("versions.percute"),
+        text("versions.architecture"),
+        text("versions.system")
+    );
+    if let Some(elements) = document.number("problem.elements") {
+        let kind = if document.number("problem.dimension") == Some(1.0) { "bar elements" } else { "triangles" };
+        line += &format!(" · {elements} {kind}");
+    }
+    format!(
+        "<h1>Error of the simulation {}</h1>\n<p class=\"faint\">{line}</p>\n{}",
+        escaped(&document.name()),
+        if document.flag("interrupted") { interrupted(document) } else { String::new() }
+    )
+}
+
+fn interrupted(document: &Document) -> String {
+    let [steps, planned] = ["steps", "steps_planned"].map(|path| number(document.number(path)));
+    let end = number(document.number("end"));
+    format!(
+        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}, t = {end} s: all numbers are those of \
+         the steps until then.</p></div>\n"
+    )
+}
+
+/// Verdict, warnings, tiles.
+pub(super) fn section(document: &Document) -> String {
+    let warning = |warning: &serde_json::Value| {
+        let [name, message] = ["name", "message"].map(|key| html(warning[key].as_str().unwrap_or_default()));
+        format!("<div class=\"verdict warning\"><p><b>Warning</b> (<code>{name}</code>): {message}</p></div>\n")
+    };
+    let warnings: String = document.list("warnings").iter().map(warning).collect();
+    format!("<section>\n{}{}{warnings}{}</section>\n", tiles(document), verdict(document), meaning(document))
+}
+
+/// The sentences of the verdict; documents of earlier versions have none.
+fn verdict(document: &Document) -> String {
+    let sentences = document.list("verdict.text").iter().filter_map(serde_json::Value::as_str);
+    let sentences: String = sentences.map(|sentence| format!("<p>{}</p>\n", html(sentence))).collect();
+    if sentences.is_empty() {
+        return String::new();
+    }
+    let trust = document.text("verdict.trust");
+    let known = ["high", "limited", "low"].into_iter().find(|known| *known == trust).unwrap_or("");
+    format!(
+        "<div class=\"verdict {known}\"><p><b class=\"trust\">Trust: {}</b></p>\n{sentences}</div>\n",
+        escaped(trust)
+    )
+}
+
+fn meaning(document: &Document) -> String {
+    let text = document.text("meaning");
+    if text.is_empty() { String::new() } else { format!("<p class=\"faint\">{}</p>\n", html(text)) }
+}
+
+fn tiles(document: &Document) -> String {
+    let value = |path: &str| document.number(path);
+    let si = |unit: &str, value: f64| {
+        let (factor, unit) = prefixed(unit, value);
+        format!("{} {unit}", trimmed(value * factor, 4))
+    };
+    let error = |name: &str| {
+        let relative = percent(value(&format!("error.relative_{name}"))?);
+        let [error, reference] = [format!("error.{name}"), format!("error.reference_{name}")].map(|path| value(&path));
+        Some((relative, format!("{} J^½ of {}", short(error?, 4), short(reference?, 4))))
+    };
+    let step = || {
+        let (step, critical) = (value("time_step")?, value("critical_time_step")?);
+        Some((trimmed(step / critical, 3), format!("longest Δt = {}", si("s", step))))
+    };
+    let force = || {
+        let (force, time) = (value("contact.peak_normal_force")?, value("contact.time_of_peak")?);
+        Some((si("N", force), format!("at {}", si("s", time))))
+    };
+    let residual = || {
+        let at_most = value("largest_residual.value")?;
+        let good = if document.flag("largest_residual.admissible") { "admissible" } else { "NOT admissible" };
+        Some((hatted(&short(at_most, 2)), format!("{good}; the limit is 10^-10")))
+    };
+    let drift = || Some((percent(value("balance.energy_drift")?), "of the largest energy".to_string()));
+    let rebound = || {
+        let restitution = value("rebound.restitution")?;
+        Some((trimmed(restitution, 4), "rebound over approach velocity".to_string()))
+    };
+    let time = value("time_of_sup").map_or(String::new(), |time| format!(", at {}", si("s", time)));
+    let all = [
+        ("Largest error e_sup", error("sup").map(|(big, small)| (big, small + &time))),
+        ("Mean error e_mean", error("mean")),
+        ("Step over Δt_c", step()),
+        ("Peak contact force", force()),
+        ("Restitution", rebound()),
+        ("Drift of the energy", drift()),
+        ("Largest residual", residual()),
+    ];
+    let tile = |(name, found): (&str, Option<(String, String)>)| {
+        let (big, small) = found?;
+        Some(format!("<div><dt>{}</dt><dd>{}<small>{}</small></dd></div>\n", html(name), html(&big), html(&small)))
+    };
+    format!("<dl class=\"tiles\">\n{}</dl>\n", all.into_iter().filter_map(tile).collect::<String>())
+}

@@ -1,0 +1,98 @@
+//! Pictures of the error of each element.
+
+mod bar;
+mod frame;
+mod plane_body;
+
+use crate::body::Body;
+use crate::document::Document;
+use crate::png::{DrawError, rendered};
+use crate::scale::prefixed;
+use crate::svg::{Anchor, Svg};
+use percute_workflow::message::{percent, short, trimmed};
+
+/// Room above the plot for two lines, left of and below it for axes, and at free sides (pixels).
+const HEAD: f64 = 62.0;
+const AXIS_LEFT: f64 = 78.0;
+const AXIS_BELOW: f64 = 52.0;
+const MARGIN: f64 = 16.0;
+
+/// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along a bar.
+#[must_use]
+pub fn svg(body: &Body, document: &Document) -> String {
+    let mut svg = sized(body, HEAD);
+    head(&mut svg, document);
+    draw(&mut svg, body, document, HEAD, Elements::Vectors, 0);
+    svg.alone()
+}
+
+/// The same as a PNG.
+///
+/// # Errors
+/// No memory for the pixels.
+pub fn png(body: &Body, document: &Document) -> Result<Vec<u8>, DrawError> {
+    rendered(&svg(body, document))
+}
+
+/// How elements are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Elements {
+    /// A polygon each.
+    Vectors,
+    /// All as one PNG.
+    Pixels,
+}
+
+/// Above this number of triangles the map of a page is a PNG: as polygons they would make the page larger than 1 MB.
+pub(crate) const MOST_POLYGONS: usize = 6000;
+
+/// The map of a page, without a head, with the places of the `marked` worst elements.
+pub(crate) fn map(body: &Body, document: &Document, marked: usize) -> Svg {
+    let mut svg = sized(body, MARGIN);
+    let elements = if body.elements() > MOST_POLYGONS { Elements::Pixels } else { Elements::Vectors };
+    draw(&mut svg, body, document, MARGIN, elements, marked);
+    svg
+}
+
+fn sized(body: &Body, top: f64) -> Svg {
+    Svg::new(if body.dimension == 1 { bar::size(top) } else { plane_body::size(body, top) })
+}
+
+fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, elements: Elements, marked: usize) {
+    match body.dimension {
+        1 => bar::draw(svg, body, document, top),
+        _ => plane_body::draw(svg, body, document, top, elements, marked),
+    }
+}
+
+/// Two lines: the error of the whole, and the subject of the picture.
+fn head(svg: &mut Svg, document: &Document) {
+    let number = |path: &str| document.number(path).unwrap_or(f64::NAN);
+    let (error, relative) = (short(number("error.sup"), 4), percent(number("error.relative_sup")));
+    let title = format!("Constitutive relation error {error} J^½ ({relative})");
+    let cut = if document.flag("interrupted") { " (interrupted)" } else { "" };
+    let (factor, unit) = prefixed("s", number("end"));
+    let line = format!(
+        "{}: contribution of each element up to t = {} {unit}{cut}; the squares add up to that of the mean error, ({} J^½)^2",
+        document.name(),
+        trimmed(number("end") * factor, 4),
+        short(number("error.mean"), 4)
+    );
+    svg.text("title", [MARGIN, 29.0], Anchor::Start, false, &title);
+    svg.text("faint", [MARGIN, 50.0], Anchor::Start, false, &line);
+}
+
+/// A plane: a point on it and its normal.
+struct Plane {
+    point: [f64; 2],
+    normal: [f64; 2],
+}
+
+fn planes(document: &Document) -> Vec<Plane> {
+    let vector = |value: &serde_json::Value| {
+        let found = crate::document::numbers(value);
+        [0, 1].map(|c| found.get(c).copied().unwrap_or(0.0))
+    };
+    let plane = |plane: &serde_json::Value| Plane { point: vector(&plane["point"]), normal: vector(&plane["normal"]) };
+    document.list("problem.obstacles").iter().map(plane).collect()
+}

@@ -1,0 +1,195 @@
+//! Scales: colours of values, and marks at axes.
+
+use percute_workflow::message::trimmed;
+
+/// From this ratio of the largest value to the median on, a linear scale shows all but a few elements dark.
+const OUTSHONE: f64 = 5.0;
+/// A logarithmic scale of colours spans at most this ratio; smaller values have the colour of its lower end.
+const SPAN: f64 = 1e4;
+
+/// Seventeen colours of viridis by van der Walt and Smith (public domain), from 0 to 1 at equal distances.
+const VIRIDIS: [[u8; 3]; 17] = [
+    [68, 1, 84],
+    [72, 24, 106],
+    [71, 45, 123],
+    [66, 64, 134],
+    [59, 82, 139],
+    [51, 99, 141],
+    [44, 114, 142],
+    [38, 130, 142],
+    [33, 145, 140],
+    [31, 160, 136],
+    [40, 174, 128],
+    [63, 188, 115],
+    [94, 201, 98],
+    [132, 212, 75],
+    [173, 220, 48],
+    [216, 226, 25],
+    [253, 231, 37],
+];
+
+/// The colour of a fraction from 0 to 1, from dark to light; equal steps look equal.
+pub(crate) fn viridis(fraction: f64) -> [u8; 3] {
+    let place = if fraction.is_finite() { fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64 } else { 0.0 };
+    let low = (place.floor() as usize).min(VIRIDIS.len() - 2);
+    let part = place - low as f64;
+    [0, 1, 2].map(|c| {
+        let [a, b] = [VIRIDIS[low][c], VIRIDIS[low + 1][c]].map(f64::from);
+        (a + part * (b - a)).round() as u8
+    })
+}
+
+/// A range of values, linear or logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scale {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) logarithmic: bool,
+}
+
+impl Scale {
+    /// A linear scale; one without length gets some.
+    pub(crate) fn linear(low: f64, high: f64) -> Self {
+        let high = if high > low { high } else { low + if low == 0.0 { 1.0 } else { low.abs() } };
+        Self { low, high, logarithmic: false }
+    }
+
+    /// A logarithmic scale between positive values.
+    pub(crate) fn logarithmic(low: f64, high: f64) -> Self {
+        if low > 0.0 && high > low {
+            Self { low, high, logarithmic: true }
+        } else {
+            Self::linear(low.min(high), low.max(high))
+        }
+    }
+
+    /// The scale of colours for values that are not negative: logarithmic where the largest is more than five times the
+    /// median. It then begins at the hundredth part of the values, or at 1e-4 of the largest.
+    pub(crate) fn of_colours(values: &[f64]) -> Self {
+        let mut positive: Vec<f64> = values.iter().copied().filter(|v| v.is_finite() && *v > 0.0).collect();
+        positive.sort_by(f64::total_cmp);
+        let Some(&most) = positive.last() else { return Self::linear(0.0, 1.0) };
+        if most <= OUTSHONE * positive[positive.len() / 2] {
+            return Self::linear(0.0, most);
+        }
+        Self::logarithmic(positive[positive.len() / 100].max(most / SPAN).min(0.5 * most), most)
+    }
+
+    /// The place of a value, 0 at the lower and 1 at the upper end.
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            return (value.max(f64::MIN_POSITIVE) / self.low).ln() / (self.high / self.low).ln();
+        }
+        (value - self.low) / (self.high - self.low)
+    }
+
+    /// Round values for about `count` marks.
+    pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
+        if self.logarithmic {
+            return self.powers(count);
+        }
+        let rough = (self.high - self.low) / count.max(1) as f64;
+        let power = 10.0_f64.powf(rough.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough * 0.999);
+        let step = step.unwrap_or(rough);
+        let (from, to) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
+        (from..=to).map(|k| k as f64 * step).collect()
+    }
+
+    /// Powers of ten, with twice and five times them where these are few.
+    fn powers(&self, count: usize) -> Vec<f64> {
+        let decades = (self.high / self.low).log10();
+        let (from, to) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
+        let parts: &[f64] = if decades <= 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let every = (decades / count.max(1) as f64).ceil().max(1.0) as i32;
+        let powers = (from..=to).filter(|k| k % every == 0);
+        let all = powers.flat_map(|k| parts.iter().map(move |part| part * 10.0_f64.powi(k)));
+        all.filter(|v| (self.low * 0.999..=self.high * 1.001).contains(v)).collect()
+    }
+}
+
+/// A number at an axis.
+pub(crate) fn tick(value: f64) -> String {
+    // Left over from zero after multiples of a step.
+    if value.abs() < 1e-300 { "0".to_string() } else { hatted(&trimmed(value, 4)) }
+}
+
+/// A number typeset: with a minus sign, and powers of ten with a hat.
+pub(crate) fn hatted(number: &str) -> String {
+    let shown = match number.split_once('e') {
+        Some(("1", power)) => format!("10^{power}"),
+        Some((digits, power)) => format!("{digits}·10^{power}"),
+        None => number.to_string(),
+    };
+    match shown.strip_prefix('-') {
+        Some(rest) => format!("−{rest}"),
+        None => shown,
+    }
+}
+
+/// A factor and a unit that make values up to `most` short: 1e6 and `µs` for microseconds.
+pub(crate) fn prefixed(unit: &str, most: f64) -> (f64, String) {
+    const PREFIXES: [(&str, f64); 9] = [
+        ("n", 1e-9),
+        ("µ", 1e-6),
+        ("m", 1e-3),
+        ("", 1.0),
+        ("k", 1e3),
+        ("M", 1e6),
+        ("G", 1e9),
+        ("T", 1e12),
+        ("P", 1e15),
+    ];
+    let most = most.abs() * 1.000_001;
+    // Lengths in mm or m, never in km.
+    let fits = |(prefix, size): &&(&str, f64)| *size <= most && !(unit == "m" && *size > 1.0 && !prefix.is_empty());
+    let (prefix, size) =
+        PREFIXES.iter().rev().find(fits).unwrap_or(if most > 0.0 { &PREFIXES[0] } else { &PREFIXES[3] });
+    (1.0 / size, format!("{prefix}{unit}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_bright_element_makes_the_scale_logarithmic() {
+        let mut values = vec![1.0; 99];
+        values.push(4.9);
+        assert_eq!(Scale::of_colours(&values), Scale::linear(0.0, 4.9));
+        values[99] = 11.0;
+        assert_eq!(Scale::of_colours(&values), Scale { low: 1.0, high: 11.0, logarithmic: true });
+        values[0] = 1e-30;
+        assert!(Scale::of_colours(&values).low >= 11.0 / SPAN);
+        for none in [vec![], vec![0.0; 3], vec![f64::NAN]] {
+            assert_eq!(Scale::of_colours(&none), Scale::linear(0.0, 1.0));
+        }
+    }
+
+    #[test]
+    fn colours_run_from_dark_to_light_and_take_anything() {
+        let brightness = |c: [u8; 3]| c.map(u32::from).iter().sum::<u32>();
+        let steps: Vec<_> = (0..=20).map(|i| brightness(viridis(f64::from(i) / 20.0))).collect();
+        assert!(steps.is_sorted(), "{steps:?}");
+        assert_eq!([f64::NAN, -1.0].map(viridis), [viridis(0.0); 2]);
+        assert_eq!(viridis(7.0), [253, 231, 37]);
+    }
+
+    #[test]
+    fn marks_are_round_and_inside() {
+        assert_eq!(Scale::linear(0.0, 1.3).ticks(5), [0.0, 0.5, 1.0]);
+        assert_eq!(Scale::linear(-2e-4, 2e-4).ticks(4), [-2e-4, -1e-4, 0.0, 1e-4, 2e-4]);
+        assert_eq!(Scale::logarithmic(0.5, 30.0).ticks(6), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]);
+        assert_eq!(Scale::logarithmic(1e-3, 1e3).ticks(6).len(), 7);
+        let shown: Vec<_> = [0.0, 0.01, -2.0, 5e-5, 1e-9, 250_000.0].map(tick).to_vec();
+        assert_eq!(shown, ["0", "0.01", "−2", "5·10^-5", "10^-9", "250000"]);
+    }
+
+    #[test]
+    fn units_get_a_prefix() {
+        let unit = |unit: &str, most: f64| prefixed(unit, most).1;
+        assert_eq!([unit("s", 1.3e-5), unit("Pa", 1.2e10), unit("m", 0.05), unit("m", 4e4)], ["µs", "GPa", "mm", "m"]);
+        assert_eq!([unit("J", 0.0), unit("N", 1e-12), unit("J", 1000.0)], ["J", "nN", "kJ"]);
+        assert!((prefixed("s", 1.3e-5).0 - 1e6).abs() < 1.0);
+    }
+}

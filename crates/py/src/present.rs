@@ -1,0 +1,156 @@
+//! The picture and the page of an estimate.
+
+use crate::estimate::{EstimateData, Made};
+use crate::history::HistoryData;
+use crate::run::Run;
+use crate::{bridge, errors};
+use percute_core::contact::ContactResults;
+use percute_core::each_dimension;
+use percute_core::simplex::ByDimension;
+use percute_io::{Case, Overwrite, estimate_file};
+use percute_presentation::{Body, Contents, Document, Surface, file};
+use percute_workflow::Failure;
+use percute_workflow::case::statement;
+use percute_workflow::outputs::{self, OutputFile};
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An estimate to show.
+struct Shown {
+    body: Body,
+    document: Document,
+    statement: String,
+    case: Option<Case>,
+    surface: Option<Surface>,
+}
+
+/// What is to be written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Picture,
+    Page,
+}
+
+impl Form {
+    fn of(page: bool) -> Self {
+        if page { Self::Page } else { Self::Picture }
+    }
+
+    /// Checks the file before any work.
+    fn check(self, path: &Path, input: Option<&Path>, overwrite: bool) -> Result<(), Failure> {
+        let output = named(path);
+        let input: Vec<(&str, &Path)> = input.map(|input| ("estimate", input)).into_iter().collect();
+        outputs::check(&input, &[Some(output)], overwrite)?;
+        match self {
+            Self::Picture => file::picture(&output).map(drop),
+            Self::Page => file::page(&output),
+        }
+    }
+
+    fn write(self, shown: &Shown, path: &Path, overwrite: bool) -> Result<(), Failure> {
+        let Shown { body, document, statement, case, surface } = shown;
+        let (output, overwrite) = (named(path), Overwrite::allowed(overwrite));
+        if self == Self::Picture {
+            return file::write_picture(&output, overwrite, body, document);
+        }
+        let contents = Contents { document, body, statement, case: case.as_ref(), surface: surface.as_ref() };
+        file::write_page(&output, overwrite, &contents).map(drop)
+    }
+}
+
+fn named(file: &Path) -> OutputFile<'_> {
+    OutputFile { what: "`path`", file }
+}
+
+fn refused(py: Python<'_>, failure: &Failure) -> PyErr {
+    match failure {
+        Failure::File(error) => errors::file(py, error),
+        other => errors::output(py, other),
+    }
+}
+
+/// Writes the page of an estimate, or the picture; the page has the contact results of the history.
+#[pyfunction]
+pub(crate) fn present(
+    py: Python<'_>,
+    estimate: &EstimateData,
+    page: bool,
+    path: PathBuf,
+    overwrite: bool,
+    name: String,
+    history: Option<&HistoryData>,
+) -> PyResult<()> {
+    let form = Form::of(page);
+    form.check(&path, None, overwrite).map_err(|failure| refused(py, &failure))?;
+    let history = history.filter(|_| page).map(|history| &history.run);
+    match (&estimate.made, history) {
+        (ByDimension::Bar(made), Some(ByDimension::Bar(run))) => {
+            write(py, form, made, (path, overwrite), name, Some(run))
+        }
+        (ByDimension::Plane(made), Some(ByDimension::Plane(run))) => {
+            write(py, form, made, (path, overwrite), name, Some(run))
+        }
+        (ByDimension::Bar(made), _) => write(py, form, made, (path, overwrite), name, None),
+        (ByDimension::Plane(made), _) => write(py, form, made, (path, overwrite), name, None),
+    }
+}
+
+fn write<const D: usize, const N: usize>(
+    py: Python<'_>,
+    form: Form,
+    made: &Arc<Made<D, N>>,
+    (path, overwrite): (PathBuf, bool),
+    name: String,
+    history: Option<&Arc<Run<D, N>>>,
+) -> PyResult<()> {
+    let contact = made.contact_steps(py, history)?;
+    let made = made.clone();
+    let work = move |_| {
+        let shown = shown(&made, &name, contact.as_deref())?;
+        form.write(&shown, &path, overwrite)
+    };
+    bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))
+}
+
+fn shown<const D: usize, const N: usize>(
+    made: &Made<D, N>,
+    name: &str,
+    contact: Option<&ContactResults<D>>,
+) -> Result<Shown, Failure> {
+    let json = made.report(name).map_err(Failure::Argument)?;
+    Ok(Shown {
+        body: Body::new(made.problem.mesh()),
+        document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,
+        // A problem that the language of the case files cannot say has a page without it.
+        statement: statement(&made.problem, Some(&made.options)).unwrap_or_default(),
+        case: None,
+        surface: contact.and_then(Surface::new),
+    })
+}
+
+/// The same of an estimate file.
+#[pyfunction]
+pub(crate) fn present_file(
+    py: Python<'_>,
+    estimate: PathBuf,
+    page: bool,
+    path: PathBuf,
+    overwrite: bool,
+) -> PyResult<()> {
+    let form = Form::of(page);
+    form.check(&path, Some(&estimate), overwrite).map_err(|failure| refused(py, &failure))?;
+    let work = move |_| {
+        let found = estimate_file::open(&estimate)?;
+        let contact = if page { estimate_file::contact(&estimate)? } else { None };
+        let shown = Shown {
+            body: Body::of(&found.mesh),
+            document: Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?,
+            statement: found.statement,
+            case: found.case,
+            surface: contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results))),
+        };
+        form.write(&shown, &path, overwrite)
+    };
+    bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))
+}
