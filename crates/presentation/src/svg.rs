@@ -106,12 +106,12 @@ impl Svg {
         self.body += &format!("<text class=\"{class}\" x=\"{x}\" y=\"{y}\"{anchor}{turned}>{text}</text>\n");
     }
 
-    /// A PNG between two corners.
-    pub(crate) fn image(&mut self, png: &[u8], from: [f64; 2], to: [f64; 2]) {
+    /// A PNG between two corners; the pixels of `cells` keep their edges.
+    pub(crate) fn image(&mut self, class: &str, png: &[u8], from: [f64; 2], to: [f64; 2]) {
         let [x, y] = from.map(px);
         let [w, h] = [0, 1].map(|c| px(to[c] - from[c]));
         self.body += &format!(
-            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
+            "<image class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
              href=\"data:image/png;base64,{}\"/>\n",
             STANDARD.encode(png)
         );

@@ -15,8 +15,8 @@ use crate::scale::Scale;
 use crate::svg::{Anchor, Svg};
 
 /// Size of a chart, and room around its plot: left, top, right, below (pixels).
-const SIZE: [f64; 2] = [720.0, 300.0];
-const ROOM: [f64; 4] = [76.0, 34.0, 20.0, 50.0];
+const SIZE: [f64; 2] = [720.0, 308.0];
+const ROOM: [f64; 4] = [76.0, 42.0, 20.0, 50.0];
 
 /// The plot of a chart of the usual size.
 fn plot(x: Scale, y: Scale) -> Plot {
@@ -31,8 +31,8 @@ fn legend(svg: &mut Svg, names: &[&str]) {
     const SAMPLE: f64 = 26.0;
     let mut x = ROOM[0];
     for (k, name) in names.iter().enumerate() {
-        svg.line(&format!("s{k}"), [x, 14.0], [x + SAMPLE, 14.0]);
-        svg.text("label", [x + SAMPLE + 6.0, 18.5], Anchor::Start, false, name);
+        svg.line(&format!("s{k}"), [x, 12.0], [x + SAMPLE, 12.0]);
+        svg.text("label", [x + SAMPLE + 6.0, 16.5], Anchor::Start, false, name);
         x += SAMPLE + 6.0 + LETTER * name.chars().count() as f64 + 18.0;
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn space_time(surface: &Surface) -> Result<Svg, DrawError> {
     };
     let mut svg = Svg::new(SIZE);
     let opposite = [0, 1].map(|c| plot.corner[c] + plot.size[c]);
-    svg.image(&raster(surface.pressure[0].len(), &rows(surface, most))?, plot.corner, opposite);
+    svg.image("cells", &raster(surface.pressure[0].len(), &rows(surface, most))?, plot.corner, opposite);
     let labels = (format!("t ({second})"), format!("along the surface ({metre})"));
     plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], grid: [false; 2] });
     let bar = [opposite[0] + 20.0, top];

@@ -54,14 +54,17 @@ fn force(document: &Document) -> String {
 }
 
 fn zone(document: &Document) -> String {
-    let lines = vec![
-        Line { name: "nodes in contact", values: document.column("contact.total.in_contact") },
-        Line { name: "of which slipping", values: document.column("contact.total.slipping") },
-    ];
+    let mut lines = vec![Line { name: "nodes in contact", values: document.column("contact.total.in_contact") }];
+    let mut caption = "Contact zone: nodes in contact".to_string();
+    // The node of a bar has no direction to slip in.
+    if document.number("problem.dimension") != Some(1.0) {
+        lines.push(Line { name: "of which slipping", values: document.column("contact.total.slipping") });
+        caption += ", and how many of them slip";
+    }
     let time = document.column("contact.time");
     let chart = OverTime { time, quantity: "nodes", unit: "", prefixes: false, lines, mark: None };
     let Some(svg) = chart.draw() else { return String::new() };
-    figure(&svg, "contact zone over time", "Contact zone: nodes in contact, and how many of them slip.")
+    figure(&svg, "contact zone over time", &(caption + "."))
 }
 
 fn pressure(contents: &Contents<'_>) -> String {

@@ -1,12 +1,12 @@
 //! The error over elements, over time and by its sources.
 
 use super::Contents;
-use super::html::{Table, figure, number, paragraph, section};
+use super::html::{self, Table, figure, number, paragraph, section, share};
 use crate::chart::{Line, OverTime};
 use crate::document::{Document, numbers};
 use crate::picture;
 use crate::scale::{hatted, prefixed};
-use percute_workflow::message::{percent, short, trimmed};
+use percute_workflow::message::{short, trimmed};
 
 /// The map, and the worst elements.
 pub(super) fn map(contents: &Contents<'_>) -> String {
@@ -15,8 +15,9 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
     let svg = picture::map(body, document, worst.len());
     let mut caption =
         "Contribution e_E of each element to the mean error [20]; the squares add up to e_mean^2.".to_string();
+    caption += " The numbers are the ranks of the worst elements.";
     if body.dimension == 2 {
-        caption += " The numbers are the ranks of the worst elements. The colours are logarithmic where the largest value is more \
+        caption += " The colours are logarithmic where the largest value is more \
                     than five times the median.";
     }
     if body.elements() > picture::MOST_POLYGONS {
@@ -26,11 +27,11 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
     let mut table = Table::new(&["#rank", "#element", "#e_E (J^½)", "#share of e_mean^2", "centroid (m)"]);
     for (k, element) in worst.iter().enumerate() {
         let error = element["error"].as_f64();
-        let share = error.map_or("–".to_string(), |error| percent((error / mean).powi(2)));
+        let part = error.map_or("–".to_string(), |error| share((error / mean).powi(2)));
         let centroid =
             numbers(&element["centroid"]).iter().map(|&x| hatted(&short(x, 4))).collect::<Vec<_>>().join(", ");
         let name = element["element"].as_u64().map_or("–".to_string(), |e| e.to_string());
-        table.row(&[(k + 1).to_string(), name, number(error), share, format!("({centroid})")]);
+        table.row(&[(k + 1).to_string(), name, number(error), part, format!("({centroid})")]);
     }
     section("Error of the elements", &(figure(&svg, "map of the error of each element", &caption) + &table.html()))
 }
@@ -61,7 +62,7 @@ pub(super) fn over_time(document: &Document) -> String {
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();
     let mut table = Table::new(&["part of η at the sup", "#J", "#share"]);
     for (name, part) in parts {
-        let share = part.filter(|_| total > 0.0).map_or("–".to_string(), |part| percent(part / total));
+        let share = part.filter(|_| total > 0.0).map_or("–".to_string(), |part| html::share(part / total));
         table.row(&[name.to_string(), number(part), share]);
     }
     section("Error over time", &(figure + &table.html()))
@@ -93,7 +94,7 @@ pub(super) fn sources(document: &Document) -> String {
         let mean = value("mean", name);
         let share = mean.unwrap_or(0.0) / total;
         let bar = format!("<span class=\"bar\" style=\"width:{:.1}rem\"></span>", 6.0 * share.clamp(0.0, 1.0));
-        let cells = [name.to_string(), meaning.to_string(), number(mean), percent(share)]
+        let cells = [name.to_string(), meaning.to_string(), number(mean), html::share(share)]
             .map(|cell| crate::typeset::html(&cell));
         let others = ["at_sup", "half_size"].map(|key| number(value(key, name)));
         table.marked("", cells.into_iter().chain([bar]).chain(others).collect());

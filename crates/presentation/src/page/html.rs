@@ -3,7 +3,7 @@
 use crate::scale::hatted;
 use crate::svg::Svg;
 use crate::typeset::{escaped, html};
-use percute_workflow::message::trimmed;
+use percute_workflow::message::{percent, trimmed};
 
 /// A section with its title; nothing without contents.
 pub(super) fn section(title: &str, contents: &str) -> String {
@@ -41,7 +41,12 @@ pub(super) fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_string(), |value| hatted(&trimmed(value, 5)))
 }
 
-/// The same for a list.
+/// A fraction in per cent.
+pub(super) fn share(fraction: f64) -> String {
+    format!("{} %", hatted(percent(fraction).trim_end_matches(" %")))
+}
+
+/// Numbers of a list.
 pub(super) fn vector(values: &[f64]) -> String {
     let all: Vec<String> = values.iter().map(|&value| number(Some(value))).collect();
     if all.len() == 1 { all[0].clone() } else { format!("({})", all.join(", ")) }

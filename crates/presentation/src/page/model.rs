@@ -2,12 +2,12 @@
 
 use super::Contents;
 use super::error::seconds;
-use super::html::{Table, figure, heading, number, section, vector};
+use super::html::{Table, figure, heading, number, section, share, vector};
 use crate::chart::{Line, OverTime};
 use crate::document::{Document, numbers};
 use crate::scale::hatted;
 use crate::typeset::html;
-use percute_workflow::message::{percent, short};
+use percute_workflow::message::short;
 
 /// Energies over time, drifts, residuals.
 pub(super) fn balance(document: &Document) -> String {
@@ -15,9 +15,9 @@ pub(super) fn balance(document: &Document) -> String {
     let names = [
         ("kinetic", "kinetic"),
         ("strain", "strain"),
-        ("work of contact", "work_of_contact"),
-        ("work of loads", "work_of_loads"),
-        ("work of supports", "work_of_supports"),
+        ("contact", "work_of_contact"),
+        ("loads", "work_of_loads"),
+        ("supports", "work_of_supports"),
         ("friction", "friction"),
     ];
     // Works of what the problem does not have are left out.
@@ -27,7 +27,8 @@ pub(super) fn balance(document: &Document) -> String {
     };
     let lines = names.into_iter().filter_map(line).collect();
     let chart = OverTime { time: column("time"), quantity: "energy", unit: "J", prefixes: true, lines, mark: None };
-    let caption = "Energies of the body, the work done on it, and the energy dissipated by friction.";
+    let caption =
+        "Kinetic and strain energy, the works of contact, loads and supports, and the energy dissipated by friction.";
     let chart = chart.draw().map_or_else(String::new, |svg| figure(&svg, "energies over time", caption));
     let mut table = Table::new(&["at the end", "#value"]);
     for (key, name) in [
@@ -42,14 +43,10 @@ pub(super) fn balance(document: &Document) -> String {
         table.row(&[name.to_string(), number(document.number(&format!("balance.{key}")))]);
     }
     for (key, name) in [("energy_drift", "drift of the energy"), ("impulse_drift", "drift of the impulse")] {
-        let drift = document.number(&format!("balance.{key}")).map_or("–".to_string(), hatted_percent);
+        let drift = document.number(&format!("balance.{key}")).map_or("–".to_string(), share);
         table.row(&[name.to_string(), drift]);
     }
     section("Energy and residuals", &(chart + &table.html() + &consistency(document) + &residuals(document)))
-}
-
-fn hatted_percent(fraction: f64) -> String {
-    format!("{} %", hatted(percent(fraction).trim_end_matches(" %")))
 }
 
 fn residuals(document: &Document) -> String {

@@ -1,6 +1,6 @@
 //! The error of each element of a bar, over its length.
 
-use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, MARGIN, planes};
+use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, MARGIN, mark, planes, ranked};
 use crate::axes::{Look, Plot};
 use crate::scale::{Scale, prefixed};
 use crate::svg::Svg;
@@ -15,7 +15,7 @@ pub(super) fn size(top: f64) -> [f64; 2] {
 }
 
 /// Draws the error as a step curve, and the planes.
-pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64) {
+pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, marked: usize) {
     let values = document.column("by_element");
     let [low, high] = body.bounds().map(|corner| corner[0]);
     let (factor, unit) = prefixed("m", low.abs().max(high.abs()));
@@ -33,6 +33,11 @@ pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64) {
         svg.rectangle("class=\"area\"", at(a, value), at(b, 0.0));
     }
     svg.polyline("s0", pieces.iter().flat_map(|&(a, b, value)| [at(a, value), at(b, value)]));
+    for (rank, worst) in ranked(document, marked) {
+        if let &[x] = crate::document::numbers(&worst["centroid"]).as_slice() {
+            mark(svg, plot.at(x * factor, worst["error"].as_f64().unwrap_or(0.0)), rank);
+        }
+    }
     let places = planes(document).into_iter().map(|plane| plane.point[0] * factor);
     for place in places.filter(|place| (x.low..=x.high).contains(place)) {
         svg.line("plane", plot.at(place, 0.0), plot.at(place, y.high));

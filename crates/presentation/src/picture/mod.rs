@@ -60,7 +60,7 @@ fn sized(body: &Body, top: f64) -> Svg {
 
 fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, elements: Elements, marked: usize) {
     match body.dimension {
-        1 => bar::draw(svg, body, document, top),
+        1 => bar::draw(svg, body, document, top, marked),
         _ => plane_body::draw(svg, body, document, top, elements, marked),
     }
 }
@@ -80,6 +80,17 @@ fn head(svg: &mut Svg, document: &Document) {
     );
     svg.text("title", [MARGIN, 29.0], Anchor::Start, false, &title);
     svg.text("faint", [MARGIN, 50.0], Anchor::Start, false, &line);
+}
+
+/// The worst elements with their ranks, the worst last: its mark lies above the others.
+fn ranked(document: &Document, count: usize) -> impl Iterator<Item = (usize, &serde_json::Value)> {
+    document.list("worst_elements").iter().take(count).enumerate().map(|(k, worst)| (k + 1, worst)).rev()
+}
+
+/// The rank of an element at its place.
+fn mark(svg: &mut Svg, [x, y]: [f64; 2], rank: usize) {
+    svg.circle("mark", [x, y], 8.5);
+    svg.text("label", [x, y + 4.5], Anchor::Middle, false, &rank.to_string());
 }
 
 /// A plane: a point on it and its normal.

@@ -1,11 +1,11 @@
 //! The error of each triangle, on the mesh.
 
 use super::frame::Frame;
-use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, Elements, Plane, planes};
+use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, Elements, Plane, mark, planes, ranked};
 use crate::axes::{Look, Plot, colour_bar};
 use crate::png::marks;
 use crate::scale::{Scale, prefixed, viridis};
-use crate::svg::{Anchor, Svg};
+use crate::svg::Svg;
 
 /// Room for the scale of colours: a gap, the colours, its numbers (pixels).
 const SCALE: [f64; 3] = [22.0, 18.0, 74.0];
@@ -43,7 +43,7 @@ pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, el
             drawn(&mut alone, &Plot { corner: [0.0, 0.0], ..plot });
             // Without memory for the pixels, the page has polygons.
             match marks(&alone) {
-                Ok(png) => svg.image(&png, plot.corner, [0, 1].map(|c| plot.corner[c] + size[c])),
+                Ok(png) => svg.image("map", &png, plot.corner, [0, 1].map(|c| plot.corner[c] + size[c])),
                 Err(_) => drawn(svg, &plot),
             }
         }
@@ -52,7 +52,11 @@ pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, el
     let marks = [size[0] / 90.0, size[1] / 60.0].map(|count| count.max(3.0) as usize);
     let labels = ["x", "y"].map(|axis| format!("{axis} ({unit})"));
     shown.axes(svg, &Look { x: &labels[0], y: &labels[1], marks, grid: [false; 2] });
-    mark(svg, &plot, document, marked);
+    for (rank, worst) in ranked(document, marked) {
+        if let &[x, y] = crate::document::numbers(&worst["centroid"]).as_slice() {
+            mark(svg, plot.at(x, y), rank);
+        }
+    }
     let bar = [AXIS_LEFT + size[0] + SCALE[0], top];
     let less = values.iter().any(|&value| value < colours.low);
     colour_bar(svg, bar, [SCALE[1], size[1]], &colours, ("e_E (J^½)", less));
@@ -65,17 +69,6 @@ fn draw_elements(svg: &mut Svg, plot: &Plot, frame: &Frame, body: &Body, values:
         svg.polygon(viridis(colours.fraction(value)), body.corners(element).map(|[x, y]| plot.at(x, y)));
     }
     svg.end();
-}
-
-/// Numbers at the worst elements: 1 is the worst.
-fn mark(svg: &mut Svg, plot: &Plot, document: &Document, marked: usize) {
-    for (k, worst) in document.list("worst_elements").iter().take(marked).enumerate().rev() {
-        let at = crate::document::numbers(&worst["centroid"]);
-        let &[x, y] = at.as_slice() else { continue };
-        let [x, y] = plot.at(x, y);
-        svg.circle("mark", [x, y], 8.5);
-        svg.text("label", [x, y + 4.5], Anchor::Middle, false, &(k + 1).to_string());
-    }
 }
 
 /// A plane as a line, hatched on the side where the body cannot go.

@@ -1,0 +1,107 @@
+"""The page and the picture of an estimate."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import percute as pc
+
+EMPTY = {"meta", "line", "polyline", "polygon", "rect", "circle", "image", "br"}
+"""Elements without an end tag, or closed in themselves in SVG."""
+
+
+class Page(HTMLParser):
+    """Elements that open and close in order, and the references of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.count: dict[str, int] = {}
+        self.references: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.count[tag] = self.count.get(tag, 0) + 1
+        self.references += [value or "" for name, value in attrs if name in ("src", "href", "xlink:href", "srcset", "action")]
+        assert not any(name.startswith("on") for name, _ in attrs), attrs
+        if tag not in EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        assert tag in EMPTY, tag
+        self.handle_starttag(tag, attrs)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def estimate() -> pc.Estimate:
+    """A block that strikes a plane."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=6, ny=5)
+    aluminium = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    plane = pc.Plane(point=(0, -2e-4), normal=(0, 1), friction=0.2)
+    problem = pc.Problem(mesh, material=aluminium, obstacles=[plane], initial_velocity=(400, -400))
+    return pc.estimate(pc.simulate(problem, end=5e-6, courant=0.9))
+
+
+def test_the_page_is_well_formed_and_stands_alone(estimate: pc.Estimate, tmp_path: Path) -> None:
+    estimate.report(tmp_path / "page.html")
+    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert page.open == []
+    assert page.count["figure"] == 6 and page.count["table"] >= 10
+    # The only reference is the picture of the pressure, which is inside the page.
+    assert [reference.split(",")[0] for reference in page.references] == ["data:image/png;base64"]
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_an_estimate_has_the_same_page_from_a_file(estimate: pc.Estimate, tmp_path: Path) -> None:
+    estimate.report(tmp_path / "now.html")
+    estimate.save(tmp_path / "e.vtkhdf")
+    pc.open(tmp_path / "e.vtkhdf").report(tmp_path / "later.html")  # type: ignore[union-attr]
+    now, later = ((tmp_path / name).read_text(encoding="utf-8") for name in ("now.html", "later.html"))
+    assert now == later
+    # Without its history an estimate has no pressure along the surface, and says so.
+    pickle.loads(pickle.dumps(estimate)).report(tmp_path / "unpickled.html")
+    page = (tmp_path / "unpickled.html").read_text(encoding="utf-8")
+    assert "The pressure along the surface is not drawn" in page and "is not drawn" not in now
+
+
+def test_pictures_are_those_of_the_command(tmp_path: Path) -> None:
+    case = tmp_path / "case.toml"
+    case.write_text((Path(__file__).parents[2] / "tests/bases/block.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    estimate = pc.run(case)
+    estimate.picture(tmp_path / "ours.svg")
+    estimate.picture(tmp_path / "ours.PNG")
+    names = ["theirs.svg", "theirs.png"]
+    for name in names:
+        arguments = [sys.executable, "-m", "percute", "run", "case.toml", "--quiet", "--picture", name]
+        subprocess.run(arguments, cwd=tmp_path, check=True, capture_output=True)
+    assert (tmp_path / "ours.svg").read_bytes() == (tmp_path / "theirs.svg").read_bytes()
+    assert (tmp_path / "ours.PNG").read_bytes() == (tmp_path / "theirs.png").read_bytes()
+    assert (tmp_path / "ours.PNG").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(("method", "name", "wrong"), [("report", "a.html", "a.txt"), ("picture", "a.png", "a.jpg")])
+def test_files_are_checked_first(estimate: pc.Estimate, tmp_path: Path, method: str, name: str, wrong: str) -> None:
+    write = getattr(estimate, method)
+    (tmp_path / name).write_text("old")
+    with pytest.raises(pc.ExistingFileError, match="overwrite=True"):
+        write(tmp_path / name)
+    assert (tmp_path / name).read_text() == "old"
+    write(tmp_path / name, overwrite=True)
+    assert (tmp_path / name).stat().st_size > 1000
+    with pytest.raises(pc.InputError, match="ends in"):
+        write(tmp_path / wrong)
+    with pytest.raises(pc.StorageError, match="folder"):
+        write(tmp_path / "none" / name)
+    estimate.save(tmp_path / "e.html")
+    with pytest.raises(pc.InputError, match="the estimate itself"):
+        getattr(pc.open(tmp_path / "e.html"), method)(tmp_path / "e.html", overwrite=True)
