@@ -14,6 +14,7 @@ from percute.pictures.canvas import FIELD, SIGNED, Floats, prefixed, pyplot
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
 OUTSHONE = 5.0
@@ -104,12 +105,17 @@ def draw_body(
         axes.add_collection(pyplot().matplotlib.collections.LineCollection(outline, colors="#6e6e78", linewidths=0.6))
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
-    smaller = shown.logarithmic and bool(np.any(values < shown.low))
-    # As high as the body, or below a slim one.
+    _colour_bar(axes, drawn, label, shown, shown.logarithmic and bool(np.any(values < shown.low)))
+
+
+def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, smaller: bool) -> None:
+    """Draw the scale of colours: as high as the body, or below a slim one. An arrow tells of smaller values."""
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
-    slim = height < SLIM * width
-    place: dict[str, Any] = {"ax": axes, "location": "bottom", "aspect": 40, "shrink": 0.8} if slim else {"cax": axes.inset_axes((1.03, 0.0, 0.04, 1.0))}
-    if shown.logarithmic:
+    if height < SLIM * width:
+        place: dict[str, Any] = {"ax": axes, "location": "bottom", "aspect": 40, "shrink": 0.8}
+    else:
+        place = {"cax": axes.inset_axes((1.03, 0.0, 0.04, 1.0))}
+    if scale.logarithmic:
         ticker = pyplot().matplotlib.ticker
         place |= {"ticks": ticker.LogLocator(subs=(1.0, 2.0, 5.0)), "format": ticker.FuncFormatter(lambda value, _: f"{value:.3g}")}
     bar = axes.figure.colorbar(drawn, label=label, extend="min" if smaller else "neither", **place)
