@@ -116,10 +116,16 @@ def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, sma
     else:
         place = {"cax": axes.inset_axes((1.03, 0.0, 0.04, 1.0))}
     if scale.logarithmic:
-        ticker = pyplot().matplotlib.ticker
-        place |= {"ticks": ticker.LogLocator(subs=(1.0, 2.0, 5.0)), "format": ticker.FuncFormatter(lambda value, _: f"{value:.3g}")}
+        place["ticks"], place["format"] = _marks(scale)
     bar = axes.figure.colorbar(drawn, label=label, extend="min" if smaller else "neither", **place)
     bar.minorticks_off()
+
+
+def _marks(scale: Scale) -> tuple[Any, Any]:
+    """Give the marks of a logarithmic scale, more of them on a short one, as plain numbers."""
+    ticker = pyplot().matplotlib.ticker
+    places = (1.0, 2.0, 3.0, 5.0, 7.0) if scale.high < 30.0 * scale.low else (1.0, 2.0, 5.0)
+    return ticker.LogLocator(subs=places), ticker.FuncFormatter(lambda value, _: f"{value:.3g}")
 
 
 def _size(points: Floats, cells: NDArray[Any]) -> float:
@@ -185,6 +191,11 @@ def draw_bar(
         room = 0.05 * (scale.high - scale.low)
         ends = (0.9 * scale.low, 1.1 * scale.high) if scale.logarithmic else (scale.low - room if scale.low < 0.0 else scale.low, scale.high + room)
         axes.set_ylim(*ends)
+        if scale.logarithmic:
+            locator, form = _marks(scale)
+            axes.yaxis.set_major_locator(locator)
+            axes.yaxis.set_major_formatter(form)
+            axes.minorticks_off()
     axes.set(xlabel=f"x ({prefix}m)", ylabel=label)
     axes.grid(alpha=0.3)
     length = float(np.ptp(x))
