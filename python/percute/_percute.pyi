@@ -25,6 +25,7 @@ __all__ = [
     "errors_against_history",
     "errors_against_simulation",
     "estimate",
+    "export",
     "is_estimate",
     "meaning",
     "open_history",
@@ -240,6 +241,16 @@ def run_case(
 ) -> tuple[HistoryData, EstimateData]: ...
 def present(estimate: EstimateData, page: bool, path: str | PathLike[str], overwrite: bool, name: str, history: HistoryData | None) -> None: ...
 def present_file(estimate: str | PathLike[str], page: bool, path: str | PathLike[str], overwrite: bool) -> None: ...
+def export(
+    history: HistoryData,
+    path: str | PathLike[str],
+    choice: tuple[Sequence[int] | None, int | None, Sequence[float] | None],
+    fields: Sequence[str] | None,
+    error: Sequence[float] | None,
+    inputs: Sequence[str | PathLike[str]],
+    overwrite: bool,
+    progress: _Tell,
+) -> list[Path]: ...
 def is_estimate(path: str | PathLike[str]) -> bool: ...
 def open_history(path: str | PathLike[str]) -> HistoryData: ...
 def errors_against_history(histories: Sequence[HistoryData], reference: HistoryData) -> list[_TrueError]: ...

@@ -101,6 +101,14 @@ def path(name: str, value: object) -> str:
     return file
 
 
+def vtkhdf(name: str, value: object) -> str:
+    """Give the name of a history or an estimate file."""
+    file = path(name, value)
+    if not file.lower().endswith(".vtkhdf"):
+        raise wrong(name, value, "a name that ends in .vtkhdf, by which ParaView knows the format; `History.export` writes .vtu")
+    return file
+
+
 def encodable(file: str) -> str:
     """Give the name of a file as it can be printed: on Linux it may be of any bytes."""
     return os.fsencode(file).decode(errors="replace")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, instance, numbers, text, whole, wrong
+from percute.checks import flag, instance, numbers, text, vtkhdf, whole, wrong
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
@@ -214,7 +214,7 @@ class Estimate(EstimateViews):
         InputError
             The estimate comes from a file; copy that file instead. Or ``path`` is the file of the history, which is never replaced.
         """
-        file, replace = file_name("path", path), flag("overwrite", overwrite)
+        file, replace = vtkhdf("path", path), flag("overwrite", overwrite)
         if isinstance(self._data, StoredEstimate):
             raise InputError(f"the estimate comes from the file {self._data.path!r}; copy that")
         history = self._history.path if self._history is not None else None

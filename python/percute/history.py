@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.balance import Balance
-from percute.checks import encodable, flag, instance, items, numbers, optional_number, warn
-from percute.checks import path as file_name
+from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn
 from percute.contact import Contact
 from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
 from percute.foreign import ForeignArrays
@@ -352,7 +351,7 @@ def simulate(
     """
     instance("problem", problem, Problem)
     times = _times(end, courant, step, steps)
-    file = None if store is None else file_name("store", store)
+    file = None if store is None else vtkhdf("store", store)
     replace = flag("overwrite", overwrite)
     warn(_percute.plausibility_warnings(problem._data, times, file is None))
     with shown(progress) as tell, history_of_the_exception(problem):

@@ -1,10 +1,13 @@
-"""Pictures and tables of histories, and pictures that estimates have too: methods that the classes inherit."""
+"""Pictures, tables and exports of histories, and pictures that estimates have too: methods that the classes inherit."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
+
+from numpy.typing import ArrayLike
 
 from percute.history_fields import HistoryFields
 from percute.immutable import Immutable
@@ -188,6 +191,59 @@ class HistoryViews(HistoryFields, Views):
         from percute.pictures import animation
 
         animation.animate(self, path, quantity, frames, rate, scale, overwrite, progress)
+
+    def export(  # type: ignore[misc]
+        self: History,
+        path: str | os.PathLike[str],
+        *,
+        steps: ArrayLike | None = None,
+        every: int | None = None,
+        times: ArrayLike | None = None,
+        fields: Iterable[str] | None = None,
+        estimate: Estimate | str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
+        progress: ProgressOption = None,
+    ) -> list[Path]:
+        """Write fields for ParaView, pyvista and other programs, like ``percute export``; see ``docs/export.md``.
+
+        Parameters
+        ----------
+        path : str or path
+            The ending says the format: ``.vtkhdf``, one file with all instants; ``.vtu`` or ``.pvd``, a file for each instant
+            and an index.
+        steps : int or (n,) ints, optional
+            Steps to write; negative ones count from the end. By default all.
+        every : int, optional
+            Instead of ``steps``: every k-th step, and the last.
+        times : float or (n,) floats, optional
+            Instead of ``steps``: the steps nearest to these times (s).
+        fields : list of str, optional
+            Of ``"displacement"`` (m, always written), ``"velocity"`` (m/s), ``"acceleration"`` (m/s²), ``"reaction"`` (N, at
+            all nodes), ``"stress"`` (Pa, 3 x 3), ``"von_mises"``, ``"pressure"`` (Pa), ``"error"`` (e_E of the whole run,
+            J^½, eq. [20]). By default displacement, velocity, reaction, stress and von Mises stress, and the error if
+            ``estimate`` is given.
+        estimate : Estimate, str or path, optional
+            The estimate of this history, or its file.
+        overwrite : bool, default: False
+            Whether files that exist already are replaced.
+        progress : bool or callable, optional
+            As for `simulate`.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files; the first is the one to open.
+
+        Raises
+        ------
+        InputError
+            An argument is wrong, or the estimate has another mesh.
+        ExistingFileError, StorageError
+            A file exists already or cannot be written.
+        """
+        from percute import exports
+
+        return exports.export(self, path, steps, every, times, fields, estimate, overwrite, progress)
 
     def to_pandas(self: History, over: Literal["time", "nodes", "elements"] = "time", *, step: int | None = -1) -> pandas.DataFrame:  # type: ignore[misc]
         """Make a table (extra ``pandas``).

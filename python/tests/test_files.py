@@ -156,10 +156,10 @@ CASE = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text() + "\n[o
         ('estimate = "one.vtkhdf"', "one.vtkhdf", pc.InputError, "[output] estimate one.vtkhdf is the file of `store` too"),
         ('estimate = "one.vtkhdf"', "./one.vtkhdf", pc.InputError, "is the file of `store` too"),
         ('history = "one.vtkhdf"\nestimate = "one.vtkhdf"', None, pc.InputError, "is the file of [output] history too"),
-        ('estimate = "case.toml"', None, pc.InputError, "[output] estimate case.toml is the case file itself"),
+        ('estimate = "case.toml"', None, pc.InputError, '[output], estimate: is "case.toml"; it must be a name that ends in .vtkhdf'),
         ("", "case.toml", pc.InputError, "`store` case.toml is the case file itself"),
         ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.StorageError, "[output] estimate: cannot write none/one.vtkhdf"),
-        ('estimate = "folder"', "two.vtkhdf", pc.StorageError, "it is not a regular file"),
+        ('estimate = "folder.vtkhdf"', "two.vtkhdf", pc.StorageError, "it is not a regular file"),
     ],
 )
 def test_outputs_of_a_case_that_cannot_be(
@@ -167,12 +167,12 @@ def test_outputs_of_a_case_that_cannot_be(
 ) -> None:
     """Before the simulation: a run may take hours."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.vtkhdf").mkdir()
     (tmp_path / "case.toml").write_text(CASE + outputs)
     heard: list[pc.Progress] = []
     with pytest.raises(error, match=re.escape(message)):
         pc.run("case.toml", store=store, overwrite=True, progress=heard.append)
-    assert heard == [] and sorted(each.name for each in tmp_path.iterdir()) == ["case.toml", "folder"]
+    assert heard == [] and sorted(each.name for each in tmp_path.iterdir()) == ["case.toml", "folder.vtkhdf"]
 
 
 @pytest.mark.parametrize("taken", ["history.vtkhdf", "error.vtkhdf"])

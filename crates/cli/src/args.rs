@@ -1,5 +1,9 @@
 //! The arguments of the command.
 
+mod export;
+
+pub use export::{ExportArguments, Times};
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, Sampling, UnknownName, UnknownSampling};
 use percute_workflow::case::Instants;
@@ -43,6 +47,8 @@ pub enum Command {
     Report(ReportArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file
     Info(InfoArguments),
+    /// Write fields of a history for ParaView and other programs: stress, velocity, reaction, error at chosen steps
+    Export(ExportArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
     /// Draw a picture of a case, a history or an estimate file (with the Python package): error, energies, contact, fields, animations
@@ -155,6 +161,13 @@ pub struct InfoArguments {
     /// Print one JSON document
     #[arg(long)]
     pub json: bool,
+    /// Write tables of a history or an estimate file: forces, energies and error over time in a file (.csv), or all tables
+    /// in a folder
+    #[arg(long, value_name = "FILE|FOLDER")]
+    pub csv: Option<PathBuf>,
+    /// Replace existing tables
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Arguments of `percute recover`.
@@ -205,6 +218,10 @@ pub struct PrintArguments {
     /// Write a page with verdict, figures and tables (.html)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// Write tables: forces, energies and error over time in a file (.csv), or these and tables of elements and contact nodes
+    /// in a folder
+    #[arg(long, value_name = "FILE|FOLDER")]
+    pub csv: Option<PathBuf>,
 }
 
 /// How the work is done; nothing of it changes the result.
@@ -251,11 +268,19 @@ fn instants(text: &str) -> Result<Instants, String> {
     if let Some(count) = whole(text, usize::MAX) {
         return Ok(Instants::Count(count));
     }
-    let time = |entry: &str| entry.trim().parse::<f64>().ok().filter(|t| t.is_finite() && *t >= 0.0);
-    let times: Option<Vec<f64>> = text.split(',').map(time).collect();
+    let times = numbers(text);
     let wrong = || "must be a whole number, 1 or more, or times in s, such as 0,1e-6,2.5e-6".to_string();
     // A lone 0 is a count that is too small.
     times.filter(|_| text.parse::<usize>().is_err()).map(Instants::Times).ok_or_else(wrong)
+}
+
+fn times(text: &str) -> Result<Times, String> {
+    numbers(text).map(Times).ok_or_else(|| "must be times in s, such as 0,1e-6,2.5e-6".to_string())
+}
+
+/// Times (s), separated by commas.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|entry| entry.trim().parse::<f64>().ok().filter(|t| t.is_finite() && *t >= 0.0)).collect()
 }
 
 fn whole(text: &str, most: usize) -> Option<usize> {

@@ -7,6 +7,7 @@
 mod create;
 mod error;
 pub mod estimate_file;
+pub mod export;
 pub mod gmsh;
 mod held;
 pub mod history;
@@ -20,7 +21,7 @@ mod write;
 
 pub use create::{Overwrite, write_bytes};
 pub use error::{FileCause, FileError};
-pub use kind::Kind;
+pub use kind::{Kind, is_vtkhdf_name};
 pub use library::hdf5_version;
 pub use read::is_hdf5;
 pub use read::kind;

@@ -10,10 +10,11 @@ use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::simplex::{Element, Simplex};
 
 /// Numbers and names of the elements in VTK, by dimension from 1.
-const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
+pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
 
 /// Nodal vectors with three components each, for ParaView.
-pub(crate) fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
+#[must_use]
+pub fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
     let mut flat = vec![0.0; 3 * values.len()];
     for (to, from) in flat.chunks_exact_mut(3).zip(values) {
         to[..D].copy_from_slice(from);

@@ -51,7 +51,7 @@ impl CaseData {
             outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
         ];
         let inputs = each_dimension!(&self.case, read => read.inputs(case.as_deref()));
-        let checked = outputs::check(&inputs, &chosen, overwrite);
+        let checked = outputs::check(&inputs, &chosen, overwrite).and_then(|()| outputs::check_endings(&chosen));
         checked.map_err(|error| errors::output(py, &error))?;
         let asked = PyDict::new(py);
         for (name, file) in ["history", "estimate"].into_iter().zip(chosen) {

@@ -9,6 +9,7 @@ mod element_fields;
 mod errors;
 mod estimate;
 mod exact;
+mod export;
 mod history;
 mod mesh;
 mod options;
@@ -38,6 +39,8 @@ mod _percute {
     use super::estimate::{EstimateData, estimate, meaning};
     #[pymodule_export]
     use super::exact::{ExactData, true_error_of_bar_impact};
+    #[pymodule_export]
+    use super::export::export;
     #[pymodule_export]
     use super::history::HistoryData;
     #[pymodule_export]

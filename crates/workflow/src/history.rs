@@ -5,7 +5,8 @@ use crate::failure::Failure;
 use crate::foreign::{self, Graded, Lacks, Origin};
 use crate::report::Subject;
 use crate::run::{self, Analysis};
-use percute_core::dynamics::critical_time_step;
+use percute_core::contact::{ContactRecorder, ContactResults};
+use percute_core::dynamics::{Balance, critical_time_step};
 use percute_core::map_dimension;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
@@ -87,6 +88,17 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         let Self { file, problem, name, .. } = self;
         let critical_step = critical_time_step(problem);
         Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()), checked: None }
+    }
+
+    /// Contact results, without those of all nodes at all instants, and energies and works at each step.
+    ///
+    /// # Errors
+    /// A step that cannot be read or does not fit.
+    pub fn results(&self) -> Result<(ContactResults<D>, Vec<Balance>), Failure> {
+        let source = self.file.source(&self.problem)?;
+        let unread = |cause| Failure::from_sink(cause, RunError::Source);
+        let contact = ContactRecorder::new(&self.problem, self.file.times()).replay(&source).map_err(unread)?;
+        Ok((contact, run::balance(&self.problem, &source).map_err(unread)?))
     }
 
     /// Analyses the steps that the file holds; a history of another program is completed before.

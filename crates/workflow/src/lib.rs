@@ -3,6 +3,8 @@
 //! Nothing here prints.
 
 pub mod case;
+pub mod choice;
+pub mod export;
 mod failure;
 pub mod foreign;
 pub mod history;
@@ -12,6 +14,7 @@ mod numbering;
 pub mod outputs;
 pub mod report;
 pub mod run;
+pub mod tables;
 pub mod writable;
 
 pub use failure::Failure;

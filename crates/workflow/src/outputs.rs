@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::writable;
+use percute_io::is_vtkhdf_name;
 use std::path::Path;
 
 /// A file to come.
@@ -21,6 +22,20 @@ pub fn chosen<'a>(
 ) -> Option<OutputFile<'a>> {
     let stated = stated.map(|file| OutputFile { what: key, file });
     given.map(|file| OutputFile { what: flag, file }).or(stated)
+}
+
+/// Makes sure that histories and estimate files have the ending by which ParaView knows them.
+///
+/// # Errors
+/// [`Failure::Argument`] for another ending.
+pub fn check_endings(outputs: &[Option<OutputFile<'_>>]) -> Result<(), Failure> {
+    match outputs.iter().flatten().find(|output| !is_vtkhdf_name(output.file)) {
+        None => Ok(()),
+        Some(OutputFile { what, file }) => Err(Failure::Argument(format!(
+            "{what} {}: the name must end in .vtkhdf, by which ParaView knows the format; `percute export` writes .vtu",
+            file.display()
+        ))),
+    }
 }
 
 /// Makes sure that all files can be made, that no two of them are one, and that none is an input; `inputs` say what

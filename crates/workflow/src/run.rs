@@ -194,6 +194,47 @@ impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send, const D: usize, const N: usi
     }
 }
 
+/// Hands chosen steps of a history, ascending, to `take`, in the numbers of the user. With `motion` they have v_n and a_n, by the
+/// scheme or as the history brings them.
+///
+/// # Errors
+/// A step that cannot be read or does not fit, or what `take` returns.
+pub fn chosen<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    steps: &[usize],
+    motion: bool,
+    take: &mut TakeStep<'_, D>,
+) -> Result<(), SinkError> {
+    let wanted = |step: usize| steps.binary_search(&step).is_ok();
+    if !motion {
+        return source.replay(&mut |step| if wanted(step.index) { take(step) } else { Ok(()) });
+    }
+    let ordered = Ordered::new(problem);
+    let mut sink = ChosenStates { ordered: &ordered, steps, take };
+    replay(ordered.problem(), &ordered.source(source), &mut sink).map_err(|cause| ordered.refused(cause))
+}
+
+/// Hands chosen states on with their motion.
+struct ChosenStates<'o, 'p, 't, 's, const D: usize, const N: usize> {
+    ordered: &'o Ordered<'p, D, N>,
+    steps: &'o [usize],
+    take: &'t mut TakeStep<'s, D>,
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for ChosenStates<'_, '_, '_, '_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let step = state.step();
+        if self.steps.binary_search(&step.index).is_err() {
+            return Ok(());
+        }
+        let displacement = self.ordered.nodal(step.displacement.to_vec());
+        let (velocity, acceleration) = (self.ordered.nodal(state.velocity()), self.ordered.nodal(state.acceleration()));
+        let (velocity, acceleration) = (Some(&velocity[..]), Some(&acceleration[..]));
+        (self.take)(&Step { displacement: &displacement, velocity, acceleration, ..*step })
+    }
+}
+
 /// The failure of the run of a case: a refused start is a mistake in the case, with its line.
 #[must_use]
 pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Failure) -> Failure {

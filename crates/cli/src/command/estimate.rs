@@ -14,17 +14,23 @@ use percute_workflow::history::{Stored, open};
 use percute_workflow::outputs::OutputFile;
 use percute_workflow::report::Subject;
 use percute_workflow::run::Analysis;
+use percute_workflow::tables::Destination;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     let output = arguments.output.as_deref().map(|file| OutputFile { what: "--output", file });
     check(&[("history", &arguments.history)], &[output], Some(&arguments.print), arguments.work.force)?;
-    each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, arguments, console))
+    let inputs = &[("history", arguments.history.as_path())];
+    let tables =
+        arguments.print.csv.as_deref().map(|path| Destination::check("--csv", path, inputs, arguments.work.force));
+    let tables = tables.transpose()?;
+    each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, tables, arguments, console))
 }
 
 fn estimate<const D: usize, const N: usize>(
     stored: &Stored<D, N>,
     output: Option<OutputFile<'_>>,
+    tables: Option<Destination>,
     arguments: &EstimateArguments,
     console: &mut Console<'_>,
 ) -> Result<u8, Failure> {
@@ -42,7 +48,7 @@ fn estimate<const D: usize, const N: usize>(
     watch.clear();
     let (case, seconds) = (stored.file.case().cloned(), start.elapsed().as_secs_f64());
     let subject = Subject { times: &times, checked: checked.as_ref(), ..stored.subject() };
-    give(&Finished { subject, options, case, results, seconds, told: Vec::new() }, print, output, work, console)
+    give(&Finished { subject, options, case, results, seconds, told: Vec::new(), tables }, print, output, work, console)
 }
 
 /// The options stored in the history, with those of the command line instead where there are any.

@@ -4,15 +4,20 @@ use super::{Console, case};
 use crate::args::InfoArguments;
 use crate::exit::DONE;
 use percute_core::each_dimension;
-use percute_io::{Kind, estimate_file, gmsh, kind};
+use percute_core::simplex::ByDimension;
+use percute_io::{Kind, Overwrite, estimate_file, gmsh, kind};
 use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::history::open;
 use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
 use percute_workflow::report::reported;
+use percute_workflow::tables::{Destination, Results};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    if let Some(path) = &arguments.csv {
+        tables(&arguments.file, path, arguments.force)?;
+    }
     let info = read(&arguments.file, console)?;
     console.print(&if arguments.json { info.to_json()? } else { info.summary() })?;
     Ok(DONE)
@@ -30,6 +35,38 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         Kind::History | Kind::OtherHdf5 => {}
     }
     Ok(each_dimension!(open(file)?, stored => of_history(&stored)))
+}
+
+/// Writes the tables of a history or an estimate file.
+fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
+    let place = Destination::check("--csv", path, &[("file to be described", file)], force)?;
+    let overwrite = Overwrite::allowed(force);
+    match kind(file)? {
+        Kind::History => each_dimension!(open(file)?, stored => {
+            let (contact, balance) = stored.results()?;
+            let mesh = stored.problem.mesh();
+            place.write(&Results { mesh, contact: Some(&contact), balance: &balance, error: &[], by_element: &[] }, overwrite)
+        }),
+        Kind::Estimate => {
+            let estimate = estimate_file::open(file)?;
+            let (error, by_element) = (&estimate.over_time[..], &estimate.by_element[..]);
+            match (&estimate.mesh, estimate_file::contact(file)?) {
+                (ByDimension::Bar(mesh), Some(ByDimension::Bar(contact))) => {
+                    place.write(&Results { mesh, contact: Some(&contact), balance: &[], error, by_element }, overwrite)
+                }
+                (ByDimension::Plane(mesh), Some(ByDimension::Plane(contact))) => {
+                    place.write(&Results { mesh, contact: Some(&contact), balance: &[], error, by_element }, overwrite)
+                }
+                (mesh, _) => each_dimension!(mesh, mesh => {
+                    place.write(&Results { mesh, contact: None, balance: &[], error, by_element }, overwrite)
+                }),
+            }
+        }
+        Kind::Other | Kind::OtherHdf5 => {
+            let told = "--csv applies to a history or an estimate file; `percute run` makes one of a case";
+            Err(Failure::Argument(format!("{}: {told}", file.display())))
+        }
+    }
 }
 
 /// A mesh as it is, in the unit of the file.

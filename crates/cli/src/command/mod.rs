@@ -1,6 +1,7 @@
 //! From arguments to exit code.
 
 mod estimate;
+mod export;
 mod info;
 mod new;
 mod outputs;
@@ -54,6 +55,7 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Report(arguments) => report::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
+            Command::Export(arguments) => export::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
             // The command of the Python package does these.
             Command::Plot(_) => Ok(console.refuse(PLOT_NEEDS_PYTHON)),

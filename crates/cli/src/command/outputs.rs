@@ -21,6 +21,7 @@ pub(super) fn check(
 ) -> Result<(), Failure> {
     let (picture, page) = (print.and_then(picture), print.and_then(page));
     outputs::check(inputs, &[outputs, &[picture, page]].concat(), force)?;
+    outputs::check_endings(outputs)?;
     picture.as_ref().map_or(Ok(()), |picture| file::picture(picture).map(drop))?;
     page.as_ref().map_or(Ok(()), file::page)
 }

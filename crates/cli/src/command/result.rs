@@ -14,6 +14,7 @@ use percute_workflow::case::statement;
 use percute_workflow::outputs::OutputFile;
 use percute_workflow::report::{Report, Subject, summary};
 use percute_workflow::run::Results;
+use percute_workflow::tables::{self, Destination};
 
 /// An estimated run or history, ready for its report.
 pub(super) struct Finished<'a, const D: usize, const N: usize> {
@@ -25,6 +26,8 @@ pub(super) struct Finished<'a, const D: usize, const N: usize> {
     pub(super) seconds: f64,
     /// Names of the warnings that were printed before the work.
     pub(super) told: Vec<&'static str>,
+    /// The place of the tables, if they are wanted.
+    pub(super) tables: Option<Destination>,
 }
 
 /// Makes the report; prints the warnings and the result, draws the picture and stores the estimate file.
@@ -53,6 +56,12 @@ pub(super) fn give<const D: usize, const N: usize>(
             surface: Surface::new(contact),
         };
         present(&shown, print, work, console)?;
+    }
+    if let Some(tables) = &finished.tables {
+        let (mesh, contact) = (subject.problem.mesh(), Some(contact));
+        let (balance, error) = (&simulation.balance_over_time[..], &estimate.over_time[..]);
+        let results = tables::Results { mesh, contact, balance, error, by_element: &estimate.by_element };
+        tables.write(&results, Overwrite::allowed(work.force))?;
     }
     if let Some(output) = stored {
         store(finished, &json, output, work.force)?;

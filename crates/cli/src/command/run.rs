@@ -13,6 +13,7 @@ use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::history::stored_case;
 use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::run::{Analysis, Storage, located, run};
+use percute_workflow::tables::Destination;
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -27,6 +28,9 @@ fn run_case<const D: usize, const N: usize>(
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
     check(&case.inputs(Some(&arguments.case)), &[history, stored], Some(print), work.force)?;
+    let tables = print.csv.as_deref();
+    let tables = tables.map(|path| Destination::check("--csv", path, &case.inputs(Some(&arguments.case)), work.force));
+    let tables = tables.transpose()?;
     let options = Options { threads: work.threads, window: work.window, ..case.options };
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
@@ -52,7 +56,7 @@ fn run_case<const D: usize, const N: usize>(
     };
     watch.clear();
     let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
-    give(&Finished { subject, options, case, results, seconds, told }, print, stored, work, console)
+    give(&Finished { subject, options, case, results, seconds, told, tables }, print, stored, work, console)
 }
 
 /// The files of the history and of the estimate, as far as they are wanted.

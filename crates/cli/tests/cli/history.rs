@@ -131,14 +131,14 @@ fn files(bench: &Bench) -> Vec<(std::ffi::OsString, Vec<u8>)> {
 fn outputs_are_checked_before_any_work() {
     let bench = Bench::new(BLOCK);
     done(&bench, &["simulate", "case.toml", "--history", "there.vtkhdf"]);
-    std::fs::write(bench.path("text"), "mine").unwrap();
+    std::fs::write(bench.path("text.vtkhdf"), "mine").unwrap();
     std::fs::create_dir(bench.path("folder")).unwrap();
     let before = files(&bench);
     let wrong: [(&[&str], i32, &str); 14] = [
         (&["simulate", "case.toml", "--history", "there.vtkhdf"], 2, "--history there.vtkhdf: the file exists already"),
-        (&["run", "case.toml", "--history", "text"], 2, "--force to replace it"),
-        (&["run", "case.toml", "--estimate", "text"], 2, "--estimate text: the file exists already"),
-        (&["estimate", "there.vtkhdf", "--output", "text"], 2, "--output text: the file exists already"),
+        (&["run", "case.toml", "--history", "text.vtkhdf"], 2, "--force to replace it"),
+        (&["run", "case.toml", "--estimate", "text.vtkhdf"], 2, "--estimate text.vtkhdf: the file exists already"),
+        (&["estimate", "there.vtkhdf", "--output", "text.vtkhdf"], 2, "--output text.vtkhdf: the file exists already"),
         (&["simulate", "case.toml", "--history", "case.toml", "--force"], 2, "is the case file itself"),
         (&["run", "case.toml", "--history", "./case.toml", "--force"], 2, "is the case file itself"),
         (&["estimate", "there.vtkhdf", "--output", "./there.vtkhdf", "--force"], 2, "is the history itself"),
@@ -152,7 +152,7 @@ fn outputs_are_checked_before_any_work() {
         (&["run", "case.toml", "--history", "none/a"], 1, "--history: cannot write none/a"),
         (&["run", "case.toml", "--estimate", "none/a"], 1, "--estimate: cannot write none/a"),
         (&["simulate", "case.toml", "--history", "folder", "--force"], 1, "not a regular file"),
-        (&["run", "case.toml", "--history", "a", "--picture", "a.jpg"], 2, "ends in .svg or .png"),
+        (&["run", "case.toml", "--history", "a.vtkhdf", "--picture", "a.jpg"], 2, "ends in .svg or .png"),
     ];
     for (arguments, code, phrase) in wrong {
         let output = bench.percute(arguments);
@@ -162,9 +162,9 @@ fn outputs_are_checked_before_any_work() {
     }
     assert!(files(&bench) == before, "nothing is made or changed");
     done(&bench, &["simulate", "case.toml", "--history", "there.vtkhdf", "--force"]);
-    done(&bench, &["run", "case.toml", "--history", "text", "--force"]);
+    done(&bench, &["run", "case.toml", "--history", "text.vtkhdf", "--force"]);
     assert_eq!(
-        result(&done(&bench, &["estimate", "text", "--json"])),
+        result(&done(&bench, &["estimate", "text.vtkhdf", "--json"])),
         result(&done(&bench, &["estimate", "there.vtkhdf", "--json"]))
     );
 }
@@ -294,10 +294,10 @@ fn info(bench: &Bench, file: &str) -> Value {
 
 #[test]
 fn estimate_files_hold_the_instants_asked_for_and_the_report() {
-    let bench = Bench::new(&(BLOCK.to_string() + "[output]\nestimate = \"case.est\"\ninstants = 3\n"));
+    let bench = Bench::new(&(BLOCK.to_string() + "[output]\nestimate = \"case-error.vtkhdf\"\ninstants = 3\n"));
     let report: Value =
         serde_json::from_str(&done(&bench, &["run", "case.toml", "--json", "--history", "h.vtkhdf"])).unwrap();
-    let found = info(&bench, "case.est");
+    let found = info(&bench, "case-error.vtkhdf");
     assert_eq!(
         (&found["kind"], &found["fields"], &found["case"]),
         (&"estimate".into(), &false.into(), &"case.toml".into())
@@ -306,19 +306,20 @@ fn estimate_files_hold_the_instants_asked_for_and_the_report() {
     let held = |file: &str| {
         info(&bench, file)["instants"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect::<Vec<_>>()
     };
-    let (all, three) = (report["balance_over_time"]["time"].as_array().unwrap(), held("case.est"));
+    let (all, three) = (report["balance_over_time"]["time"].as_array().unwrap(), held("case-error.vtkhdf"));
     let end = all.last().unwrap().as_f64().unwrap();
     assert!(three.len() == 3 && three[0] == 0.0 && three[2] == end, "{three:?}");
-    done(&bench, &["estimate", "h.vtkhdf", "--output", "times", "--instants", "1e-6,5e-6", "--fields"]);
-    let times = held("times");
-    assert!(times.len() == 2 && times[1] == end && info(&bench, "times")["fields"] == true, "{times:?}");
+    done(&bench, &["estimate", "h.vtkhdf", "--output", "times.vtkhdf", "--instants", "1e-6,5e-6", "--fields"]);
+    let times = held("times.vtkhdf");
+    assert!(times.len() == 2 && times[1] == end && info(&bench, "times.vtkhdf")["fields"] == true, "{times:?}");
     // No other step is nearer.
     let distance = |t: f64| (t - 1e-6).abs();
     assert!(all.iter().all(|t| distance(t.as_f64().unwrap()) >= distance(times[0])), "{times:?}");
-    done(&bench, &["estimate", "h.vtkhdf", "--output", "many"]);
-    assert!(held("many").len() == all.len().min(50));
-    let summary = done(&bench, &["info", "times"]);
-    for word in ["estimate  times, ", "written   percute", "2 instants", "with the admissible fields", "error     sup"]
+    done(&bench, &["estimate", "h.vtkhdf", "--output", "many.vtkhdf"]);
+    assert!(held("many.vtkhdf").len() == all.len().min(50));
+    let summary = done(&bench, &["info", "times.vtkhdf"]);
+    for word in
+        ["estimate  times.vtkhdf, ", "written   percute", "2 instants", "with the admissible fields", "error     sup"]
     {
         assert!(summary.contains(word), "no `{word}` in {summary}");
     }
@@ -332,9 +333,12 @@ fn estimate_files_hold_the_instants_asked_for_and_the_report() {
 fn the_estimate_file_of_a_history_is_that_of_its_run() {
     for case in EXAMPLES {
         let bench = Bench::new(case);
-        done(&bench, &["run", "case.toml", "--history", "h.vtkhdf", "--estimate", "beside", "--fields"]);
-        done(&bench, &["estimate", "h.vtkhdf", "--output", "later", "--fields", "--threads", "2", "--window", "7"]);
-        let [beside, later] = ["beside", "later"].map(|file| info(&bench, file));
+        done(&bench, &["run", "case.toml", "--history", "h.vtkhdf", "--estimate", "beside.vtkhdf", "--fields"]);
+        done(
+            &bench,
+            &["estimate", "h.vtkhdf", "--output", "later.vtkhdf", "--fields", "--threads", "2", "--window", "7"],
+        );
+        let [beside, later] = ["beside.vtkhdf", "later.vtkhdf"].map(|file| info(&bench, file));
         for key in ["case", "dimension", "nodes", "elements", "instants", "fields"] {
             assert_eq!(beside[key], later[key]);
         }

@@ -290,7 +290,8 @@ fn spoilt(line: &str) -> Vec<String> {
 #[test]
 fn whatever_is_written_there_is_no_panic() {
     let (mut read, mut refused) = (0, 0);
-    let output = BAR.to_string() + "[output]\nhistory = \"a\"\nestimate = \"b\"\ninstants = [0.0]\nfields = true\n";
+    let output = BAR.to_string()
+        + "[output]\nhistory = \"a.vtkhdf\"\nestimate = \"b.vtkhdf\"\ninstants = [0.0]\nfields = true\n";
     for case in [BLOCK, &output, ARRAYS] {
         let lines: Vec<&str> = case.lines().collect();
         for (at, line) in lines.iter().enumerate() {

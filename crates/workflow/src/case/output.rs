@@ -2,13 +2,17 @@
 
 use super::source::CaseError;
 use super::table::Table;
-use crate::message::trimmed;
+use crate::choice::{late, nearest, too_late};
 use percute_core::time::TimeGrid;
 use percute_estimator::Request;
+use percute_io::is_vtkhdf_name;
 use std::path::PathBuf;
 
 /// So many instants an estimate file holds unless told otherwise: enough to watch it, and small.
 const INSTANTS: usize = 50;
+
+/// The ending of histories and estimate files.
+const VTKHDF: &str = "a name that ends in .vtkhdf, by which ParaView knows the format (`percute export` writes .vtu)";
 
 /// The files that a run makes. Paths are relative to the working directory, as those of the command
 /// line are.
@@ -59,17 +63,9 @@ impl Instants {
     #[must_use]
     pub fn after(&self, end: f64) -> Option<String> {
         let Self::Times(times) = self else { return None };
-        let time = times.iter().find(|&&time| late(time, end))?;
-        Some(format!("is {time} s, but the run ends at {} s; give instants before that, in seconds", trimmed(end, 5)))
+        let time = *times.iter().find(|&&time| late(time, end))?;
+        Some(too_late(time, end))
     }
-}
-
-/// The sampled step nearest to an instant, the earlier of two.
-fn nearest(instants: &[f64], sampled: &[usize], t: f64) -> usize {
-    let after = sampled.partition_point(|&n| instants[n] < t).min(sampled.len() - 1);
-    let before = after.saturating_sub(1);
-    let distance = |i: usize| (instants[sampled[i]] - t).abs();
-    sampled[if distance(before) <= distance(after) { before } else { after }]
 }
 
 /// Reads the table; everything may be left out.
@@ -82,6 +78,9 @@ pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
             let name = value.text("the name of a file")?;
             if name.is_empty() {
                 return Err(value.must_be("the name of a file, such as \"block.vtkhdf\""));
+            }
+            if !is_vtkhdf_name(name.as_ref()) {
+                return Err(value.must_be(VTKHDF));
             }
             *slot = Some(PathBuf::from(name));
         }
@@ -111,11 +110,6 @@ pub(super) fn check(root: &Table<'_>, output: &Output, end: f64) -> Result<(), C
     };
     let entry = value.list("")?.swap_remove(at);
     Err(entry.error(output.instants.after(end).unwrap_or_default()))
-}
-
-/// Whether an instant comes after the end (s), beyond the digits that a printed end lacks.
-fn late(time: f64, end: f64) -> bool {
-    time > end * (1.0 + 1e-3)
 }
 
 #[cfg(test)]

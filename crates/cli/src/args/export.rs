@@ -1,0 +1,41 @@
+//! The arguments of `percute export`.
+
+use super::{steps, times};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `percute export`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ExportArguments {
+    /// The history (.vtkhdf)
+    pub history: PathBuf,
+    /// The file to write: .vtkhdf (all instants in one file), .vtu or .pvd (a file for each instant, and an index)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Steps to write, counted from 0 and separated by commas [default: all]
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', conflicts_with_all = ["every", "times"])]
+    pub steps: Option<Vec<usize>>,
+    /// Write every k-th step, and the last
+    #[arg(long, value_name = "K", value_parser = steps, conflicts_with = "times")]
+    pub every: Option<usize>,
+    /// Write the steps nearest to these times in s, separated by commas
+    #[arg(long, value_name = "TIMES", value_parser = times)]
+    pub times: Option<Times>,
+    /// Fields, separated by commas, of displacement, velocity, acceleration, reaction, stress, von_mises, pressure, error
+    /// [default: displacement, velocity, reaction, stress, von_mises, and error with --estimate]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub fields: Option<Vec<String>>,
+    /// An estimate file of this history: adds the error of each element
+    #[arg(long, value_name = "FILE")]
+    pub estimate: Option<PathBuf>,
+    /// Replace existing files
+    #[arg(long)]
+    pub force: bool,
+    /// No progress on standard error
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Times (s) of one argument.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Times(pub Vec<f64>);

@@ -1,0 +1,106 @@
+//! Fields at chosen instants in files for ParaView: one VTKHDF file, or a VTU file for each instant with an index (PVD).
+
+mod base64;
+mod series;
+mod vtkhdf;
+mod vtu;
+
+pub use crate::mesh::in_space;
+pub use series::{Format, UnknownFormat};
+
+use crate::create::Overwrite;
+use crate::error::FileError;
+use percute_core::mesh::Mesh;
+use series::Series;
+use std::path::{Path, PathBuf};
+use vtkhdf::Single;
+
+/// The place of the rows of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// One row for each node.
+    Nodes,
+    /// One row for each element.
+    Elements,
+}
+
+/// A field of an export.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ExportField {
+    /// Its name in the file.
+    pub name: &'static str,
+    /// Its unit; in VTKHDF an attribute.
+    pub unit: &'static str,
+    /// Numbers in a row: 1, 3 (a vector) or 9 (a tensor).
+    pub components: usize,
+    /// Its place.
+    pub place: Place,
+}
+
+/// What an export holds: fields over instants, each a step of the run and its time (s).
+#[derive(Clone, Copy, Debug)]
+pub struct Contents<'a, const D: usize, const N: usize> {
+    /// The mesh.
+    pub mesh: &'a Mesh<D, N>,
+    /// The fields.
+    pub fields: &'a [ExportField],
+    /// Steps and times (s), ascending.
+    pub instants: &'a [(usize, f64)],
+}
+
+impl<const D: usize, const N: usize> Contents<'_, D, N> {
+    fn rows(&self, place: Place) -> usize {
+        match place {
+            Place::Nodes => self.mesh.node_count(),
+            Place::Elements => self.mesh.element_count(),
+        }
+    }
+}
+
+/// Writes an export, instant after instant. Without [`Writer::finish`] no file remains.
+pub struct Writer<'a, const D: usize, const N: usize>(Kind<'a, D, N>);
+
+enum Kind<'a, const D: usize, const N: usize> {
+    Single(Single<'a, D, N>),
+    Series(Series<'a, D, N>),
+}
+
+impl<'a, const D: usize, const N: usize> Writer<'a, D, N> {
+    /// Begins an export; the ending of the name says its format.
+    ///
+    /// # Errors
+    /// An existing file, a folder that is missing or not writable, a disk without enough space.
+    pub fn new(
+        path: &Path,
+        format: Format,
+        overwrite: Overwrite,
+        contents: Contents<'a, D, N>,
+    ) -> Result<Self, FileError> {
+        Ok(Self(match format {
+            Format::Vtkhdf => Kind::Single(Single::new(path, overwrite, contents)?),
+            Format::Vtu | Format::Pvd => Kind::Series(Series::new(path, format, overwrite, contents)),
+        }))
+    }
+
+    /// Writes the next instant: the rows of each field.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn push(&mut self, values: &[Vec<f64>]) -> Result<(), FileError> {
+        match &mut self.0 {
+            Kind::Single(single) => single.push(values),
+            Kind::Series(series) => series.push(values),
+        }
+    }
+
+    /// Completes the export and returns its files, first the one to open.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(self) -> Result<Vec<PathBuf>, FileError> {
+        match self.0 {
+            Kind::Single(single) => single.finish(),
+            Kind::Series(series) => series.finish(),
+        }
+    }
+}

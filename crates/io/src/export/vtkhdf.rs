@@ -1,0 +1,90 @@
+//! All instants in one VTKHDF file.
+
+use super::{Contents, Place};
+use crate::create::{Overwrite, Unnamed};
+use crate::error::{FileCause, FileError};
+use crate::library::refused;
+use crate::mesh::write_grid;
+use crate::steps::{give_steps, note_steps, write_steps};
+use crate::write::{Texts, group, offset, room, unit};
+use hdf5::Group;
+use std::os::unix::fs::FileExt;
+use std::path::{Path, PathBuf};
+
+/// Overhead of the library beside the arrays (bytes), with a margin.
+const LIBRARY: u64 = 24_000;
+
+/// An export whose file has no name yet.
+pub(super) struct Single<'a, const D: usize, const N: usize> {
+    contents: Contents<'a, D, N>,
+    path: PathBuf,
+    unnamed: Unnamed,
+    /// The first byte of each field.
+    places: Vec<u64>,
+    written: usize,
+}
+
+impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
+    pub(super) fn new(path: &Path, overwrite: Overwrite, contents: Contents<'a, D, N>) -> Result<Self, FileError> {
+        let fill = |file: &hdf5::File, _: &mut Texts| fill(file, &contents);
+        let (unnamed, places) =
+            Unnamed::new(path, overwrite, bytes(&contents), fill).map_err(|cause| cause.at(path))?;
+        Ok(Self { contents, path: path.to_path_buf(), unnamed, places, written: 0 })
+    }
+
+    pub(super) fn push(&mut self, values: &[Vec<f64>]) -> Result<(), FileError> {
+        for ((field, place), values) in self.contents.fields.iter().zip(&self.places).zip(values) {
+            let row = (8 * field.components * self.contents.rows(field.place)) as u64;
+            let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_ne_bytes()).collect();
+            let written = self.unnamed.file().write_all_at(&bytes, place + self.written as u64 * row);
+            written.map_err(|source| FileCause::Create { source }.at(&self.path))?;
+        }
+        self.written += 1;
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> Result<Vec<PathBuf>, FileError> {
+        let Self { path, unnamed, .. } = self;
+        let synced = unnamed.file().sync_all().map_err(|source| FileCause::Create { source });
+        synced.and_then(|()| unnamed.put().map(drop)).map_err(|cause| cause.at(&path))?;
+        Ok(vec![path])
+    }
+}
+
+/// Size of the file.
+fn bytes<const D: usize, const N: usize>(contents: &Contents<'_, D, N>) -> u64 {
+    let (nodes, cells) = (contents.rows(Place::Nodes), contents.rows(Place::Elements));
+    let grid = 24 * nodes + 8 * N * cells + 8 * (cells + 1) + cells;
+    let fields: usize = contents.fields.iter().map(|field| 8 * field.components * contents.rows(field.place) + 8).sum();
+    (grid + contents.instants.len() * (fields + 56)) as u64 + LIBRARY
+}
+
+/// Creates the grid, the instants and room for the fields; returns the place of each field.
+fn fill<const D: usize, const N: usize>(
+    file: &hdf5::File,
+    contents: &Contents<'_, D, N>,
+) -> Result<Vec<u64>, FileCause> {
+    let vtk = write_grid(file, contents.mesh)?;
+    let of = |place: Place| contents.fields.iter().filter(move |field| field.place == place);
+    let mut groups: [Option<Group>; 2] = [None, None];
+    for (to, (place, name)) in groups.iter_mut().zip([(Place::Nodes, "PointData"), (Place::Elements, "CellData")]) {
+        if of(place).next().is_some() {
+            *to = Some(group(&vtk, name)?);
+        }
+    }
+    let mut places = Vec::new();
+    for field in contents.fields {
+        let [points, cells] = &groups;
+        let Some(to) = (if field.place == Place::Nodes { points } else { cells }) else { continue };
+        let rows = contents.rows(field.place) * contents.instants.len();
+        let shape = if field.components == 1 { vec![rows] } else { vec![rows, field.components] };
+        let set = room::<f64>(to, field.name, &shape)?;
+        unit(&set, field.unit)?;
+        places.push(offset(&set)?);
+    }
+    let starts = |place: Place| of(place).map(|field| (field.name, contents.rows(place))).collect::<Vec<_>>();
+    let times: Vec<f64> = contents.instants.iter().map(|(_, time)| *time).collect();
+    write_steps(&vtk, &times, &starts(Place::Nodes), &starts(Place::Elements))?;
+    give_steps(&vtk, &times).and_then(|()| note_steps(&vtk, times.len())).map_err(|error| refused(&error))?;
+    Ok(places)
+}

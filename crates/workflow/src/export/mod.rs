@@ -1,0 +1,187 @@
+//! Exports: fields of chosen steps of a history for ParaView and other programs.
+
+mod quantity;
+
+use crate::choice::StepChoice;
+use crate::failure::Failure;
+use crate::outputs::{self, OutputFile};
+use crate::run;
+use percute_core::history::{SinkError, Step, StepSource};
+use percute_core::observer::{Observer, Progress};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_io::export::{Contents, Format, Writer};
+use percute_io::{FileError, Overwrite};
+use quantity::{Rows, quantities};
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Names of the options or arguments of a request, for messages.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs)]
+pub struct Names {
+    pub path: &'static str,
+    pub instants: &'static str,
+    pub fields: &'static str,
+    pub estimate: &'static str,
+}
+
+/// A request for an export.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// Its names.
+    pub names: Names,
+    /// Its steps.
+    pub steps: StepChoice,
+    /// Names of its fields; by default displacement, velocity, reaction, stress and von Mises stress, and the error if there
+    /// is an estimate.
+    pub fields: Option<Vec<String>>,
+    /// e_E of each element (J^½), eq. \[20\], of an estimate.
+    pub error: Option<Vec<f64>>,
+}
+
+/// An export that can be written.
+pub struct Export<'a, const D: usize, const N: usize> {
+    problem: &'a Problem<D, N>,
+    source: &'a dyn StepSource<D>,
+    path: &'a Path,
+    format: Format,
+    rows: Rows<'a, D, N>,
+    instants: Vec<(usize, f64)>,
+}
+
+impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
+    /// Checks a request.
+    ///
+    /// # Errors
+    /// A name without a known ending, a step or time after the last, an unknown field, an estimate of another mesh.
+    pub fn new(
+        problem: &'a Problem<D, N>,
+        source: &'a dyn StepSource<D>,
+        path: &'a Path,
+        request: &Request,
+    ) -> Result<Self, Failure> {
+        let wrong = |told: String| Failure::Argument(told);
+        let format =
+            Format::of(path).map_err(|error| wrong(format!("{} {}: {error}", request.names.path, path.display())))?;
+        let held = &source.times().instants()[..source.count()];
+        if held.is_empty() {
+            return Err(wrong("the history holds no step yet".to_string()));
+        }
+        let steps = request.steps.of(held).map_err(|told| wrong(format!("{}: {told}", request.names.instants)))?;
+        if steps.is_empty() {
+            return Err(wrong(format!("{}: no step is chosen; name at least one", request.names.instants)));
+        }
+        let quantities = quantities(request)?;
+        let error = request.error.clone().unwrap_or_default();
+        let (given, needed) = (error.len(), problem.mesh().element_count());
+        if request.error.is_some() && given != needed {
+            let told = format!(
+                "the estimate has {given} elements, but the history has {needed}; take the estimate of this history"
+            );
+            return Err(wrong(told));
+        }
+        let instants = steps.into_iter().map(|step| (step, held[step])).collect();
+        Ok(Self { problem, source, path, format, rows: Rows { problem, quantities, error }, instants })
+    }
+
+    /// The files, first the one to open.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let steps: Vec<usize> = self.instants.iter().map(|(step, _)| *step).collect();
+        self.format.files(self.path, &steps)
+    }
+
+    /// Number of instants.
+    #[must_use]
+    pub fn instants(&self) -> usize {
+        self.instants.len()
+    }
+
+    /// Names of the fields.
+    #[must_use]
+    pub fn fields(&self) -> Vec<&'static str> {
+        self.rows.fields().iter().map(|field| field.name).collect()
+    }
+
+    /// Makes sure that all files can be made, and that none is an input; `what` names the option or argument.
+    ///
+    /// # Errors
+    /// As [`outputs::check`].
+    pub fn check(&self, what: &'static str, inputs: &[(&str, &Path)], force: bool) -> Result<(), Failure> {
+        let files = self.files();
+        outputs::check(inputs, &[files.first().map(|file| OutputFile { what, file })], force)?;
+        match files.into_iter().find(|file| !force && file.exists()) {
+            Some(file) => Err(Failure::Exists { what, file }),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the files and returns their names; none if the observer breaks, and no file remains then.
+    ///
+    /// # Errors
+    /// A step that cannot be read or does not fit, a file that cannot be written.
+    pub fn write(&self, overwrite: Overwrite, observer: &mut dyn Observer) -> Result<Option<Vec<PathBuf>>, Failure> {
+        let (fields, rows) = (self.rows.fields(), &self.rows);
+        let contents = Contents { mesh: self.problem.mesh(), fields: &fields, instants: &self.instants };
+        let mut writer = Writer::new(self.path, self.format, overwrite, contents)?;
+        let steps: Vec<usize> = self.instants.iter().map(|(step, _)| *step).collect();
+        let last = steps.last().copied().unwrap_or(0);
+        let source = Watched { source: self.source, observer: RefCell::new(observer), last };
+        let mut take = |step: &Step<'_, D>| Ok(writer.push(&rows.at(step))?);
+        match run::chosen(self.problem, &source, &steps, rows.need_motion(), &mut take) {
+            Ok(()) => {}
+            Err(cause) if cause.is::<Done>() => {}
+            Err(cause) if cause.is::<Stopped>() => return Ok(None),
+            Err(cause) => return Err(unwritten(cause)),
+        }
+        Ok(Some(writer.finish()?))
+    }
+}
+
+/// The observer broke.
+#[derive(Debug, Error)]
+#[error("stopped")]
+struct Stopped;
+
+/// No later step is needed.
+#[derive(Debug, Error)]
+#[error("done")]
+struct Done;
+
+/// The steps of a history up to the last one that is needed, until an observer breaks.
+struct Watched<'a, const D: usize> {
+    source: &'a dyn StepSource<D>,
+    observer: RefCell<&'a mut dyn Observer>,
+    last: usize,
+}
+
+impl<const D: usize> StepSource<D> for Watched<'_, D> {
+    fn times(&self) -> &TimeGrid {
+        self.source.times()
+    }
+
+    fn count(&self) -> usize {
+        self.source.count()
+    }
+
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        self.source.replay(&mut |step| {
+            if step.index > self.last {
+                return Err(Done.into());
+            }
+            take(step)?;
+            let progress = Progress { stage: "exporting", done: step.index, total: self.last };
+            if self.observer.borrow_mut().observe(progress).is_break() { Err(Stopped.into()) } else { Ok(()) }
+        })
+    }
+}
+
+/// The failure of a step or of a file.
+fn unwritten(cause: SinkError) -> Failure {
+    match cause.downcast::<FileError>() {
+        Ok(error) => Failure::File(*error),
+        Err(cause) => Failure::from_sink(cause, percute_estimator::RunError::Source),
+    }
+}

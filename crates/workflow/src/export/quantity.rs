@@ -1,0 +1,138 @@
+//! The quantities of an export.
+
+use super::Request;
+use crate::failure::Failure;
+use crate::message::hint;
+use percute_core::element_state::ElementState;
+use percute_core::history::Step;
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+use percute_io::export::{ExportField, Place, in_space};
+
+/// A quantity of an export, beside the displacement, which each export has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Displacement,
+    Velocity,
+    Acceleration,
+    Reaction,
+    Stress,
+    VonMises,
+    Pressure,
+    Error,
+}
+
+impl Quantity {
+    /// In the order of a file.
+    const ALL: [Self; 8] = [
+        Self::Displacement,
+        Self::Velocity,
+        Self::Acceleration,
+        Self::Reaction,
+        Self::Stress,
+        Self::VonMises,
+        Self::Pressure,
+        Self::Error,
+    ];
+
+    fn field(self) -> ExportField {
+        let (name, unit, components, place) = match self {
+            Self::Displacement => ("displacement", "m", 3, Place::Nodes),
+            Self::Velocity => ("velocity", "m/s", 3, Place::Nodes),
+            Self::Acceleration => ("acceleration", "m/s2", 3, Place::Nodes),
+            Self::Reaction => ("reaction", "N", 3, Place::Nodes),
+            Self::Stress => ("stress", "Pa", 9, Place::Elements),
+            Self::VonMises => ("von_mises", "Pa", 1, Place::Elements),
+            Self::Pressure => ("pressure", "Pa", 1, Place::Elements),
+            Self::Error => ("error", "J^(1/2)", 1, Place::Elements),
+        };
+        ExportField { name, unit, components, place }
+    }
+}
+
+/// The rows of the fields of an export.
+pub(super) struct Rows<'a, const D: usize, const N: usize> {
+    pub(super) problem: &'a Problem<D, N>,
+    pub(super) quantities: Vec<Quantity>,
+    /// e_E of each element (J^½).
+    pub(super) error: Vec<f64>,
+}
+
+impl<const D: usize, const N: usize> Rows<'_, D, N> {
+    pub(super) fn fields(&self) -> Vec<ExportField> {
+        self.quantities.iter().map(|quantity| quantity.field()).collect()
+    }
+
+    /// Whether steps must have their velocity and acceleration.
+    pub(super) fn need_motion(&self) -> bool {
+        self.quantities.iter().any(|q| matches!(q, Quantity::Velocity | Quantity::Acceleration))
+    }
+
+    /// The rows of all fields at a step.
+    pub(super) fn at(&self, step: &Step<'_, D>) -> Vec<Vec<f64>> {
+        let of_elements = |q: &Quantity| matches!(q, Quantity::Stress | Quantity::VonMises | Quantity::Pressure);
+        let elements = (0..self.problem.mesh().element_count()).map(ElementId::new);
+        let states: Vec<ElementState<D>> = match self.quantities.iter().any(of_elements) {
+            true => elements.map(|e| ElementState::new(self.problem, e, step.displacement)).collect(),
+            false => Vec::new(),
+        };
+        let rows = |quantity: &Quantity| match quantity {
+            Quantity::Displacement => in_space(step.displacement),
+            Quantity::Velocity => in_space(step.velocity.unwrap_or_default()),
+            Quantity::Acceleration => in_space(step.acceleration.unwrap_or_default()),
+            Quantity::Reaction => self.reaction(step),
+            Quantity::Stress => states.iter().flat_map(tensor).collect(),
+            Quantity::VonMises => states.iter().map(ElementState::von_mises).collect(),
+            Quantity::Pressure => states.iter().map(ElementState::pressure).collect(),
+            Quantity::Error => self.error.clone(),
+        };
+        self.quantities.iter().map(rows).collect()
+    }
+
+    /// R_n on all nodes; 0 where no plane can be touched.
+    fn reaction(&self, step: &Step<'_, D>) -> Vec<f64> {
+        let mut all = vec![[0.0; D]; self.problem.mesh().node_count()];
+        for (contact, reaction) in self.problem.surface().nodes().iter().zip(step.reaction) {
+            all[contact.node.index()] = *reaction;
+        }
+        in_space(&all)
+    }
+}
+
+/// The quantities of a request, in the order of [`Quantity::ALL`].
+pub(super) fn quantities(request: &Request) -> Result<Vec<Quantity>, Failure> {
+    let (estimated, fields) = (request.error.is_some(), request.fields.as_deref());
+    let wanted = |quantity: &Quantity| match fields {
+        Some(names) => names.iter().any(|name| name == quantity.field().name),
+        None => !matches!(quantity, Quantity::Acceleration | Quantity::Pressure | Quantity::Error),
+    };
+    let known = Quantity::ALL.map(|quantity| quantity.field().name);
+    let unknown = fields.into_iter().flatten().find(|name| !known.contains(&name.as_str()));
+    if let Some(name) = unknown {
+        let of = request.names.fields;
+        let told = format!("{of}: there is no field {name:?}; choose from {}{}", known.join(", "), hint(name, known));
+        return Err(Failure::Argument(told));
+    }
+    let chosen = |quantity: &Quantity| match quantity {
+        Quantity::Displacement => true,
+        Quantity::Error => estimated,
+        other => wanted(other),
+    };
+    if wanted(&Quantity::Error) && !estimated {
+        return Err(Failure::Argument(format!(
+            "{}: \"error\" needs an estimate of this history; name one",
+            request.names.fields
+        )));
+    }
+    Ok(Quantity::ALL.into_iter().filter(chosen).collect())
+}
+
+/// σ in three dimensions (Pa), row after row.
+fn tensor<const D: usize>(state: &ElementState<D>) -> [f64; 9] {
+    let mut tensor = [0.0; 9];
+    tensor[8] = state.stress_across;
+    for a in 0..D {
+        (0..D).for_each(|b| tensor[3 * a + b] = state.stress[a][b]);
+    }
+    tensor
+}
