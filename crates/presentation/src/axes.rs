@@ -89,7 +89,7 @@ pub(crate) fn colour_bar(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], scale:
         }
     }
     let kind = if scale.logarithmic { ", logarithmic" } else { "" };
-    svg.text("label", [left + width + 64.0, top + 0.5 * height], Anchor::Middle, true, &format!("{label}{kind}"));
+    svg.text("label", [left + width + 80.0, top + 0.5 * height], Anchor::Middle, true, &format!("{label}{kind}"));
 }
 
 /// A value with two digits.

@@ -7,7 +7,7 @@ use crate::scale::{Scale, prefixed, viridis};
 use crate::svg::Svg;
 
 /// Room around the plot: left, top, right with the colours, below (pixels).
-const ROOM: [f64; 4] = [76.0, 14.0, 112.0, 50.0];
+const ROOM: [f64; 4] = [76.0, 14.0, 128.0, 50.0];
 /// Rows of pixels along the surface.
 const ROWS: usize = 240;
 

@@ -191,6 +191,10 @@ fn time(document: &Document) -> String {
             row(name, "of the history itself".to_string());
         }
     }
+    let derived: Vec<&str> = document.list("derived").iter().filter_map(serde_json::Value::as_str).collect();
+    if !derived.is_empty() {
+        row("derived, because the history lacks them", derived.join(", "));
+    }
     row("duration of the work (s)", number(document.number("seconds")));
     table.html()
 }

@@ -1,10 +1,10 @@
 //! The verdict and the numbers that come first.
 
-use super::html::number;
+use super::html::{number, share};
 use crate::document::Document;
 use crate::scale::{hatted, prefixed};
 use crate::typeset::{escaped, html};
-use percute_workflow::message::{percent, short, trimmed};
+use percute_workflow::message::{short, trimmed};
 
 /// The title of the page.
 pub(super) fn head(document: &Document) -> String {
@@ -72,9 +72,9 @@ fn tiles(document: &Document) -> String {
         format!("{} {unit}", trimmed(value * factor, 4))
     };
     let error = |name: &str| {
-        let relative = percent(value(&format!("error.relative_{name}"))?);
+        let relative = share(value(&format!("error.relative_{name}"))?);
         let [error, reference] = [format!("error.{name}"), format!("error.reference_{name}")].map(|path| value(&path));
-        Some((relative, format!("{} J^½ of {}", short(error?, 4), short(reference?, 4))))
+        Some((relative, format!("{} J^½ of {}", hatted(&short(error?, 4)), hatted(&short(reference?, 4)))))
     };
     let step = || {
         let (step, critical) = (value("time_step")?, value("critical_time_step")?);
@@ -89,7 +89,7 @@ fn tiles(document: &Document) -> String {
         let good = if document.flag("largest_residual.admissible") { "admissible" } else { "NOT admissible" };
         Some((hatted(&short(at_most, 2)), format!("{good}; the limit is 10^-10")))
     };
-    let drift = || Some((percent(value("balance.energy_drift")?), "of the largest energy".to_string()));
+    let drift = || Some((share(value("balance.energy_drift")?), "of the largest energy".to_string()));
     let rebound = || {
         let restitution = value("rebound.restitution")?;
         Some((trimmed(restitution, 4), "rebound over approach velocity".to_string()))

@@ -8,7 +8,7 @@ use crate::scale::{Scale, prefixed, viridis};
 use crate::svg::Svg;
 
 /// Room for the scale of colours: a gap, the colours, its numbers (pixels).
-const SCALE: [f64; 3] = [22.0, 18.0, 74.0];
+const SCALE: [f64; 3] = [22.0, 18.0, 90.0];
 /// Elements are outlined from this size on (pixels).
 const OUTLINED: f64 = 7.0;
 /// Distance of the strokes that hatch the far side of a plane (pixels).
