@@ -102,6 +102,6 @@ def test_files_are_checked_first(estimate: pc.Estimate, tmp_path: Path, method: 
         write(tmp_path / wrong)
     with pytest.raises(pc.StorageError, match="folder"):
         write(tmp_path / "none" / name)
-    estimate.save(tmp_path / "e.html")
+    estimate.save(tmp_path / "e.vtkhdf")
     with pytest.raises(pc.InputError, match="the estimate itself"):
-        getattr(pc.open(tmp_path / "e.html"), method)(tmp_path / "e.html", overwrite=True)
+        getattr(pc.open(tmp_path / "e.vtkhdf"), method)(tmp_path / "e.vtkhdf", overwrite=True)
