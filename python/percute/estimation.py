@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping
 from functools import cached_property
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, instance, numbers, text, vtkhdf, whole, wrong
+from percute.checks import flag, instance, numbers, text, vtkhdf, warn, whole, wrong
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
@@ -163,6 +164,12 @@ class Estimate(EstimateViews):
         """Whether the history has its own ``velocity`` and ``acceleration``; otherwise they follow from the scheme."""
         return MappingProxyType(dict(zip(("velocity", "acceleration"), self._data.given(), strict=True)))
 
+    @cached_property
+    def consistency(self) -> Mapping[str, float | None] | None:
+        """How consistent a history of another program is: the figures of ``docs/foreign.md``; None for percute's own."""
+        found = json.loads(self.to_json()).get("consistency")
+        return None if found is None else MappingProxyType(found)
+
     @property
     def options(self) -> Mapping[str, str | int]:
         """The options ``reconstruction``, ``acceleration`` and ``every`` of the estimate."""
@@ -308,6 +315,7 @@ def estimate(
     window: int | None = None,
     instants: int | ArrayLike | None = None,
     fields: bool = False,
+    force: bool = False,
     progress: ProgressOption = None,
     _ablation: str = "none",
 ) -> Estimate:
@@ -338,6 +346,8 @@ def estimate(
         Number of evenly spaced instants, or times (s), at which ``maps`` are kept: at the nearest steps. None by default.
     fields : bool, default: False
         Whether these hold the admissible fields too; it needs ``instants``.
+    force : bool, default: False
+        Whether a history of another program is estimated even if it contradicts itself or its problem.
     progress : bool or callable, optional
         As for `simulate`.
 
@@ -345,10 +355,15 @@ def estimate(
     -------
     Estimate
 
+    Warns
+    -----
+    InputWarning
+        The last instant of a history of another program is left out, because its contact forces are not known.
+
     Raises
     ------
     InputError
-        An argument is wrong.
+        An argument is wrong. Or a history of another program is not consistent; the message has the likely cause.
     EstimateError
         The history cannot be estimated: fewer than two instants, or steps that do not fit the problem.
     StorageError
@@ -366,8 +381,11 @@ def estimate(
     wanted = _wanted(instants, history)
     if flag("fields", fields) and wanted is None:
         raise InputError("`fields` needs `instants`: give the number of instants, or their times (s)")
+    accept = flag("force", force)
     with shown(progress) as tell:
-        data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), tell)
+        data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
+    notice = data.left_out()
+    warn([] if notice is None else [notice])
     return Estimate._of(data, history, history._name)
 
 

@@ -69,7 +69,7 @@ class ForeignArrays:
             listed = np.arange(self._sizes["n"])
         array = self._shaped(name, array, "tk" + last, {**self._sizes, "k": len(listed)}, {**SIZES, "k": "rows of nodes"})
         other = ~np.isin(listed, self._surface)
-        acts = array.astype(bool).reshape(len(array), len(listed), -1).any(axis=(0, 2)) & other
+        acts = array.astype(bool).any(axis=(0, *range(2, array.ndim))) & other
         if acts.any():
             node = int(listed[np.flatnonzero(acts)[0]])
             raise InputError(

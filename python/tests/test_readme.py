@@ -5,6 +5,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import percute as pc
@@ -39,6 +40,22 @@ def test_the_readme_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> N
     told, given = (re.sub(r"(?m)^(residual  largest) \S+ \(\w+\)", r"\1", part) for part in (shown, done.stdout))
     assert told.count("residual  largest,") == 1
     assert told.splitlines()[1:] == given.splitlines()[1:]
+
+
+def test_the_solver_of_the_page_on_other_programs_is_graded(capsys: pytest.CaptureFixture[str]) -> None:
+    """It prints what the page says, and agrees with percute's own run."""
+    text = (ROOT / "docs" / "foreign.md").read_text()
+    example, printed = re.findall(r"```python\n(.*?)```\n\nprints\n\n```text\n(.*?)```", text, re.DOTALL)[0]
+    names: dict[str, Any] = {}
+    with pytest.warns(pc.InputWarning, match="the last instant, 1.33e-5 s, is left out"):
+        exec(example, names)
+    assert capsys.readouterr().out == printed
+    ours = pc.simulate(names["problem"], steps=[names["dt"]] * names["steps"])
+    # Some roundings of the path, 6 mm.
+    assert abs(ours.displacement - names["displacement"]).max() < 1e-16
+    last = names["history"].time[-1]
+    shorter = pc.estimate(pc.simulate(names["problem"], end=last, step=names["dt"]))
+    assert names["estimate"].sup == pytest.approx(shorter.sup, rel=1e-9)
 
 
 def test_the_example_of_the_package_runs() -> None:

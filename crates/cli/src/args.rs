@@ -130,6 +130,9 @@ pub struct EstimateArguments {
     /// Sample the error at every k-th step, or at those that "auto" chooses [default: as stored in the history]
     #[arg(long, value_name = "K", value_parser = sampling)]
     pub every: Option<Sampling>,
+    /// Estimate a history of another program even if it contradicts itself or its problem
+    #[arg(long)]
+    pub accept_inconsistent: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub maps: MapArguments,

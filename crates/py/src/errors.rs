@@ -7,8 +7,8 @@ use percute_core::problem::{Cause, HeldBy, InputError, Place};
 use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
-use percute_workflow::Failure;
 use percute_workflow::message::hint;
+use percute_workflow::{Failure, inconsistency};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -128,6 +128,10 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
         Failure::Run(error) => estimate(py, error),
         Failure::File(error) => file(py, error),
         Failure::Contact(error) => PyMemoryError::new_err(error.to_string()),
+        Failure::Inconsistent { file, figure, cause } => {
+            let told = inconsistency(file.as_deref(), figure, cause.as_deref());
+            input(py, format!("{told}; to estimate it as it is, give force=True"))
+        }
         other => input(py, other.to_string()),
     }
 }

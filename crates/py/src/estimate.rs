@@ -85,13 +85,13 @@ pub(crate) fn estimate(
     window: Option<usize>,
     instants: Option<Wanted>,
     fields: bool,
+    accept: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<EstimateData> {
     let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, format!("`_ablation`: {error}")))?;
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, &every)? };
     let instants = instants.map(Instants::from);
-    let made =
-        map_dimension!(&history.run, run => estimate_one(py, run, options, instants.as_ref(), fields, progress)?);
+    let made = map_dimension!(&history.run, run => estimate_one(py, run, options, (instants.as_ref(), fields), accept, progress)?);
     Ok(EstimateData { made })
 }
 
@@ -105,8 +105,8 @@ fn estimate_one<const D: usize, const N: usize>(
     py: Python<'_>,
     run: &Arc<Run<D, N>>,
     options: Options,
-    instants: Option<&Instants>,
-    fields: bool,
+    (instants, fields): (Option<&Instants>, bool),
+    accept: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Arc<Made<D, N>>> {
     let analysis = analysis(options, instants, fields, false, run.times());
@@ -115,7 +115,7 @@ fn estimate_one<const D: usize, const N: usize>(
         let run = run.clone();
         move |mut watch: bridge::Watch| {
             let source = run.stoppable(watch.clone());
-            run.graded(&source, &analysis, &mut watch)
+            run.graded(&source, &analysis, accept, &mut watch)
         }
     };
     let Graded { results, times, checked } =
@@ -301,6 +301,12 @@ impl EstimateData {
     fn given(&self) -> (bool, bool) {
         let given = each_dimension!(&self.made, m => m.estimate.given);
         (given.velocity, given.acceleration)
+    }
+
+    /// The last instant of the history was left out: why.
+    fn left_out(&self) -> Option<String> {
+        each_dimension!(&self.made, m => m.checked.as_ref().and_then(|checked| checked.left_out))
+            .map(percute_workflow::report::left_out)
     }
 
     /// Names of the method's choices, and the samples taken.

@@ -55,7 +55,7 @@ impl HistoryData {
             motion: [slice(motion.0.as_ref())?, slice(motion.1.as_ref())?],
         };
         let options = stated(py, &options)?;
-        let origin = derived.map(|names| Origin { lacks: Lacks::default(), derived: derived_parts(&names) });
+        let origin = derived.map(|names| Origin { derived: derived_parts(&names), ..Origin::default() });
         Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times, options, origin)?)) })
     }
 
@@ -308,7 +308,7 @@ impl Given<'_> {
         let complete = Completed::new(problem, &history, lacks).map_err(refused)?;
         let mut all = History::new(complete.times());
         complete.replay(&mut |step| all.push(step)).map_err(refused)?;
-        let origin = Origin { lacks: Lacks::default(), derived: complete.derived().to_vec() };
+        let origin = Origin { derived: complete.derived().to_vec(), ..Origin::default() };
         Ok((Run::foreign(problem.clone(), all, Options::default(), origin), complete.left_out()))
     }
 

@@ -133,9 +133,11 @@ impl<const D: usize, const N: usize> Run<D, N> {
         &self,
         source: &dyn StepSource<D>,
         analysis: &Analysis,
+        accept: bool,
         watch: &mut Watch,
     ) -> Result<Graded<D>, Failure> {
-        if let Some(origin) = &self.origin {
+        if let Some(origin) = self.origin.clone() {
+            let origin = &Origin { accept, ..origin };
             return foreign::estimate(&self.problem, source, origin, analysis, watch);
         }
         let results = percute_workflow::run::estimate(&self.problem, source, analysis, watch)?;

@@ -7,7 +7,7 @@ use percute_core::history::SinkError;
 use percute_estimator::reference::ReferenceError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::FileError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// Why something could not be done.
@@ -39,6 +39,16 @@ pub enum Failure {
     /// A history that does not fit its own problem.
     #[error("{file}: {cause}", file = .file.display())]
     History { file: PathBuf, cause: EstimateError },
+    /// A history of another program that contradicts itself or its problem.
+    #[error("{}; to estimate it as it is, give --accept-inconsistent", inconsistency(file.as_deref(), figure, cause.as_deref()))]
+    Inconsistent {
+        /// Its file, if it is in one.
+        file: Option<PathBuf>,
+        /// The figure over its limit.
+        figure: String,
+        /// Its likely cause.
+        cause: Option<String>,
+    },
     /// A reference that does not fit.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
@@ -61,6 +71,17 @@ pub enum Failure {
     Output(#[from] std::io::Error),
 }
 
+/// An inconsistency of a history, in a file or not, and its likely cause.
+#[must_use]
+pub fn inconsistency(file: Option<&Path>, figure: &str, cause: Option<&str>) -> String {
+    let file = file.map_or(String::new(), |file| format!("{}: ", file.display()));
+    let cause = match cause {
+        Some(cause) => format!("Likely cause: {cause}"),
+        None => "No single cause was found; compare mesh, materials, units, times and loads".to_string(),
+    };
+    format!("{file}the history is not consistent: {figure}. {cause}")
+}
+
 impl Failure {
     /// Whether the case file, the history or the arguments are wrong.
     #[must_use]
@@ -71,6 +92,7 @@ impl Failure {
             | Self::Argument(_)
             | Self::Exists { .. }
             | Self::History { .. }
+            | Self::Inconsistent { .. }
             | Self::Reference(_)
             | Self::NotRepresentable(_) => true,
             Self::File(error) => !error.cause.is_of_the_system(),

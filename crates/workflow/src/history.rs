@@ -78,7 +78,8 @@ impl<const D: usize, const N: usize> Stored<D, N> {
             return None;
         }
         let [reaction, touching] = self.file.given_contact().map(|given| !given);
-        Some(Origin { lacks: Lacks { reaction, touching }, derived: Vec::new() })
+        let file = Some(self.file.path().to_path_buf());
+        Some(Origin { file, lacks: Lacks { reaction, touching }, ..Origin::default() })
     }
 
     /// What a report on it is about: computes the critical step, which takes a while on a large mesh and
@@ -101,13 +102,20 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         Ok((contact, run::balance(&self.problem, &source).map_err(unread)?))
     }
 
-    /// Analyses the steps that the file holds; a history of another program is completed before.
+    /// Analyses the steps that the file holds. A history of another program is completed and checked before; `accept` an
+    /// inconsistent one.
     ///
     /// # Errors
     /// As [`foreign::estimate`].
-    pub fn estimate(&self, analysis: &Analysis, observer: &mut dyn Observer) -> Result<Graded<D>, Failure> {
+    pub fn estimate(
+        &self,
+        analysis: &Analysis,
+        accept: bool,
+        observer: &mut dyn Observer,
+    ) -> Result<Graded<D>, Failure> {
         let source = self.file.source(&self.problem)?;
-        let done = match self.origin() {
+        let origin = self.origin().map(|origin| Origin { accept, ..origin });
+        let done = match origin {
             Some(origin) => foreign::estimate(&self.problem, &source, &origin, analysis, observer),
             None => run::estimate(&self.problem, &source, analysis, observer).map(|results| Graded {
                 results,

@@ -17,4 +17,4 @@ pub mod run;
 pub mod tables;
 pub mod writable;
 
-pub use failure::Failure;
+pub use failure::{Failure, inconsistency};

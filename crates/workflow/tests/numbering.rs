@@ -147,7 +147,7 @@ fn a_stored_history_has_the_results_of_its_run() {
         plan(&problem, &times, &Options::default(), None).unwrap().create(&path, Overwrite::allowed(false)).unwrap();
     simulate(&problem, &times, Storage { file: Some(writer), memory: None }, &mut Unobserved).unwrap();
     let ByDimension::Plane(stored) = open(&path).unwrap() else { panic!("a bar") };
-    let read = stored.estimate(&analysis(), &mut Unobserved).unwrap().results;
+    let read = stored.estimate(&analysis(), false, &mut Unobserved).unwrap().results;
     assert_eq!((&read.estimate, &read.contact), (&results.estimate, &results.contact));
     assert_eq!(stored.file.displacement(0..41).unwrap(), history.displacement());
     assert_eq!(stored.file.reaction(0..41).unwrap(), history.reaction());

@@ -44,7 +44,7 @@ fn estimate<const D: usize, const N: usize>(
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
     let analysis = Analysis { options, request, contact_steps: output.is_some() || print.report.is_some() };
-    let Graded { results, times, checked } = stored.estimate(&analysis, watch)?;
+    let Graded { results, times, checked } = stored.estimate(&analysis, arguments.accept_inconsistent, watch)?;
     watch.clear();
     let (case, seconds) = (stored.file.case().cloned(), start.elapsed().as_secs_f64());
     let subject = Subject { times: &times, checked: checked.as_ref(), ..stored.subject() };

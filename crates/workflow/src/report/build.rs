@@ -70,6 +70,7 @@ impl Report {
             interrupted,
             given: estimate.given,
             derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
+            consistency: checked.map(|checked| checked.consistency),
             held,
             error: estimate.error,
             meaning: meaning(Some(options.reconstruction)),

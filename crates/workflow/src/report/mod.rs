@@ -20,7 +20,7 @@ pub(crate) use warnings::few_samples;
 pub use warnings::reported;
 pub use warnings::{Warning, left_out};
 
-use crate::foreign::{Checked, Derived};
+use crate::foreign::{Checked, Consistency, Derived};
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -67,6 +67,7 @@ pub struct Report {
     pub interrupted: bool,
     pub given: Given,
     pub derived: Vec<Derived>,
+    pub consistency: Option<Consistency>,
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: ErrorMeasures,

@@ -1,6 +1,7 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
 use super::{ADMISSIBLE, ProblemSummary, Report, SOURCES, meaning};
+use crate::foreign::Consistency;
 use crate::message::{counted, percent, short, trimmed};
 use percute_core::dynamics::Balance;
 
@@ -28,6 +29,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(worst_elements(report));
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
+    lines.extend(report.consistency.as_ref().map(|found| ("history", consistency(found))));
     lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
     lines.extend(warnings(report));
@@ -178,6 +180,12 @@ fn residual(report: &Report) -> String {
     let worst = &report.largest_residual;
     let verdict = if worst.admissible { "admissible" } else { "NOT ADMISSIBLE" };
     format!("largest {} ({}), {verdict}: the limit is {ADMISSIBLE:.0e}", short(worst.value, 2), worst.name)
+}
+
+/// The figures of a history of another program that say most.
+fn consistency(found: &Consistency) -> String {
+    let [balance, start, energy] = [found.balance, found.initial_velocity, found.energy].map(percent);
+    format!("of another program: balance off by {balance}, start {start}, energy {energy}")
 }
 
 /// Nothing where all is kept.
