@@ -38,6 +38,7 @@ from percute.files import open, run
 from percute.history import History, simulate, true_errors
 from percute.mesh import Mesh
 from percute.problem import Problem
+from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
@@ -65,6 +66,7 @@ __all__ = [
     "Plane",
     "Problem",
     "Progress",
+    "Rebound",
     "Resultants",
     "Separation",
     "SimulationError",

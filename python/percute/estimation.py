@@ -22,6 +22,7 @@ from percute.history import History
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
+from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
 
@@ -41,8 +42,8 @@ def _measure(name: str, meaning: str) -> cached_property[float]:
 class Estimate(EstimateViews):
     """The constitutive relation error of a history.
 
-    Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``meaning``
-    is a text on their meaning and their limits.
+    Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``verdict``
+    says in three sentences how far they can be trusted.
     """
 
     _data: _percute.EstimateData | StoredEstimate
@@ -101,8 +102,33 @@ class Estimate(EstimateViews):
 
     @property
     def meaning(self) -> str:
-        """The meaning of the error, its limits and its effectivity index in tests."""
-        return _percute.meaning(self._data.options()[0])
+        """The meaning of the error; `verdict` has its limits in cases like this one."""
+        return _percute.meaning()
+
+    @cached_property
+    def _verdict(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self._data.verdict())
+        return found
+
+    @property
+    def verdict(self) -> str | None:
+        """Situation and effectivity index in tests of such cases, place of the error, and a recommendation, in at most three sentences.
+
+        None if the estimate comes from a file of an earlier version.
+        """
+        verdict = self._verdict.get("verdict")
+        return None if verdict is None else " ".join(verdict["text"])
+
+    @property
+    def trust(self) -> Literal["high", "limited", "low"] | None:
+        """How far the estimate can be trusted; None if it comes from a file of an earlier version."""
+        verdict = self._verdict.get("verdict")
+        return None if verdict is None else cast("Literal['high', 'limited', 'low']", verdict["trust"])
+
+    @cached_property
+    def rebound(self) -> Rebound | None:
+        """Velocities before and after contact, restitution and time in contact; None without contact."""
+        return Rebound._of(self._verdict.get("rebound"))
 
     @property
     def kept_impulse(self) -> float | None:
@@ -285,7 +311,8 @@ class Estimate(EstimateViews):
         )
 
     def __str__(self) -> str:
-        return "\n".join([repr(self).strip("<>"), self.meaning])
+        verdict = [] if self.verdict is None else [f"trust {self.trust}: {self.verdict}"]
+        return "\n".join([repr(self).strip("<>"), *verdict, self.meaning])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle all but the history, which is large and can be pickled separately."""

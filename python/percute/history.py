@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -20,6 +21,7 @@ from percute.errors import FileFormatError, MissingFileError, PercuteError, Stor
 from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
+from percute.rebound import Rebound
 from percute.views import HistoryViews
 
 if TYPE_CHECKING:
@@ -228,6 +230,11 @@ class History(HistoryViews):
     def contact(self) -> Contact:
         """Contact results at each node, and their resultants; computed on first access."""
         return Contact._of(self._data.contact(), self.problem.mesh)
+
+    @cached_property
+    def rebound(self) -> Rebound | None:
+        """Velocities before and after contact, restitution and time in contact; None without contact."""
+        return Rebound._of(json.loads(self._data.rebound()))
 
     def error(self, reference: History) -> TrueError:
         """Return the true error of this history, measured against a finer one.

@@ -157,6 +157,10 @@ class StoredEstimate:
         """Contact results, if the file has them."""
         return self._data.contact()
 
+    def verdict(self) -> str:
+        """A JSON document with verdict and rebound, if the file has them."""
+        return self._data.report()
+
     def to_json(self, name: str) -> str:
         """The document as it is in the file."""
         return self._data.report()

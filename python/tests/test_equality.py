@@ -99,8 +99,11 @@ def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> 
     assert estimate.parts.total == pytest.approx(estimate.sup**2, rel=1e-14)
     assert document["case"] == ""
     assert estimate.meaning == document["meaning"]
-    figures, meaning = str(estimate).split("\n")
+    assert estimate.verdict == " ".join(document["verdict"]["text"]) and estimate.trust == document["verdict"]["trust"]
+    figures, verdict, meaning = str(estimate).split("\n")
     assert f"<{figures}>" == repr(estimate) and meaning == estimate.meaning
+    assert verdict == f"trust {estimate.trust}: {estimate.verdict}"
+    assert estimate.rebound is not None and estimate.rebound.velocity_before.tolist() == document["rebound"]["velocity_before"]
 
 
 def test_all_readings_are_named_in_the_signature(block_history: pc.History) -> None:
@@ -123,5 +126,8 @@ def test_the_options_of_the_case_go_with_its_history(reconstruction: str, tmp_pa
     written = pc.open(tmp_path / "error.vtkhdf")
     assert isinstance(written, pc.Estimate) and len(written.maps) == 4 and written.sup == estimate.sup
     assert written.options == stated and written.meaning == estimate.meaning
+    assert written.verdict == estimate.verdict and written.trust == estimate.trust
+    for same in (written.rebound, pickle.loads(pickle.dumps(estimate)).rebound, estimate.history.rebound):
+        assert str(same) == str(estimate.rebound) and same is not None
     with pytest.raises(pc.ExistingFileError, match=r"error\.vtkhdf"):
         pc.run(text)

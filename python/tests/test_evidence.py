@@ -17,7 +17,8 @@ from typing import Any
 
 import percute as pc
 import pytest
-from percute.verification import studies
+from percute.verification import impacts, speeds, studies
+from percute.verification.impacts import steps_past
 from percute.verification.page import Column, Table, percent, short
 from percute.verification.parallel import Resolution
 from percute.verification.studies import STUDIES
@@ -207,33 +208,36 @@ OTHERWISE = ("L, corner first", "frame, corner first", "corner of one element")
 """Families whose error the estimate does not contain, or exceeds for a reason beside the contact."""
 
 
-def test_every_estimate_states_the_ranges_of_the_page(block_history: pc.History) -> None:
-    """Effectivity indices of `corrected`: bars up to the end of contact, plane bodies, short steps and all speeds."""
-    inside: list[float] = []
-    least: list[float] = []
-    others: list[float] = []
-    for _, name, *cells in of_page("kind", "sup: lowest"):
-        sup, mean = cells[:4], cells[5:9]
-        (inside if name == "corrected" else others).extend(ends(sup + mean))
-    for _, *cells in of_page("body", "corrected: sup", "consistent: mean"):
-        inside += ends(cells[:2])
-    for name, _, _, after, _, lowest, _, highest, *_ in of_page("Γ_DA", "T − t_c (L/c)"):
-        # Until the end of contact.
-        if name == "corrected":
-            assert after == "2.0"
-            inside += [float(lowest), float(highest)]
-    least += map(float, re.findall(r"([\d.]+) to [\d.]+ with `(?:consistent|published)`", PAGE.read_text(encoding="utf-8")))
-    inside += [value for name, values in families().items() if name not in OTHERWISE for value in values]
-    otherwise = [value for name, values in families().items() if name in OTHERWISE for value in values]
-    for _, _, *cells in of_page("case", "sup after 1, meshes 2; 3"):
-        otherwise += [float(number) for cell in cells for number in cell.split("; ")]
-    low, high = math.floor(20 * min(inside)) / 20, math.ceil(10 * max(inside)) / 10
-    lower, higher = math.floor(10 * min(otherwise)) / 10, math.ceil(10 * max(otherwise)) / 10
-    meaning = pc.estimate(block_history).meaning
-    assert f"Δt_c: {low:g} to {high:g} times the true error; {lower:g} to {higher:g} in thin bent parts" in meaning
-    for name in ("consistent", "published"):
-        meaning = pc.estimate(block_history, reconstruction=name).meaning  # type: ignore[arg-type]
-        assert f"in tests {min(least):.2f} to over 3 times the true error" in meaning and max(others) > 3.0
+@pytest.mark.filterwarnings("ignore::percute.InputWarning")
+def test_the_verdict_states_the_ranges_of_each_family_on_the_page() -> None:
+    """Bodies that touch with an edge, a curve or a corner, fast and slow, on mesh 2."""
+    found: dict[tuple[str, float], list[list[float]]] = {}
+    for case in speeds.cases():
+        for speed in (400.0, 4.0):
+            problem = case.scaled(speed / speeds.FULL).problem(1)
+            history = pc.simulate(problem, **steps_past(60e-6, case.ratio, problem))
+            verdict = json.loads(pc.estimate(history, every=1).to_json())["verdict"]
+            found.setdefault((speeds._family(case)[0], speed), []).append(verdict["effectivity"])
+    page = {name: cells for name, _, *cells in of_page("family", "sup, 400 m/s")}
+    for (name, speed), ranges in found.items():
+        at = speeds.SPEEDS.index(speed)
+        indices = ends([page[name][at], page[name][at + len(speeds.SPEEDS)]])
+        low, high = min(low for low, _ in ranges), max(high for _, high in ranges)
+        assert low <= min(indices) and max(indices) <= high, (name, speed, indices, ranges)
+    assert len(found) == 2 * len(page)
+
+
+@pytest.mark.parametrize("reconstruction", ["corrected", "consistent", "published"])
+def test_the_verdict_states_the_ranges_of_each_kind_on_the_page(reconstruction: str) -> None:
+    page = {(kind, name): ends(cells[:4] + cells[5:9]) for kind, name, *cells in of_page("kind", "sup: lowest")}
+    for case in impacts.cases():
+        problem = case.problem(1)
+        history = pc.simulate(problem, **steps_past(case.end, case.ratio, problem))
+        estimate = pc.estimate(history, reconstruction=reconstruction)  # type: ignore[arg-type]
+        low, high = json.loads(estimate.to_json())["verdict"]["effectivity"]
+        indices = page[case.kind, reconstruction]
+        assert low <= min(indices) and max(indices) <= high, (case.name, indices, low, high)
+        assert (estimate.trust == "low") == (reconstruction != "corrected"), case.name
 
 
 def test_the_page_holds_the_aims_of_the_default() -> None:

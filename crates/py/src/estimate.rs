@@ -95,10 +95,10 @@ pub(crate) fn estimate(
     Ok(EstimateData { made })
 }
 
-/// The meaning of the error with a reconstruction, by its name; a file may name one of a newer version.
+/// The meaning of the error.
 #[pyfunction]
-pub(crate) fn meaning(reconstruction: &str) -> String {
-    percute_workflow::report::meaning(reconstruction.parse().ok())
+pub(crate) fn meaning() -> &'static str {
+    percute_workflow::report::meaning()
 }
 
 fn estimate_one<const D: usize, const N: usize>(
@@ -164,6 +164,11 @@ impl<const D: usize, const N: usize> Made<D, N> {
 
     /// The document of `percute run --json`.
     pub(crate) fn report(&self, name: &str) -> Result<String, String> {
+        self.document(name, Report::to_json)
+    }
+
+    /// A document made from the report; if that is there as a text only, this text, which has all of it.
+    fn document(&self, name: &str, text: fn(&Report) -> Result<String, std::io::Error>) -> Result<String, String> {
         let Self { problem, times, options, estimate, report, checked } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
@@ -172,7 +177,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
                 let checked = checked.as_ref();
                 let subject = Subject { name, problem, times, critical_step, held: *held, checked };
                 let report = Report::new(&subject, *options, simulation, estimate, contact, *seconds);
-                report.to_json().map_err(|error| error.to_string())
+                text(&report).map_err(|error| error.to_string())
             }
         }
     }
@@ -343,6 +348,15 @@ impl EstimateData {
             (ByDimension::Bar(made), _) => made.saved(py, path, overwrite, name, None),
             (ByDimension::Plane(made), _) => made.saved(py, path, overwrite, name, None),
         }
+    }
+
+    /// A JSON document with verdict and rebound.
+    fn verdict(&self, py: Python<'_>) -> PyResult<String> {
+        let text = each_dimension!(&self.made, made => {
+            let made = made.clone();
+            bridge::blocking(py, None, move |_| made.document("", Report::verdict_to_json))?
+        });
+        text.map_err(|message| errors::percute_error(py, &message))
     }
 
     /// The document of `percute run --json`.

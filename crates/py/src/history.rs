@@ -16,7 +16,7 @@ use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
 use percute_workflow::foreign::{Completed, Derived, Lacks, Origin};
-use percute_workflow::report::Named;
+use percute_workflow::report::{Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::Range;
@@ -203,11 +203,12 @@ impl HistoryData {
 
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each_dimension!(&self.run, run => {
-            let worker = run.clone();
-            let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
-            columns(py, &kept.map_err(|error| errors::steps(py, &error))?)
-        })
+        each_dimension!(&self.run, run => columns(py, &kept_balance(py, run)?))
+    }
+
+    /// Velocities before and after contact, as a JSON document.
+    fn rebound(&self, py: Python<'_>) -> PyResult<String> {
+        each_dimension!(&self.run, run => rebound(py, run))
     }
 }
 
@@ -240,6 +241,21 @@ fn read<const D: usize, const N: usize, T: Send + 'static>(
         Ok(rows)
     };
     bridge::blocking(py, None, work)?.map(Arc::new).map_err(|error| errors::file(py, &error))
+}
+
+/// The rebound as a JSON document; `null` without contact.
+fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<String> {
+    let contact = contact::of_run(py, run)?;
+    let balance = kept_balance(py, run)?;
+    let rebound = Rebound::new(&run.problem, &balance, &contact);
+    rebound_to_json(rebound.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
+}
+
+/// Energies, works and momentum at each instant, computed now or before.
+fn kept_balance<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<Vec<Balance>> {
+    let worker = run.clone();
+    let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
+    kept.map_err(|error| errors::steps(py, &error))
 }
 
 /// An array for each quantity of the balance.

@@ -29,6 +29,9 @@ pub struct Balance {
     pub energy_drift: f64,
     /// Largest |momentum − initial momentum − impulses| so far (any component), over the largest momentum or impulse.
     pub impulse_drift: f64,
+    /// Momentum Σ m v_n (kg m/s); components beyond the dimension are 0.
+    #[serde(skip)]
+    pub momentum: [f64; 3],
     #[serde(skip)]
     largest_energy_gap: f64,
     #[serde(skip)]
@@ -128,6 +131,7 @@ impl<const D: usize> BalanceKeeper<D> {
         let b = &mut self.balance;
         let (kinetic, momentum) = now.energies(problem.mass());
         (b.kinetic, b.strain) = (kinetic, now.strain());
+        b.momentum[..D].copy_from_slice(&momentum);
         let energy = b.kinetic + b.strain;
         if now.step().index == 0 {
             b.initial = energy;

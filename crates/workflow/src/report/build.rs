@@ -3,8 +3,8 @@
 use super::columns::{Columns, Named, PARTS};
 use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
-    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Report, SourceReport, Subject,
-    Versions, WorstElement, meaning,
+    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report, SourceReport,
+    Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
@@ -54,6 +54,8 @@ impl Report {
             own_contacts: estimate.own_contacts,
             residual: &largest_residual,
         };
+        let admissible = largest_residual.admissible;
+        let (rebound, verdict) = judged(subject, options, admissible, simulation, estimate, contact);
         let (interrupted, warnings) = (facts.interrupted, all_warnings(&facts, subject, options));
         Self {
             format: FORMAT,
@@ -73,7 +75,8 @@ impl Report {
             consistency: checked.map(|checked| checked.consistency),
             held,
             error: estimate.error,
-            meaning: meaning(Some(options.reconstruction)),
+            meaning: meaning(),
+            verdict,
             parts: estimate.parts,
             sources: estimate.sources.as_ref().map(SourceReport::new),
             time_of_sup: estimate.time_of_sup,
@@ -85,11 +88,29 @@ impl Report {
             kept_impulse: estimate.kept_impulse,
             own_contacts: estimate.own_contacts,
             contact: ContactReport::new(contact),
+            rebound,
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             seconds,
         }
     }
+}
+
+/// The rebound and the verdict.
+fn judged<const D: usize, const N: usize>(
+    subject: &Subject<'_, D, N>,
+    options: Options,
+    admissible: bool,
+    simulation: &Simulation,
+    estimate: &Estimate<D>,
+    contact: &ContactResults<D>,
+) -> (Option<Rebound>, Verdict) {
+    let Subject { problem, times, critical_step, .. } = *subject;
+    let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
+    let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
+    let beside = verdict::Beside { options, courant, drift, admissible, rebound: rebound.as_ref() };
+    let verdict = Verdict::new(&verdict::Facts::new(problem, estimate, contact, beside), &estimate.parts);
+    (rebound, verdict)
 }
 
 /// The plausibility warnings; a contact that came is not foreseen to fail.

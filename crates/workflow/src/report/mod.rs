@@ -5,17 +5,21 @@ pub(crate) mod build;
 mod columns;
 mod contact;
 mod meaning;
+mod rebound;
 mod simulated;
 mod sources;
 pub(crate) mod summary;
+mod verdict;
 mod warnings;
 
 pub use columns::{Columns, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
+pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
 pub use sources::SourceReport;
 pub use summary::summary;
+pub use verdict::{Shares, Touches, Trust, Verdict};
 pub(crate) use warnings::few_samples;
 pub use warnings::reported;
 pub use warnings::{Warning, left_out};
@@ -71,7 +75,8 @@ pub struct Report {
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: ErrorMeasures,
-    pub meaning: String,
+    pub meaning: &'static str,
+    pub verdict: Verdict,
     pub parts: Parts,
     pub sources: Option<SourceReport>,
     pub time_of_sup: f64,
@@ -83,6 +88,7 @@ pub struct Report {
     pub kept_impulse: Option<f64>,
     pub own_contacts: usize,
     pub contact: Option<ContactReport>,
+    pub rebound: Option<Rebound>,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
     pub warnings: Vec<Warning>,
@@ -155,6 +161,16 @@ impl Versions {
 }
 
 impl Report {
+    /// Verdict and rebound as a JSON document.
+    ///
+    /// # Errors
+    /// As [`Report::to_json`].
+    pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
+        let Self { verdict, rebound, .. } = self;
+        serde_json::to_string(&serde_json::json!({ "verdict": verdict, "rebound": rebound }))
+            .map_err(std::io::Error::from)
+    }
+
     /// The report as a JSON document. Numbers that are not finite become `null`.
     ///
     /// # Errors

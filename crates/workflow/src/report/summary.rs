@@ -1,6 +1,6 @@
 //! The summary of a run: at most 24 lines of 80 columns.
 
-use super::{ADMISSIBLE, ProblemSummary, Report, SOURCES, meaning};
+use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, short, trimmed};
 use percute_core::dynamics::Balance;
@@ -8,7 +8,8 @@ use percute_core::dynamics::Balance;
 /// The summary of a run.
 #[must_use]
 pub fn summary(report: &Report) -> String {
-    layout(&lines(report)) + &meaning::lines(&report.meaning) + &layout(&[("result", result(report))])
+    let verdict = format!("verdict   trust {}: {}", report.verdict.trust, report.verdict.text.join(" "));
+    layout(&lines(report)) + &meaning::lines(&verdict) + &layout(&[("result", result(report))])
 }
 
 /// Names and values in two columns.
@@ -25,13 +26,14 @@ fn cut(line: &str) -> String {
 fn lines(report: &Report) -> Vec<(&'static str, String)> {
     let mut lines = what_was_run(report);
     lines.extend(error(report));
-    lines.extend(sources(report));
+    lines.extend(sources(report).map(|line| ("sources", line)));
     lines.extend(worst_elements(report));
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
     lines.extend(report.consistency.as_ref().map(|found| ("history", consistency(found))));
     lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
+    lines.extend(report.rebound.as_ref().map(|rebound| ("rebound", returned(rebound))));
     lines.extend(warnings(report));
     lines
 }
@@ -104,33 +106,19 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
         let (value, reference) = (short(value, 4), short(reference, 4));
         format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
     };
-    let (e, parts) = (&report.error, &report.parts);
-    let total = parts.total();
-    let share = |part: f64| if total > 0.0 { percent(part / total) } else { "0 %".to_string() };
-    let shares = [("kinetic", parts.kinetic), ("elastic", parts.elastic), ("contact", parts.contact)];
-    let shares = shares.map(|(name, part)| format!("{name} {}", share(part))).join(", ");
+    let e = &report.error;
     vec![
         ("error", measure("sup", e.sup, e.relative_sup, e.reference_sup)),
         ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
-        ("", format!("at the sup: {shares}")),
     ]
 }
 
-/// The sources of the error and what would change it.
-fn sources(report: &Report) -> Vec<(&'static str, String)> {
-    let Some(sources) = &report.sources else { return Vec::new() };
-    let (mean, error) = (&sources.mean, report.error.mean);
+/// The sources of the error.
+fn sources(report: &Report) -> Option<String> {
+    let mean = &report.sources.as_ref()?.mean;
     let total = mean.total();
-    if total <= 0.0 {
-        return Vec::new();
-    }
     let shares = SOURCES.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source(mean) / total)).join(", ");
-    let mut lines = vec![("sources", format!("{shares} of mean²"))];
-    if let (Some(size), Some(step)) = (sources.mean_with_half_size, sources.mean_with_half_step) {
-        let [size, step] = [size, step].map(|e| 100.0 * (e / error - 1.0));
-        lines.push(("", format!("half the element size: mean {size:+.0} %; half the step alone: {step:+.0} %")));
-    }
-    lines
+    (total > 0.0).then(|| format!("{shares} of mean²"))
 }
 
 /// The error in one line, the last one, for `tail -n 1`.
@@ -200,6 +188,19 @@ fn contact(report: &Report) -> Option<String> {
     let (first, peak) = (contact.first_touch?, contact.time_of_peak?);
     let [force, pressure] = [contact.peak_normal_force, contact.peak_pressure].map(|x| short(x, 4));
     Some(format!("from {} s, peak {force} N at {} s, pressure {pressure} Pa", trimmed(first, 4), trimmed(peak, 4)))
+}
+
+/// Velocities before and after contact, along the normal.
+fn returned(rebound: &Rebound) -> String {
+    let (before, time) = (trimmed(rebound.normal_before, 4), trimmed(rebound.time_in_contact, 4));
+    match (rebound.normal_after, rebound.restitution) {
+        (Some(after), Some(restitution)) => {
+            let (after, restitution) = (trimmed(after, 4), trimmed(restitution, 3));
+            format!("from {before} to {after} m/s, restitution {restitution}, {time} s in contact")
+        }
+        (Some(after), None) => format!("from {before} to {} m/s, {time} s in contact", trimmed(after, 4)),
+        _ => format!("contact has not ended after {time} s; it began with {before} m/s"),
+    }
 }
 
 /// One line each if there are two at most; else the first and how many more.

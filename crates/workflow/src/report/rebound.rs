@@ -1,0 +1,84 @@
+//! The rebound of the body: the velocities of its centre of mass before the first contact and after the last.
+
+use percute_core::contact::{ContactResults, Frame, Resultant};
+use percute_core::dynamics::Balance;
+use percute_core::problem::Problem;
+use serde::Serialize;
+
+/// Velocities of the centre of mass, V = Σ m v / Σ m (m/s), before the first contact and after the last one.
+///
+/// Normal components are those along the normal of the plane that gives the largest impulse, positive away from it. The
+/// coefficient of restitution is −V′·n / V·n.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rebound {
+    /// Velocity at the last instant before the first contact force (m/s).
+    pub velocity_before: Vec<f64>,
+    /// Velocity at the first instant after the last contact force (m/s); none if contact has not ended.
+    pub velocity_after: Option<Vec<f64>>,
+    /// Normal component of `velocity_before` (m/s).
+    pub normal_before: f64,
+    /// Normal component of `velocity_after` (m/s).
+    pub normal_after: Option<f64>,
+    /// Coefficient of restitution; none if contact has not ended, or if the body does not arrive.
+    pub restitution: Option<f64>,
+    /// First instant at which a node touches (s).
+    pub first_touch: f64,
+    /// Last instant at which a node touches (s); none if contact has not ended.
+    pub release: Option<f64>,
+    /// From the first touch to the release, or to the end of the run (s).
+    pub time_in_contact: f64,
+    /// Whether contact has ended.
+    pub ended: bool,
+}
+
+impl Rebound {
+    /// The rebound of a run; none without contact.
+    #[must_use]
+    pub fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        balance: &[Balance],
+        contact: &ContactResults<D>,
+    ) -> Option<Self> {
+        let acting = |n: &usize| contact.total[*n].in_contact > 0;
+        let steps = contact.total.len().min(balance.len());
+        let (first, last) = ((0..steps).find(acting)?, (0..steps).rfind(acting)?);
+        let mass: f64 = problem.mass().iter().sum();
+        let velocity = |n: usize| -> [f64; D] { std::array::from_fn(|c| balance[n].momentum[c] / mass) };
+        let frame = strongest(problem, contact)?;
+        let before = velocity(first.saturating_sub(1));
+        // The reaction R_n holds a node to the plane at t_{n+1}.
+        let ended = last + 1 < steps;
+        let time = |n: usize| contact.instants[n.min(steps - 1)];
+        let after = ended.then(|| velocity(last + 1));
+        let (normal_before, normal_after) = (frame.split(&before).0, after.map(|v| frame.split(&v).0));
+        let restitution = normal_after.filter(|_| normal_before < 0.0).map(|v| -v / normal_before);
+        let (first_touch, release) = (time(first + 1), time(last + 1));
+        Some(Self {
+            velocity_before: before.to_vec(),
+            velocity_after: after.map(|v| v.to_vec()),
+            normal_before,
+            normal_after,
+            restitution,
+            first_touch,
+            release: ended.then_some(release),
+            time_in_contact: release - first_touch,
+            ended,
+        })
+    }
+}
+
+/// A rebound as a JSON document; `null` if there is none.
+///
+/// # Errors
+/// None that is known; whatever the serialiser reports.
+pub fn rebound_to_json(rebound: Option<&Rebound>) -> Result<String, std::io::Error> {
+    serde_json::to_string(&rebound).map_err(std::io::Error::from)
+}
+
+/// The frame of the plane that gives the largest normal impulse.
+fn strongest<const D: usize, const N: usize>(problem: &Problem<D, N>, contact: &ContactResults<D>) -> Option<Frame<D>> {
+    let frames = problem.obstacles().iter().map(|obstacle| obstacle.flat_frame());
+    let impulse = |frame: &Frame<D>, last: Option<&Resultant<D>>| last.map_or(0.0, |r| frame.split(&r.impulse).0);
+    let all = frames.zip(&contact.obstacles).map(|(frame, over_time)| (impulse(&frame, over_time.last()), frame));
+    all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frame)| frame)
+}

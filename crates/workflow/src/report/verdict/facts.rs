@@ -1,0 +1,143 @@
+//! The facts that a verdict follows from.
+
+use super::touches::Contact;
+use crate::report::rebound::Rebound;
+use percute_core::contact::ContactResults;
+use percute_core::ids::ElementId;
+use percute_core::material::Law;
+use percute_core::mesh::Mesh;
+use percute_core::problem::Problem;
+use percute_estimator::{ErrorMeasures, Estimate, Options, Reconstruction};
+
+/// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs for bodies of
+/// 64 mm with waves of 5.3 km/s.
+const APART: f64 = 1.25;
+
+/// What a verdict follows from. More may be added: rules name the facts that they read.
+#[derive(Clone, Debug)]
+pub(in crate::report) struct Facts {
+    pub(super) dimension: usize,
+    pub(super) reconstruction: Reconstruction,
+    pub(super) contact: Contact,
+    /// Normal velocity of the centre of mass before contact over the wave speed; none without contact.
+    pub(super) speed_ratio: Option<f64>,
+    /// The longest step over the critical one.
+    pub(super) courant: f64,
+    /// Edges along which the body touches at one instant, at most.
+    pub(super) elements_in_contact: usize,
+    /// Number of contact phases.
+    pub(super) phases: usize,
+    /// Mean thickness 2 A/P over the diagonal of the body, A its area and P its outline; 1 for a bar.
+    pub(super) slenderness: f64,
+    pub(super) largest_friction: f64,
+    pub(super) supported: bool,
+    /// Part of the squared mean error in elements with a node that touches.
+    pub(super) at_contact: f64,
+    pub(super) error: ErrorMeasures,
+    pub(super) energy_drift: f64,
+    pub(super) admissible: bool,
+    pub(super) kept_impulse: Option<f64>,
+    pub(super) expected: Option<Expected>,
+}
+
+/// The part of the contact surface in the squared mean error, and expected changes of the mean error, relative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Expected {
+    pub(super) surface: f64,
+    pub(super) half_size: f64,
+    pub(super) half_step: f64,
+}
+
+/// What is known beside the problem, the contact results and the estimate.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::report) struct Beside<'a> {
+    pub(in crate::report) options: Options,
+    pub(in crate::report) courant: f64,
+    /// Drift of the energy balance.
+    pub(in crate::report) drift: f64,
+    pub(in crate::report) admissible: bool,
+    pub(in crate::report) rebound: Option<&'a Rebound>,
+}
+
+impl Facts {
+    pub(in crate::report) fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        estimate: &Estimate<D>,
+        results: &ContactResults<D>,
+        beside: Beside<'_>,
+    ) -> Self {
+        let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
+        let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
+        let speed = beside.rebound.map(|rebound| -rebound.normal_before / wave_speed);
+        Self {
+            dimension: D,
+            reconstruction: beside.options.reconstruction,
+            contact: Contact::new(problem, results),
+            speed_ratio: speed,
+            courant: beside.courant,
+            elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
+            phases: phases(results, APART * problem.mesh().size() / wave_speed),
+            slenderness: slenderness(problem.mesh()),
+            largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
+            supported: !problem.prescribed().is_empty(),
+            at_contact: at_contact(problem, estimate, results),
+            error: estimate.error,
+            energy_drift: beside.drift,
+            admissible: beside.admissible,
+            // A node with a contact of its own touches at other instants in the admissible fields.
+            kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
+            expected: expected(estimate),
+        }
+    }
+}
+
+fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
+    let sources = estimate.sources.as_ref()?;
+    let change = |with: Option<f64>| with.map(|with| with / estimate.error.mean - 1.0).filter(|x| x.is_finite());
+    let half_size = change(sources.mean_with_half_size())?;
+    let surface = sources.mean.surface / sources.mean.total();
+    Some(Expected { surface, half_size, half_step: change(sources.mean_with_half_step())? })
+}
+
+/// Number of contact phases; contacts that begin within `apart` (s) are one.
+fn phases<const D: usize>(results: &ContactResults<D>, apart: f64) -> usize {
+    let (mut count, mut before, mut begun) = (0, false, f64::NEG_INFINITY);
+    for (resultant, &time) in results.total.iter().zip(&results.instants) {
+        let touches = resultant.in_contact > 0;
+        if touches && !before {
+            count += usize::from(time - begun > apart);
+            begun = time;
+        }
+        before = touches;
+    }
+    count
+}
+
+fn slenderness<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {
+    if D == 1 {
+        return 1.0;
+    }
+    let area: f64 = (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum();
+    let outline: f64 = mesh.boundary().map(|facet| mesh.facet_normal(facet).1).sum();
+    2.0 * area / outline / mesh.size()
+}
+
+/// The part of the squared error in the elements with a node that touches.
+fn at_contact<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    estimate: &Estimate<D>,
+    results: &ContactResults<D>,
+) -> f64 {
+    let mesh = problem.mesh();
+    let mut near = vec![false; mesh.element_count()];
+    for (place, summary) in results.nodes.iter().zip(&results.summary) {
+        if summary.first_touch.is_some() {
+            mesh.stars().star(place.node).elements.iter().for_each(|element| near[element.index()] = true);
+        }
+    }
+    let sum = |all: bool| -> f64 {
+        estimate.by_element.iter().zip(&near).filter(|(_, near)| all || **near).map(|(e, _)| e * e).sum()
+    };
+    let total = sum(true);
+    if total > 0.0 { sum(false) / total } else { 0.0 }
+}

@@ -1,0 +1,121 @@
+//! The verdict on an estimate: the situation of the run, the effectivity indices of such cases in the evidence, and one
+//! recommendation, in at most three sentences.
+
+mod facts;
+mod rules;
+mod text;
+mod touches;
+
+pub(super) use facts::{Beside, Facts};
+pub use touches::Touches;
+
+use percute_estimator::Parts;
+use rules::{RULES, Rule};
+use serde::Serialize;
+
+/// How far the estimate can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trust {
+    /// The evidence has such cases, and the estimate is between 0.8 and 1.6 times the true error in all of them.
+    High,
+    /// The range is wider, or a property of the run is not in the evidence.
+    Limited,
+    /// There is a reason not to trust the number.
+    Low,
+}
+
+impl std::fmt::Display for Trust {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::High => "high",
+            Self::Limited => "limited",
+            Self::Low => "low",
+        })
+    }
+}
+
+/// A range of effectivity indices outside which trust is limited.
+const GOOD: [f64; 2] = [0.8, 1.6];
+
+/// The verdict on an estimate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// How far the estimate can be trusted.
+    pub trust: Trust,
+    /// At most three sentences: situation and effectivity index, place and parts of the error, recommendation.
+    pub text: Vec<String>,
+    /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence.
+    pub effectivity: [f64; 2],
+    /// How the body touches first.
+    pub touches: Touches,
+    /// Normal velocity of the centre of mass before contact over the wave speed; none without contact.
+    pub speed_ratio: Option<f64>,
+    /// The longest step over the critical one.
+    pub courant: f64,
+    /// Edges of elements on the plane at one instant, at most; 1 for a single node.
+    pub elements_in_contact: usize,
+    /// Number of contact phases.
+    pub phases: usize,
+    /// Number of separate parts of the surface that touch.
+    pub zones: usize,
+    /// Mean thickness of the body over its diagonal; 1 for a bar.
+    pub slenderness: f64,
+    /// Parts of η at its largest value, over η.
+    pub shares: Shares,
+    /// Part of the squared mean error in elements with a node that touches.
+    pub at_contact: f64,
+    /// Properties of the run that no case of the evidence has.
+    pub untested: Vec<String>,
+}
+
+/// Parts of η at its largest value, over η, eq. \[14\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shares {
+    /// Misfit of the contact law.
+    pub contact: f64,
+    /// Misfit of inertia.
+    pub inertia: f64,
+    /// Misfit of stress.
+    pub stress: f64,
+}
+
+impl Verdict {
+    /// The verdict that follows from facts and from the parts of η at its largest value.
+    #[must_use]
+    pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
+        let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
+        let (untested, shares) = (rules::untested(facts), shares(parts));
+        let doubts = text::doubts(facts, rule);
+        let trust = match () {
+            () if !doubts.is_empty() => Trust::Low,
+            () if !untested.is_empty() || !within(rule) => Trust::Limited,
+            () => Trust::High,
+        };
+        Self {
+            trust,
+            text: text::sentences(facts, rule, &untested, &doubts, shares),
+            effectivity: rule.range,
+            touches: facts.contact.touches,
+            speed_ratio: facts.speed_ratio,
+            courant: facts.courant,
+            elements_in_contact: facts.elements_in_contact,
+            phases: facts.phases,
+            zones: facts.contact.zones,
+            slenderness: facts.slenderness,
+            shares,
+            at_contact: facts.at_contact,
+            untested,
+        }
+    }
+}
+
+fn within(rule: &Rule) -> bool {
+    rule.range[0] >= GOOD[0] && rule.range[1] <= GOOD[1]
+}
+
+fn shares(parts: &Parts) -> Shares {
+    let total = parts.total();
+    let share = |part: f64| if total > 0.0 { part / total } else { 0.0 };
+    Shares { contact: share(parts.contact), inertia: share(parts.kinetic), stress: share(parts.elastic) }
+}

@@ -1,0 +1,144 @@
+//! Effectivity indices of the evidence, situation by situation. Each range has its source beside it: a table that `percute reproduce` writes.
+//! The tests of the evidence compare the ranges with its page.
+
+use super::facts::Facts;
+use super::touches::Touches;
+use percute_estimator::Reconstruction;
+
+/// A situation that the evidence has, and its effectivity indices.
+pub(super) struct Rule {
+    /// Whether a run is in this situation. The first rule that applies counts.
+    pub(super) applies: fn(&Facts) -> bool,
+    /// The smallest and largest effectivity index, of the largest error and of the mean, rounded outwards.
+    pub(super) range: [f64; 2],
+    /// The situation in words, after "in tests of".
+    pub(super) situation: &'static str,
+    /// The reason to distrust the number, if there is one.
+    pub(super) doubt: Option<&'static str>,
+}
+
+/// Speeds over the wave speed that the evidence has: 0.4 m/s in ν = 0.45 (9.9 km/s) to 400 m/s in a bar (5.1 km/s).
+pub(super) const SPEEDS: [f64; 2] = [4e-5, 0.08];
+/// Courant numbers of the evidence.
+pub(super) const STEPS: [f64; 2] = [0.02, 0.9];
+/// Largest friction of the evidence.
+pub(super) const FRICTION: f64 = 0.5;
+
+/// Bodies of less mean thickness over their diagonal bend: 0.13 for the frame of the evidence, 0.18 and more for its other bodies.
+const SLENDER: f64 = 0.15;
+
+/// The rules in their order.
+pub(super) const RULES: [Rule; 15] = [
+    // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and `published` fall to a quarter.
+    Rule {
+        applies: |f| f.reconstruction == Reconstruction::Consistent,
+        range: [0.23, 18.0],
+        situation: "impacts with `consistent`",
+        doubt: Some("`consistent` drops forces; estimate with `corrected`"),
+    },
+    Rule {
+        applies: |f| f.reconstruction == Reconstruction::Published,
+        range: [0.27, 65.0],
+        situation: "impacts with `published`",
+        doubt: Some("`published` drops forces; estimate with `corrected`"),
+    },
+    // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely.
+    Rule {
+        applies: |f| f.contact.touches == Touches::None,
+        range: [0.95, 1.25],
+        situation: "bodies that vibrate without contact",
+        doubt: None,
+    },
+    // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`).
+    Rule { applies: |f| f.slenderness < SLENDER, range: [0.74, 1.1], situation: "thin parts that bend", doubt: None },
+    // bounces-runs.csv: after 3, 5 and 10 phases.
+    Rule {
+        applies: |f| f.phases > 1,
+        range: [0.49, 2.8],
+        situation: "several contact phases",
+        doubt: Some("after several contacts, simulation and solution are no longer in step"),
+    },
+    // bar-maps.csv at Δt = Δt_c: after release the shortest wave grows.
+    Rule {
+        applies: |f| f.dimension == 1 && f.courant > 0.99,
+        range: [0.4, 1.7],
+        situation: "bars at the critical step",
+        doubt: Some("at the critical step a short wave grows after release; take courant = 0.9"),
+    },
+    // bar-maps.csv, effectivity-steps.csv.
+    Rule { applies: |f| f.dimension == 1, range: [0.85, 1.23], situation: "bars that strike a wall", doubt: None },
+    // speeds.csv, trapezoid 45° with a corner of one element.
+    Rule {
+        applies: |f| f.contact.single_element,
+        range: [1.6, 2.0],
+        situation: "obtuse corners that one element fills",
+        doubt: None,
+    },
+    // speeds.csv, L tilted by 10°: its second corner arrives at another instant than that of the reference.
+    Rule {
+        applies: |f| f.contact.zones > 1,
+        range: [0.49, 1.4],
+        situation: "bodies that touch at several places",
+        doubt: Some("where a second place touches, a small error of its instant is a large error of the motion"),
+    },
+    // effectivity-steps.csv, block.
+    Rule {
+        applies: |f| f.contact.touches == Touches::Edge && f.courant < 0.45,
+        range: [0.91, 1.4],
+        situation: "flat impacts with short steps",
+        doubt: None,
+    },
+    // effectivity.csv, flat; speeds.csv, flat.
+    Rule {
+        applies: |f| f.contact.touches == Touches::Edge,
+        range: [0.91, 1.2],
+        situation: "flat impacts",
+        doubt: None,
+    },
+    // speeds.csv, trapezoid, flat.
+    Rule {
+        applies: |f| f.contact.touches == Touches::End,
+        range: [1.05, 1.25],
+        situation: "edges beside an inclined side",
+        doubt: None,
+    },
+    // effectivity.csv, curved; speeds.csv, curved; bounces-runs.csv after one phase.
+    Rule {
+        applies: |f| f.contact.touches == Touches::Curve,
+        range: [1.05, 1.6],
+        situation: "impacts of curves",
+        doubt: None,
+    },
+    // effectivity.csv, tilted and corner first; effectivity-steps.csv, tilted block; speeds.csv, corner first.
+    Rule {
+        applies: |f| f.contact.touches == Touches::Corner,
+        range: [0.89, 1.5],
+        situation: "impacts with a corner",
+        doubt: None,
+    },
+    Rule { applies: |_| true, range: [0.4, 2.8], situation: "impacts", doubt: None },
+];
+
+/// The properties of a run that no case of the evidence has.
+pub(super) fn untested(facts: &Facts) -> Vec<String> {
+    let mut untested = Vec::new();
+    if let Some(ratio) = facts.speed_ratio {
+        if ratio > SPEEDS[1] || (ratio > 0.0 && ratio < SPEEDS[0]) {
+            untested.push(format!("{} of the wave speed", crate::message::short(ratio, 2)));
+        } else if ratio <= 0.0 {
+            untested.push("a body that does not fly to its plane".to_string());
+        }
+    }
+    // Rounding moves the last digits of a stated Courant number; a bar may have the critical step.
+    let most = if facts.dimension == 1 { 1.0 } else { STEPS[1] };
+    if facts.courant < STEPS[0] * 0.99 || facts.courant > most * 1.01 {
+        untested.push(format!("steps of {} Δt_c", crate::message::short(facts.courant, 2)));
+    }
+    if facts.largest_friction > FRICTION {
+        untested.push(format!("friction above {FRICTION}"));
+    }
+    if facts.supported {
+        untested.push("supports".to_string());
+    }
+    untested
+}

@@ -1,0 +1,171 @@
+//! How a body touches its planes, from the outline of the mesh and from the contact results.
+
+use percute_core::contact::ContactResults;
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::mesh::Mesh;
+use percute_core::problem::Problem;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Sine of the largest angle between a plane and an edge that counts as parallel to it: coordinates with six digits.
+const PARALLEL: f64 = 1e-5;
+/// Where the outline turns by more (rad), it has a corner; else it is a curve. The evidence has curves of edges that turn by up to 22.5°,
+/// and corners that turn by 45° and more.
+const CORNER: f64 = 30.0 * PI / 180.0;
+/// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes straight on: the stress
+/// is singular there. The evidence has angles of 90° and of 117° and more.
+const OBTUSE: f64 = 100.0 * PI / 180.0;
+
+/// How the body touches first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Touches {
+    /// Along an edge of the outline that is parallel to the plane. A bar touches so.
+    Edge,
+    /// Along such an edge, at an end of which the outline turns by less than 80°: beside an inclined side, or within a straight one.
+    End,
+    /// With a curve: the outline turns little by little.
+    Curve,
+    /// With a corner.
+    Corner,
+    /// Not at all.
+    None,
+}
+
+/// How the body touches, and the mesh there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Contact {
+    pub(super) touches: Touches,
+    /// Number of separate parts of the surface that touch in the course of time.
+    pub(super) zones: usize,
+    /// Whether a single element fills an obtuse corner at which contact begins or ends.
+    pub(super) single_element: bool,
+}
+
+impl Contact {
+    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Self {
+        let surface = Surface::new(problem, results);
+        let Some(start) = surface.start() else {
+            return Self { touches: Touches::None, zones: 0, single_element: false };
+        };
+        let (touches, places) = surface.situation(&start);
+        let single = |&at: &usize| surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
+        let single_element = D > 1 && places.iter().any(single);
+        Self { touches, zones: surface.zones(), single_element }
+    }
+}
+
+/// The contact surface with the first touch of its nodes.
+struct Surface<'a, const D: usize, const N: usize> {
+    problem: &'a Problem<D, N>,
+    first_touch: Vec<Option<f64>>,
+    /// The nodes beside each node on the surface.
+    beside: Vec<Vec<usize>>,
+}
+
+impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
+    fn new(problem: &'a Problem<D, N>, results: &ContactResults<D>) -> Self {
+        let first_touch: Vec<_> = results.summary.iter().map(|summary| summary.first_touch).collect();
+        let mut beside = vec![Vec::new(); first_touch.len()];
+        for facet in problem.surface().facets() {
+            for &a in &facet.nodes {
+                beside[a].extend(facet.nodes.iter().filter(|&&b| b != a));
+            }
+        }
+        Self { problem, first_touch, beside }
+    }
+
+    /// The nodes that touch first.
+    fn start(&self) -> Option<Vec<usize>> {
+        let first = self.first_touch.iter().flatten().copied().min_by(f64::total_cmp)?;
+        Some((0..self.first_touch.len()).filter(|&at| self.first_touch[at] == Some(first)).collect())
+    }
+
+    /// How these nodes touch, and the nodes that decide it.
+    fn situation(&self, start: &[usize]) -> (Touches, Vec<usize>) {
+        if D == 1 {
+            return (Touches::Edge, start.to_vec());
+        }
+        let zone = self.flat_zone(start);
+        if !zone.contains(&true) {
+            let turns = start.iter().any(|&at| self.turn(at) > CORNER);
+            return (if turns { Touches::Corner } else { Touches::Curve }, start.to_vec());
+        }
+        let inside = |at: usize| self.beside[at].iter().filter(|&&other| zone[other]).count() > 1;
+        let ends: Vec<_> = (0..zone.len()).filter(|&at| zone[at] && !inside(at)).collect();
+        let goes_on = |&at: &usize| {
+            let touched = self.beside[at].iter().any(|&next| !zone[next] && self.first_touch[next].is_some());
+            touched && self.turn(at) <= CORNER
+        };
+        let touches = match () {
+            () if ends.iter().any(goes_on) => Touches::Curve,
+            () if ends.iter().any(|&at| self.turn(at) < PI - OBTUSE) => Touches::End,
+            () => Touches::Edge,
+        };
+        (touches, ends)
+    }
+
+    /// Whether each node is on an edge that is parallel to the plane and joined with the start by such edges.
+    fn flat_zone(&self, start: &[usize]) -> Vec<bool> {
+        let (mut zone, mut next) = (vec![false; self.beside.len()], start.to_vec());
+        while let Some(at) = next.pop() {
+            for &other in self.beside[at].iter().filter(|&&other| self.parallel(at, other)) {
+                zone[at] = true;
+                if !std::mem::replace(&mut zone[other], true) {
+                    next.push(other);
+                }
+            }
+        }
+        zone
+    }
+
+    /// Whether the edge between two nodes is parallel to the plane at the start of the run.
+    fn parallel(&self, a: usize, b: usize) -> bool {
+        let surface = self.problem.surface();
+        let (gap, at) = (|at: usize| surface.gap(at, &self.start_displacement(at)), |at: usize| surface.point(at));
+        let length = (0..D).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
+        (gap(a) - gap(b)).abs() <= PARALLEL * length
+    }
+
+    fn start_displacement(&self, at: usize) -> [f64; D] {
+        self.problem.initial_displacement()[self.node(at).index()]
+    }
+
+    fn node(&self, at: usize) -> NodeId {
+        self.problem.surface().nodes()[at].node
+    }
+
+    fn elements(&self, at: usize) -> &[ElementId] {
+        self.problem.mesh().stars().star(self.node(at)).elements
+    }
+
+    /// By how much the outline turns at a node (rad): π less the angle inside the body.
+    fn turn(&self, at: usize) -> f64 {
+        PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
+    }
+
+    /// The parts of the surface that touch, each joined by edges.
+    fn zones(&self) -> usize {
+        let mut seen: Vec<bool> = self.first_touch.iter().map(Option::is_none).collect();
+        let mut zones = 0;
+        for at in 0..seen.len() {
+            let mut next = vec![at];
+            zones += usize::from(!seen[at]);
+            while let Some(at) = next.pop() {
+                if !std::mem::replace(&mut seen[at], true) {
+                    next.extend(&self.beside[at]);
+                }
+            }
+        }
+        zones
+    }
+}
+
+/// The angle of a triangle at one of its nodes (rad); 0 for other elements.
+fn angle<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: ElementId, node: NodeId) -> f64 {
+    let Some(k) = mesh.local_node(element, node).filter(|_| D == 2 && N == 3) else { return 0.0 };
+    let points = mesh.cell_points(element);
+    let side = |to: usize| -> [f64; D] { std::array::from_fn(|c| points[to % N][c] - points[k][c]) };
+    let (a, b) = (side(k + 1), side(k + 2));
+    (a[0] * b[1 % D] - a[1 % D] * b[0]).abs().atan2((0..D).map(|c| a[c] * b[c]).sum())
+}

@@ -1,0 +1,48 @@
+"""The rebound of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Rebound"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rebound:
+    """Velocities of the centre of mass, V = Σ m v / Σ m, before the first contact and after the last one.
+
+    Normal components are along the normal of the plane that gives the largest impulse, positive away from it.
+    """
+
+    velocity_before: NDArray[np.float64]
+    """V at the last instant before the first contact force (m/s), shape (dimension,)."""
+    velocity_after: NDArray[np.float64] | None
+    """V at the first instant after the last contact force (m/s); None if contact has not ended."""
+    normal_before: float
+    """Normal component of ``velocity_before`` (m/s)."""
+    normal_after: float | None
+    """Normal component of ``velocity_after`` (m/s)."""
+    restitution: float | None
+    """Coefficient of restitution −V′·n / V·n; None if contact has not ended, or if the body does not arrive."""
+    first_touch: float
+    """The first instant at which a node touches (s)."""
+    release: float | None
+    """The last instant at which a node touches (s); None if contact has not ended."""
+    time_in_contact: float
+    """From the first touch to the release, or to the end of the run (s)."""
+    ended: bool
+    """Whether contact has ended."""
+
+    @classmethod
+    def _of(cls, found: Mapping[str, Any] | None) -> Rebound | None:
+        """Make it from its JSON object."""
+        if found is None:
+            return None
+        after = found["velocity_after"]
+        vectors = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
+        return cls(**{name: vectors.get(name, found[name]) for name in cls.__dataclass_fields__})

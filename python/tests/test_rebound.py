@@ -1,0 +1,68 @@
+"""The rebound of a body against exact solutions."""
+
+import json
+
+import numpy as np
+import percute as pc
+import pytest
+
+BAR = {"length": 0.1, "young": 70e9, "density": 2700.0, "section": 0.02, "speed": 400.0, "gap": 2e-4}
+
+
+def strikes(elements: int) -> pc.Rebound:
+    """Run the bar until it is away from its plane again."""
+    mesh = pc.Mesh.bar(BAR["length"], elements=elements)
+    material = pc.Elastic(young=BAR["young"], density=BAR["density"], section=BAR["section"])
+    plane = pc.Plane(point=-BAR["gap"], normal=1.0)
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=-BAR["speed"])
+    rebound = pc.simulate(problem, end=50e-6, courant=0.9).rebound
+    assert rebound is not None and rebound.ended
+    return rebound
+
+
+def test_a_bar_rebounds_like_the_exact_one() -> None:
+    """Restitution 1 and contact for 2L/c: errors fall with the order of the front, 2/3 (docs/verification.md, bar_impact)."""
+    exact = pc.exact.BarImpact(**BAR)
+    duration = exact.release_time - exact.impact_time
+    assert duration == pytest.approx(2.0 * BAR["length"] / exact.wave_speed, rel=1e-12)
+    found = [strikes(elements) for elements in (25, 100, 400)]
+    restitution = np.array([1.0 - each.restitution for each in found if each.restitution is not None])
+    durations = np.array([abs(each.time_in_contact / duration - 1.0) for each in found])
+    for errors, least in ((restitution, 0.5), (durations, 0.5)):
+        # Two halvings of the size; steps make the instants of touch and release coarse.
+        assert np.log2(errors[0] / errors[-1]) / 4.0 > least, errors
+    assert abs(restitution[-1]) < 0.01 and durations[-1] < 0.005
+    assert found[-1].velocity_before.tolist() == [pytest.approx(-400.0, rel=1e-12)]
+    assert found[-1].release is not None and found[-1].first_touch == pytest.approx(exact.impact_time, abs=2e-7)
+
+
+def test_momentum_and_impulse_give_the_rebound() -> None:
+    """A block with friction: V′ − V is the impulse of contact over the mass, in both components."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    material = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    plane = pc.Plane(point=(0, -2e-4), normal=(0, 1), friction=0.2)
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(400, -400))
+    history = pc.simulate(problem, end=40e-6, courant=0.9)
+    rebound = history.rebound
+    assert rebound is not None and rebound.velocity_after is not None and rebound.restitution is not None
+    given = history.contact.resultants.impulse[-1] / problem.mass.sum()
+    assert rebound.velocity_after - rebound.velocity_before == pytest.approx(given, rel=1e-9)
+    assert rebound.restitution == pytest.approx(-rebound.velocity_after[1] / rebound.velocity_before[1], rel=1e-12)
+    assert 0.5 < rebound.restitution < 1.0
+
+
+@pytest.mark.filterwarnings("ignore::percute.InputWarning")
+def test_contact_that_lasts_and_a_body_that_never_touches() -> None:
+    mesh = pc.Mesh.bar(0.1, elements=10)
+    material = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+    for gap, touches in ((1e-3, True), (1.0, False)):
+        problem = pc.Problem(mesh, material=material, obstacles=[pc.Plane(point=-gap, normal=1.0)], initial_velocity=-400.0)
+        history = pc.simulate(problem, end=10e-6, courant=0.9)
+        rebound = history.rebound
+        assert (rebound is not None) == touches
+        if rebound is not None:
+            assert not rebound.ended and rebound.restitution is None and rebound.release is None and rebound.velocity_after is None
+            assert rebound.time_in_contact == pytest.approx(history.time[-1] - rebound.first_touch)
+        document = json.loads(pc.estimate(history).to_json())
+        assert (document["rebound"] is None) != touches
+        assert document["verdict"]["touches"] == ("edge" if touches else "none")
