@@ -41,6 +41,7 @@ from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
+from percute.verifying import Verification, verify
 
 __all__ = [
     "Balance",
@@ -76,6 +77,7 @@ __all__ = [
     "Support",
     "Traction",
     "TrueError",
+    "Verification",
     "WorstElement",
     "__version__",
     "estimate",
@@ -85,6 +87,7 @@ __all__ = [
     "run",
     "simulate",
     "true_errors",
+    "verify",
 ]
 
 

@@ -14,6 +14,7 @@ __all__ = [
     "EstimateFileData",
     "ExactData",
     "HistoryData",
+    "MOST_LEVELS",
     "MOST_THREADS",
     "MeshData",
     "ProblemData",
@@ -29,11 +30,14 @@ __all__ = [
     "is_estimate",
     "meaning",
     "open_history",
+    "rebound_end",
     "run_case",
     "simulate",
     "true_error_of_bar_impact",
+    "verification",
 ]
 
+MOST_LEVELS: int
 MOST_THREADS: int
 __version__: str
 
@@ -194,6 +198,7 @@ class EstimateFileData:
 @final
 class CaseData:
     def __new__(cls, name: str, text: str, folder: str | PathLike[str]) -> CaseData: ...
+    def resolved(self, progress: _Tell) -> tuple[CaseData, str | None]: ...
     def plausibility_warnings(self, in_memory: bool) -> list[str]: ...
     def import_warnings(self) -> list[str]: ...
     def outputs(self, case: str | PathLike[str] | None, store: str | PathLike[str] | None, overwrite: bool) -> _Outputs: ...
@@ -220,6 +225,22 @@ class ExactData:
 def command(arguments: Sequence[str]) -> int: ...
 def element_field(problem: ProblemData, quantity: str, nodal: _Floats) -> _Floats: ...
 def meaning() -> str: ...
+def rebound_end(
+    problem: ProblemData,
+    pace: tuple[float | None, float | None],
+    longest: float,
+    after: float | None,
+    progress: _Tell,
+) -> tuple[float, str | None]: ...
+def verification(
+    problem: ProblemData,
+    times: _Times,
+    levels: int,
+    reconstruction: str,
+    threads: int | None,
+    tell: Callable[[str], object] | None,
+    progress: _Tell,
+) -> tuple[str, str]: ...
 def plausibility_warnings(
     problem: ProblemData,
     times: _Times,

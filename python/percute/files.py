@@ -104,6 +104,8 @@ def run(
         warn(read.plausibility_warnings(file is None))
         # Only an estimate file needs maps.
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
+        read, told_late = read.resolved(tell)
+        warn([] if told_late is None else [told_late])
         data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
         history = History._of(data[0], name=name)
         estimated = Estimate._of(data[1], history, name)

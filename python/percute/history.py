@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +17,7 @@ from percute import _percute
 from percute.balance import Balance
 from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn
 from percute.contact import Contact
-from percute.errors import FileFormatError, MissingFileError, PercuteError, StorageError
+from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
 from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
@@ -295,7 +295,7 @@ def _rebuild(problem: Problem, *contents: Any) -> History:
     return History._of(_percute.HistoryData.from_arrays(problem._data, *contents), problem)
 
 
-def _times(end: float | None, courant: float | None, step: float | None, steps: ArrayLike | None) -> _percute._Times:
+def _times(end: object, courant: float | None, step: float | None, steps: ArrayLike | None) -> _percute._Times:
     """Check the end and the steps of a run."""
     lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
     return optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths
@@ -304,10 +304,12 @@ def _times(end: float | None, courant: float | None, step: float | None, steps: 
 def simulate(
     problem: Problem,
     *,
-    end: float | None = None,
+    end: float | Literal["rebound"] | None = None,
     courant: float | None = None,
     step: float | None = None,
     steps: ArrayLike | None = None,
+    longest: float | None = None,
+    after: float | None = None,
     store: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
     progress: ProgressOption = None,
@@ -318,14 +320,20 @@ def simulate(
     ----------
     problem : Problem
         What to simulate.
-    end : float
-        End T of the run (s); it may be left out with ``steps``.
+    end : float or "rebound"
+        End T of the run (s); it may be left out with ``steps``. With "rebound" the run ends some time after the body has left its planes;
+        a first pass of the integrator looks for this end and takes as long as a simulation without its estimate.
     courant : float
         Time step over the critical one, above 0 and at most 1. Give exactly one of ``courant``, ``step`` and ``steps``.
     step : float
         Time step (s). The run has equal steps of at most about this length and ends at T exactly.
     steps : (n,) floats
         Time steps (s), one by one.
+    longest : float
+        The latest end (s); required with ``end="rebound"``, and for this only.
+    after : float, optional
+        With ``end="rebound"``, how long the run goes on after the last contact (s); by default twice the time of a wave along the
+        diagonal of the body.
     store : str or path, optional
         A file, such as ``"block.vtkhdf"``, to which the steps are written during the run; they are then not kept in memory.
         See ``docs/history.md``. Disk space for the complete file is allocated at the start.
@@ -343,7 +351,7 @@ def simulate(
     -----
     InputWarning
         The input is possible but probably a mistake: mixed units, a body that never touches, a run that needs more memory
-        than is free.
+        than is free; or contact does not end before ``longest``.
 
     Raises
     ------
@@ -357,13 +365,34 @@ def simulate(
         After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``; None before the first.
     """
     instance("problem", problem, Problem)
-    times = _times(end, courant, step, steps)
     file = None if store is None else vtkhdf("store", store)
     replace = flag("overwrite", overwrite)
+    if end == "rebound":
+        end = _rebound_end(problem, _times(None, courant, step, steps), longest, after, progress)
+    elif longest is not None or after is not None:
+        raise InputError('`longest` and `after` need end="rebound"; leave them out')
+    times = _times(end, courant, step, steps)
     warn(_percute.plausibility_warnings(problem._data, times, file is None))
     with shown(progress) as tell, history_of_the_exception(problem):
         data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))
+
+
+def _rebound_end(problem: Problem, times: _percute._Times, longest: float | None, after: float | None, progress: ProgressOption) -> float:
+    """Find the end of a run that ends with the rebound (s)."""
+    _, courant, step, steps = times
+    if steps is not None or (courant is None) == (step is None):
+        raise InputError('end="rebound" needs exactly one of `courant` (0 to 1) and `step` (s)')
+    if longest is None:
+        raise InputError('end="rebound" needs `longest`: the latest end (s)')
+    latest, later = optional_number("longest", longest), optional_number("after", after)
+    if later is not None and later <= 0.0:
+        raise InputError(f"`after` is {later:g} s; it must be positive")
+    assert latest is not None
+    with shown(progress) as tell:
+        end, warning = _percute.rebound_end(problem._data, (courant, step), latest, later, tell)
+    warn([] if warning is None else [warning])
+    return end
 
 
 def true_errors(

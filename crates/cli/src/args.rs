@@ -45,6 +45,8 @@ pub enum Command {
     Estimate(EstimateArguments),
     /// Write a page on an estimate, a history (estimated first) or a case (run first): one HTML file to hand over
     Report(ReportArguments),
+    /// Run a case on its mesh and on nested refinements: true errors, effectivity indices and orders of convergence
+    Verify(VerifyArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file
     Info(InfoArguments),
     /// Write fields of a history for ParaView and other programs: stress, velocity, reaction, error at chosen steps
@@ -154,6 +156,25 @@ pub struct ReportArguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub work: WorkArguments,
+}
+
+/// Arguments of `percute verify`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct VerifyArguments {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// Number of refinements, 1 to 5; each has about eight times (a bar: four times) the work of the one before
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    pub levels: usize,
+    /// Print one JSON document instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads [default: one for each core]; the result does not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// No progress, cost and warnings on standard error
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Arguments of `percute info`.

@@ -2,8 +2,12 @@
 
 use crate::{bridge, errors};
 use percute_core::each_dimension;
+use percute_core::simplex::ByDimension;
+use percute_workflow::Failure;
 use percute_workflow::case::{Case, Instants, Source, parse};
 use percute_workflow::outputs;
+use percute_workflow::report::Warning;
+use percute_workflow::run::{located, resolved};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
@@ -21,6 +25,25 @@ impl CaseData {
     fn parse(py: Python<'_>, name: String, text: String, folder: PathBuf) -> PyResult<Self> {
         let case = bridge::blocking(py, None, move |_| parse(Source::new(name, text).in_folder(folder)))?;
         Ok(Self { case: case.map_err(|error| errors::input(py, error))? })
+    }
+
+    /// The case with the end of its run, that of one which ends with the rebound is looked for; with a warning if contact does not end.
+    fn resolved(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<(Self, Option<String>)> {
+        let case = self.case.clone();
+        let work = move |mut watch: bridge::Watch| -> Result<Option<(Case, Option<Warning>)>, Failure> {
+            Ok(match case {
+                ByDimension::Bar(case) => resolved(&case, &mut watch)
+                    .map_err(|failure| located(&case, failure))?
+                    .map(|(case, told)| (ByDimension::Bar(Box::new(case)), told)),
+                ByDimension::Plane(case) => resolved(&case, &mut watch)
+                    .map_err(|failure| located(&case, failure))?
+                    .map(|(case, told)| (ByDimension::Plane(Box::new(case)), told)),
+            })
+        };
+        let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+        let (case, warning) =
+            found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
+        Ok((Self { case }, warning.map(|warning| warning.message)))
     }
 
     /// Its plausibility warnings; with `in_memory`, its history is kept in memory.

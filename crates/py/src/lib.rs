@@ -21,6 +21,7 @@ mod simulate;
 mod statement;
 mod stored;
 mod time;
+mod verify;
 mod view;
 
 /// What the Python package `percute` is made of; use the package.
@@ -52,14 +53,17 @@ mod _percute {
     #[pymodule_export]
     use super::reference::{errors_against_history, errors_against_simulation};
     #[pymodule_export]
-    use super::simulate::{open_history, plausibility_warnings, run_case, simulate};
+    use super::simulate::{open_history, plausibility_warnings, rebound_end, run_case, simulate};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
+    #[pymodule_export]
+    use super::verify::verification;
 
     /// Adds the constants.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("MOST_THREADS", percute_estimator::MOST_THREADS)?;
+        module.add("MOST_LEVELS", percute_workflow::verify::MOST_LEVELS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 

@@ -22,6 +22,7 @@ use percute_workflow::case::{CaseOf, Instants, Source};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
 use percute_workflow::run::{self, Analysis, Storage, TakeStep};
+use percute_workflow::until::Until;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -127,6 +128,29 @@ fn run_one<const D: usize, const N: usize>(
     let (history, (results, seconds)) =
         planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
     Ok((history, Arc::new(Made::new(problem, times, options, results, None, seconds))))
+}
+
+/// The end (s) of a run that ends with the rebound, by a pass of the integrator alone, and a warning if contact does not end in time.
+#[pyfunction]
+pub(crate) fn rebound_end(
+    py: Python<'_>,
+    problem: &ProblemData,
+    pace: (Option<f64>, Option<f64>),
+    longest: f64,
+    after: Option<f64>,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(f64, Option<String>)> {
+    let (courant, step) = pace;
+    let critical = problem.critical_step(py)?;
+    time::grid(py, Some(longest), courant, step, None, critical)?;
+    let step = step.or_else(|| courant.map(|courant| courant * critical)).unwrap_or(critical);
+    each_dimension!(&problem.problem, problem => {
+        let (problem, until) = (problem.clone(), Until::new(problem, longest, after, step));
+        let work = move |mut watch: Watch| run::rebound(&problem, &until, &mut watch);
+        let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+        let found = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
+        Ok((found.times.end(), (!found.ended).then(|| until.not_ended().message)))
+    })
 }
 
 /// Plausibility warnings about a run; with `in_memory`, its history is kept in memory.

@@ -15,6 +15,8 @@ pub mod outputs;
 pub mod report;
 pub mod run;
 pub mod tables;
+pub mod until;
+pub mod verify;
 pub mod writable;
 
 pub use failure::{Failure, inconsistency};

@@ -6,15 +6,18 @@ use crate::case::CaseOf;
 use crate::failure::Failure;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
+use crate::report::Warning;
+use crate::until::{Found, Leaving, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
+use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
 use percute_io::history::Writer;
+use std::sync::atomic::AtomicBool;
 
 /// The analysis of the steps of a run or of a history.
 #[derive(Clone, Debug, Default)]
@@ -69,6 +72,42 @@ pub fn simulate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
     drive(&Ordered::new(problem), times, None, storage, &mut Discard, observer)
+}
+
+/// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the observer stops it.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn rebound<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    until: &Until,
+    observer: &mut dyn Observer,
+) -> Result<Option<Found>, Failure> {
+    let refused = |error: TimeError| Failure::Argument(error.to_string());
+    let (ordered, times, seen) = (Ordered::new(problem), until.times().map_err(refused)?, AtomicBool::new(false));
+    let mut leaving = Leaving::new(ordered.problem(), until.after, &seen);
+    let mut stop = Stop { inner: observer, left: &seen, asked: false };
+    let done = simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop);
+    done.map_err(|error| ordered.failure(error.into()))?;
+    let (left, asked) = (leaving.left, stop.asked);
+    if asked && left.is_none() { Ok(None) } else { until.found(left).map(Some).map_err(refused) }
+}
+
+/// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact does not end
+/// in time; no case if the observer stops the search.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn resolved<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    observer: &mut dyn Observer,
+) -> Result<Option<(CaseOf<D, N>, Option<Warning>)>, Failure> {
+    let Some(until) = &case.until else { return Ok(Some((case.clone(), None))) };
+    let found = rebound(&case.problem, until, observer)?;
+    let with = |Found { times, ended }: Found| {
+        (CaseOf { times, until: None, ..case.clone() }, (!ended).then(|| until.not_ended()))
+    };
+    Ok(found.map(with))
 }
 
 /// Simulates a problem and analyses the steps beside the run.

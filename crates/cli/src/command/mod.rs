@@ -11,15 +11,18 @@ mod report;
 mod result;
 mod run;
 mod simulate;
+mod verify;
 
 use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
 use crate::exit::{BAD_INPUT, DONE, FAILED, code};
+use crate::progress::Watch;
 use clap::Parser;
 use percute_io::is_hdf5;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Source, parse};
 use percute_workflow::message::hint;
 use percute_workflow::report::Warning;
+use percute_workflow::run::{located, resolved as search};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{Read, Write};
@@ -54,6 +57,7 @@ where
             Command::Simulate(arguments) => simulate::command(&arguments, console),
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Report(arguments) => report::command(&arguments, console),
+            Command::Verify(arguments) => verify::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Export(arguments) => export::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
@@ -111,6 +115,25 @@ impl Console<'_> {
     fn warn<'w>(&mut self, warnings: impl IntoIterator<Item = &'w Warning>) {
         warnings.into_iter().for_each(|warning| self.say(&format!("warning: {}", warning.message)));
     }
+}
+
+/// The case with the end of its run; no case if the search for it was stopped.
+fn resolved<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    quiet: bool,
+    console: &mut Console<'_>,
+) -> Result<Option<CaseOf<D, N>>, Failure> {
+    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let found = search(case, watch).map_err(|failure| located(case, failure))?;
+    watch.clear();
+    let Some((case, warning)) = found else {
+        console.say("interrupted while looking for the rebound");
+        return Ok(None);
+    };
+    if !quiet {
+        console.warn(&warning);
+    }
+    Ok(Some(case))
 }
 
 /// Reads and checks a case file.

@@ -2,7 +2,7 @@
 
 use super::outputs::{begin_history, check};
 use super::result::{Finished, give};
-use super::{Console, case};
+use super::{Console, case, resolved};
 use crate::args::{MapArguments, RunArguments};
 use crate::exit::INTERRUPTED;
 use crate::progress::Watch;
@@ -35,9 +35,12 @@ fn run_case<const D: usize, const N: usize>(
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
     within("--instants", instants, case.times.end())?;
+    request(stored, "--estimate", maps, Request::default)?;
+    let told = console.warn_about(case, work.quiet);
+    let Some(case) = &resolved(case, work.quiet, console)? else { return Ok(INTERRUPTED) };
+    within("--instants", instants, case.times.end())?;
     let wanted = || Request { steps: instants.steps(&case.times, options.every.stride()), fields };
     let request = request(stored, "--estimate", maps, wanted)?;
-    let told = console.warn_about(case, work.quiet);
     let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();

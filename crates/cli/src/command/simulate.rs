@@ -1,7 +1,7 @@
 //! `percute simulate`.
 
 use super::outputs::{begin_history, check};
-use super::{Console, case};
+use super::{Console, case, resolved};
 use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
@@ -33,6 +33,7 @@ fn simulate<const D: usize, const N: usize>(
     if !quiet {
         console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     }
+    let Some(case) = &resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
     let writer = begin_history(case, history, force, quiet, console)?;
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
     let start = Instant::now();

@@ -41,6 +41,13 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         Self::checked(self.simplex, points, &cells, &facets, &elements)
     }
 
+    /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the nodes of this mesh.
+    #[must_use]
+    pub fn prolonged(&self, nodal: &[[f64; D]]) -> Vec<[f64; D]> {
+        let middle = |[a, b]: [usize; 2]| std::array::from_fn(|c| 0.5 * (nodal[a][c] + nodal[b][c]));
+        nodal.iter().copied().chain(self.edges().into_iter().map(middle)).collect()
+    }
+
     /// The nodes of each edge, ascending, in ascending order.
     pub(super) fn edges(&self) -> Vec<[usize; 2]> {
         let pairs = (0..N).flat_map(|j| (0..j).map(move |i| (i, j)));
@@ -110,6 +117,8 @@ mod tests {
             fine.cells().iter().map(|cell| cell.map(|n| n.index())).collect::<Vec<_>>(),
             [[0, 3], [3, 1], [1, 4], [4, 2]]
         );
+        let coarse = BarMesh::uniform_bar(2.0, 2).unwrap();
+        assert_eq!(coarse.prolonged(&[[1.0], [2.0], [4.0]]), [[1.0], [2.0], [4.0], [1.5], [3.0]]);
         let end = fine.facet_groups()["end"][0];
         assert_eq!(fine.facets()[end.index()].nodes[0].index(), 2);
     }

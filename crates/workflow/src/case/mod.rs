@@ -47,6 +47,7 @@ pub use source::{CaseError, Source};
 pub use statement::{NotRepresentable, problem_from, statement};
 
 use crate::report::Subject;
+use crate::until::Until;
 use percute_core::dynamics::SimulationError;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
@@ -74,8 +75,10 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub source: Source,
     /// The problem.
     pub problem: Problem<D, N>,
-    /// The instants.
+    /// The instants; to the latest end, while a run that ends with the rebound has not been resolved.
     pub times: TimeGrid,
+    /// The end with the rebound, if the run ends so and has not been resolved.
+    pub until: Option<Until>,
     /// Δt_c (s), eq. \[34\].
     pub critical_step: f64,
     /// Options of the estimate.
@@ -120,9 +123,9 @@ fn read<const D: usize, const N: usize>(
     let wanted = time::read(root)?;
     let problem = problem::read(root, mesh)?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
-    let times = wanted.grid(critical_step)?;
+    let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step));
     output::check(root, &output, times.end())?;
-    Ok(CaseOf { source: source.clone(), problem, times, critical_step, options, output, mesh_file })
+    Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_file })
 }
 
 /// The document in a text.

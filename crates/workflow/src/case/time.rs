@@ -4,6 +4,8 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use crate::message::trimmed;
+use crate::until::Until;
+use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
 
 /// How the steps were stated.
@@ -16,7 +18,14 @@ enum Steps<'a> {
 /// The table, read but not yet compared with the critical step.
 pub(super) struct Wanted<'a> {
     end: Option<(f64, Value<'a>)>,
+    rebound: Option<Rebound>,
     steps: Steps<'a>,
+}
+
+/// `end = "rebound"`: the latest end, and how long the run goes on after contact (s).
+struct Rebound {
+    longest: f64,
+    after: Option<f64>,
 }
 
 /// Reads the table.
@@ -24,7 +33,7 @@ pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
     let table = root
         .single("time")?
         .ok_or_else(|| root.error("the table [time] is missing: give `end` in s and, say, courant = 0.9"))?;
-    table.only(&["end", "courant", "step", "steps"])?;
+    table.only(&["end", "longest", "after", "courant", "step", "steps"])?;
     let ways: Vec<Value<'_>> = ["courant", "step", "steps"].iter().filter_map(|key| table.get(key)).collect();
     if ways.len() != 1 {
         let message = "needs exactly one of `courant` (0 to 1), `step` (s) and `steps` (a list in s)";
@@ -44,12 +53,32 @@ pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
         let steps = value.list("steps in s")?.iter().map(positive).collect::<Result<_, _>>()?;
         Steps::Each(steps, value)
     };
+    let rebound = rebound(&table, &steps)?;
     let end = match (&steps, table.get("end")) {
+        _ if rebound.is_some() => None,
         (_, Some(value)) => Some((positive(&value)?, value)),
         (Steps::Each(..), None) => None,
         (_, None) => return Err(table.error("`end` is missing: give the end of the run in s")),
     };
-    Ok(Wanted { end, steps })
+    Ok(Wanted { end, rebound, steps })
+}
+
+/// Reads `end = "rebound"`, and the keys that need it.
+fn rebound(table: &Table<'_>, steps: &Steps<'_>) -> Result<Option<Rebound>, CaseError> {
+    let Some(end) = table.get("end").filter(|end| end.text("").is_ok()) else {
+        let surplus = ["longest", "after"].iter().find_map(|key| table.get(key));
+        let refuse = |value: Value<'_>| Err(value.error("needs end = \"rebound\": give this, or leave the key out"));
+        return surplus.map_or(Ok(None), refuse);
+    };
+    if end.text("")? != "rebound" {
+        return Err(end.must_be("a number in s, or \"rebound\""));
+    }
+    if let Steps::Each(_, at) = steps {
+        return Err(at.error("have an end of their own: with end = \"rebound\" give `courant` or `step`"));
+    }
+    let at = table.get("longest").ok_or_else(|| end.error("needs `longest`: the latest end in s"))?;
+    let after = table.get("after").map(|after| positive(&after)).transpose()?;
+    Ok(Some(Rebound { longest: positive(&at)?, after }))
 }
 
 fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
@@ -58,9 +87,25 @@ fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
 }
 
 impl Wanted<'_> {
-    /// The instants, with no step above the critical one.
+    /// The end with the rebound, if the run ends so.
+    pub(super) fn until<const D: usize, const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        critical: f64,
+    ) -> Option<Until> {
+        let Rebound { longest, after, .. } = self.rebound.as_ref()?;
+        let step = match self.steps {
+            Steps::Courant(courant, _) => courant * critical,
+            Steps::Step(step, _) => step,
+            Steps::Each(..) => return None,
+        };
+        Some(Until::new(problem, *longest, *after, step))
+    }
+
+    /// The instants, with no step above the critical one; to the latest end, if the run ends with the rebound.
     pub(super) fn grid(&self, critical: f64) -> Result<TimeGrid, CaseError> {
-        let end = self.end.as_ref().map_or(0.0, |(end, _)| *end);
+        let latest = self.rebound.as_ref().map_or(0.0, |rebound| rebound.longest);
+        let end = self.end.as_ref().map_or(latest, |(end, _)| *end);
         match &self.steps {
             Steps::Courant(courant, at) => TimeGrid::with_step(end, courant * critical).map_err(|e| refused(at, &e)),
             Steps::Step(step, at) => {

@@ -80,6 +80,8 @@ pub struct TimeInfo {
     pub critical_time_step: f64,
     pub steps_planned: usize,
     pub end: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after_contact: Option<f64>,
 }
 
 impl TimeInfo {
@@ -89,14 +91,17 @@ impl TimeInfo {
             critical_time_step: critical_step,
             steps_planned: times.step_count(),
             end: times.end(),
+            after_contact: None,
         }
     }
 
     fn lines(&self) -> [(&'static str, String); 2] {
-        [
-            ("time", format!("{} s in {};", trimmed(self.end, 5), counted(self.steps_planned, "step"))),
-            ("", step(self.time_step, self.critical_time_step)),
-        ]
+        let (end, steps) = (trimmed(self.end, 5), counted(self.steps_planned, "step"));
+        let time = match self.after_contact {
+            None => format!("{end} s in {steps};"),
+            Some(after) => format!("to {} s after the rebound, at most {end} s in {steps};", trimmed(after, 3)),
+        };
+        [("time", time), ("", step(self.time_step, self.critical_time_step))]
     }
 }
 
@@ -120,7 +125,10 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
         problem: problem_summary(&case.subject()),
         materials: setting::materials(&case.problem),
         planes: setting::planes(&case.problem),
-        time: TimeInfo::new(&case.times, case.critical_step),
+        time: TimeInfo {
+            after_contact: case.until.map(|until| until.after),
+            ..TimeInfo::new(&case.times, case.critical_step)
+        },
         history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source))?.bytes(),
         run_memory: memory::of_run(&case.problem, &case.times),
         estimate_memory: percute_estimator::memory(&case.problem, &case.times, &case.options) as u64,

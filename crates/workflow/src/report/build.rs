@@ -41,8 +41,7 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, checked, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let balances = simulation.balance_over_time.iter().copied();
-        let over_time = times.instants().iter().copied().zip(balances).collect();
+        let over_time = times.instants().iter().copied().zip(simulation.balance_over_time.iter().copied()).collect();
         let facts = Facts {
             problem: &problem,
             left_out: checked.and_then(|checked| checked.left_out),

@@ -1,0 +1,99 @@
+//! A verification in lines of 80 columns.
+
+use super::levels::{Cost, Level, Orders, Verification};
+use crate::message::{bytes, counted, short, trimmed};
+
+/// What will be run, before the work starts.
+#[must_use]
+pub fn announced(cost: &Cost) -> String {
+    let level = |(k, work): (usize, &super::levels::Work)| {
+        let (elements, steps) = (counted(work.elements, "element"), counted(work.steps, "step"));
+        format!("level {k}: {elements}, {steps}\n")
+    };
+    let levels: String = cost.levels.iter().enumerate().map(level).collect();
+    let (times, memory) = (short(cost.times_the_first, 2), bytes(cost.bytes));
+    format!(
+        "{levels}about {times} times the time of level 0 and {memory} of memory; the finest is simulated once more to compare"
+    )
+}
+
+/// The table and the conclusions.
+#[must_use]
+pub fn table(verification: &Verification) -> String {
+    let head = ["elements", "steps", "est. mean", "true mean", "index sup", "mean", "peak N", "impulse", "rebound"];
+    let mut lines = vec![row(&head.map(str::to_string))];
+    lines.extend(verification.levels.iter().map(|level| row(&cells(level))));
+    let Orders { estimate, peak_force, impulse, rebound } = verification.orders;
+    let order = |order: Option<f64>| order.map_or_else(|| "–".to_string(), |p| format!("h^{p:.1}"));
+    let blank = String::new;
+    lines.push(row(&[
+        "order".to_string(),
+        blank(),
+        order(estimate),
+        blank(),
+        blank(),
+        blank(),
+        order(peak_force),
+        order(impulse),
+        order(rebound),
+    ]));
+    lines.push(
+        "Errors in J^½, impulse in N s, rebound in m/s; the true error is that against the finest mesh.".to_string(),
+    );
+    lines.extend(expected(verification));
+    lines.push(conclusion(verification));
+    lines.join("\n") + "\n"
+}
+
+fn cells(level: &Level) -> [String; 9] {
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| trimmed(value, 4));
+    let index = |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| short(value, 3));
+    let effectivity = level.effectivity;
+    [
+        level.elements.to_string(),
+        level.steps.to_string(),
+        short(level.estimate.mean, 4),
+        number(level.error.map(|e| e.mean)),
+        index(effectivity.map(|e| e.sup)),
+        index(effectivity.map(|e| e.mean)),
+        number(level.peak_force),
+        number(level.impulse),
+        number(level.rebound),
+    ]
+}
+
+fn row(cells: &[String; 9]) -> String {
+    let widths = [9, 7, 10, 10, 10, 7, 10, 10, 8];
+    let line: String = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
+    line.trim_end().to_string()
+}
+
+/// The index of the first mesh beside the range that its verdict states.
+fn expected(verification: &Verification) -> Option<String> {
+    let first = verification.levels.first()?;
+    let (index, [low, high]) = (first.effectivity?, first.expected);
+    let inside = [index.sup, index.mean].iter().all(|index| (low..=high).contains(index));
+    let found = if inside { "inside" } else { "outside" };
+    Some(format!("The verdict expects an index of {low} to {high} on the first mesh: it is {found} this range."))
+}
+
+fn conclusion(verification: &Verification) -> String {
+    let stopped = if verification.interrupted { "Interrupted: the finest level done is the reference. " } else { "" };
+    let Some(settled) = verification.settled else {
+        return format!(
+            "{stopped}Whether the finest mesh is fine enough cannot be said: the estimate does not fall yet."
+        );
+    };
+    let excess = format!("{:.0} %", 100.0 * settled.excess);
+    let verdict = if settled.fine_enough {
+        format!(
+            "The finest mesh is fine enough: its own error makes the index of the first mesh at most {excess} too large."
+        )
+    } else {
+        format!(
+            "The finest mesh is not fine enough: its own error may make the index of the first mesh {excess} too large; \
+             take more levels."
+        )
+    };
+    format!("{stopped}{verdict}")
+}

@@ -1,0 +1,79 @@
+"""A problem on nested meshes, in Python and in the command."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import percute as pc
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def bar(elements: int) -> pc.Problem:
+    mesh = pc.Mesh.bar(0.1, elements=elements)
+    material = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+    # It starts with an initial velocity and a displacement that differ from node to node.
+    velocity = -400.0 + 10.0 * np.sin(40.0 * mesh.points)
+    return pc.Problem(mesh, material=material, obstacles=[pc.Plane(point=-1e-3, normal=1.0)], initial_velocity=velocity)
+
+
+def test_the_levels_are_those_of_separate_runs(tmp_path: Path) -> None:
+    """Estimates are those of `estimate`, true errors those of `true_errors`, on problems stated by hand."""
+    told = []
+    found = pc.verify(bar(16), end=60e-6, courant=0.9, levels=2, progress=lambda seen: told.append(seen.stage))
+    assert found.elements.tolist() == [16, 32, 64] and {"simulating"} <= set(told)
+    history = pc.simulate(bar(16), end=60e-6, courant=0.9)
+    estimate = pc.estimate(history)
+    assert (found.estimate_sup[0], found.estimate_mean[0]) == (estimate.sup, estimate.mean)
+    fine = bar(16).mesh.refine(2)
+    # The initial velocity of the first mesh, linear in its elements.
+    velocity = np.interp(fine.points[:, 0], bar(16).mesh.points[:, 0], bar(16).initial_velocity[:, 0])[:, None]
+    reference = pc.Problem(fine, material=bar(16).material, obstacles=bar(16).obstacles, initial_velocity=velocity)
+    (error,) = pc.true_errors([history], reference, end=60e-6, courant=history_courant(history))
+    # The steps of the reference differ by rounding.
+    assert found.error_mean[0] == pytest.approx(error.mean, rel=1e-9)
+    assert found.effectivity_mean[0] == pytest.approx(estimate.mean / error.mean, rel=1e-9)
+    assert np.isnan(found.error_mean[2]) and np.isnan(found.effectivity_sup[2])
+    assert found.expected[0] < found.effectivity_mean[0] < found.expected[1]
+    assert found.rebound[0] == estimate.rebound.normal_after  # type: ignore[union-attr]
+    assert found.peak_force[0] == history.contact.resultants.normal_force.max()
+    assert found.orders["estimate"] == pytest.approx(np.log2(found.estimate_mean[1] / found.estimate_mean[2]))
+    assert str(found).count("\n") >= 6 and found.excess is not None and found.fine_enough == (found.excess <= 0.1)
+    found.plot(save=tmp_path / "convergence.svg")
+    assert (tmp_path / "convergence.svg").stat().st_size > 1000
+
+
+def history_courant(history: pc.History) -> float:
+    """The longest step over the critical one."""
+    return float(np.diff(history.time).max() / history.problem.critical_time_step)
+
+
+def test_a_smooth_motion_settles() -> None:
+    """A vibrating bar: the mean falls like h, and the finest of four meshes is fine enough."""
+    mesh = pc.Mesh.bar(0.1, elements=16)
+    material = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+    problem = pc.Problem(mesh, material=material, initial_velocity=np.cos(np.pi * mesh.points / 0.1))
+    found = pc.verify(problem, end=20e-6, courant=0.5, levels=3)
+    assert found.fine_enough and found.orders["estimate"] == pytest.approx(1.0, abs=0.1)
+    assert np.isnan(found.peak_force).all() and found.orders["peak_force"] is None
+
+
+def test_levels_out_of_range() -> None:
+    for levels in (0, 6):
+        with pytest.raises(pc.InputError, match="levels"):
+            pc.verify(bar(4), end=1e-5, courant=0.9, levels=levels)
+
+
+def test_the_command(tmp_path: Path) -> None:
+    run = [sys.executable, "-m", "percute", "verify"]
+    done = subprocess.run([*run, str(EXAMPLES / "bar.toml")], capture_output=True, text=True, check=True)
+    assert "level 2: 400 elements" in done.stderr and "times the time of level 0" in done.stderr
+    assert all(len(line) <= 80 or " " in line for line in done.stdout.splitlines()) and "order" in done.stdout
+    json_done = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--json", "--quiet", "--levels", "1"], capture_output=True, text=True, check=True)
+    document = json.loads(json_done.stdout)
+    assert json_done.stderr == "" and [level["elements"] for level in document["levels"]] == [100, 200]
+    refused = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--levels", "9"], capture_output=True, text=True)
+    assert refused.returncode == 2 and "give 1 to 5 refinements" in refused.stderr
