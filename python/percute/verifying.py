@@ -54,10 +54,10 @@ class Verification:
     """The range of the effectivity index on the first mesh that its verdict states."""
     orders: dict[str, float | None]
     """Observed orders of ``estimate``, ``peak_force``, ``impulse`` and ``rebound``; None where values do not converge."""
-    excess: float | None
-    """By how much the error of the finest mesh may make the effectivity index of the first too large, relative."""
+    moved: float | None
+    """By how much the mean true error of the first mesh moves from the finest mesh but one to the finest, relative; None with one level."""
     fine_enough: bool | None
-    """Whether that is at most 0.1; None if it cannot be said, because the estimate does not fall."""
+    """Whether that is at most 0.1."""
     _table: str
 
     @property
@@ -114,7 +114,7 @@ class Verification:
             **{key: column(key) for key in ("peak_force", "impulse", "rebound")},
             expected=tuple(levels[0]["expected"]),
             orders=document["orders"],
-            excess=settled.get("excess"),
+            moved=settled.get("moved"),
             fine_enough=settled.get("fine_enough"),
             _table=table,
         )

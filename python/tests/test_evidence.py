@@ -227,6 +227,13 @@ def test_the_verdict_states_the_ranges_of_each_family_on_the_page() -> None:
     assert len(found) == 2 * len(page)
 
 
+def test_the_verdict_holds_in_all_runs(folder: Path) -> None:
+    """Its range contains both indices in each run of the page, and of the small resolution."""
+    for page in (PAGE, folder / "verification.md"):
+        counts = re.findall(r"contains both indices in (\d+) of (\d+) runs", page.read_text(encoding="utf-8"))
+        assert len(counts) == 2 and all(held == every != "0" for held, every in counts), (page, counts)
+
+
 @pytest.mark.parametrize("reconstruction", ["corrected", "consistent", "published"])
 def test_the_verdict_states_the_ranges_of_each_kind_on_the_page(reconstruction: str) -> None:
     page = {(kind, name): ends(cells[:4] + cells[5:9]) for kind, name, *cells in of_page("kind", "sup: lowest")}

@@ -66,3 +66,51 @@ def test_contact_that_lasts_and_a_body_that_never_touches() -> None:
         document = json.loads(pc.estimate(history).to_json())
         assert (document["rebound"] is None) != touches
         assert document["verdict"]["touches"] == ("edge" if touches else "none")
+
+
+RUBBER = """
+[mesh]
+bar = {{ length = 0.1, elements = 20 }}
+[material]
+young = 70e9
+density = 2700.0
+section = 0.02
+[initial]
+velocity = -400.0
+[[obstacle]]
+point = -0.002
+normal = 1.0
+[time]
+{time}
+courant = 0.9
+"""
+
+
+def hits() -> pc.Problem:
+    material = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+    mesh = pc.Mesh.bar(0.1, elements=20)
+    return pc.Problem(mesh, material=material, obstacles=[pc.Plane(point=-0.002, normal=1.0)], initial_velocity=-400.0)
+
+
+def test_a_run_that_ends_with_the_rebound_is_one_with_that_end() -> None:
+    after = 10e-6
+    history = pc.simulate(hits(), end="rebound", longest=1e-3, after=after, courant=0.9)
+    end = float(history.time[-1])
+    rebound = history.rebound
+    assert rebound is not None and rebound.release is not None and rebound.normal_after is not None and rebound.normal_after > 0.0
+    # The end is that of the first pass, whose steps differ, rounded up to four digits.
+    step = float(np.diff(history.time).max())
+    assert rebound.release + after - 2 * step <= end <= rebound.release + after + 3 * step + 1e-3 * end
+    assert end == float(f"{end:.3e}")
+    same = pc.simulate(hits(), end=end, courant=0.9)
+    assert same.time.tolist() == history.time.tolist() and np.array_equal(same.displacement, history.displacement)
+    case = pc.run(RUBBER.format(time=f'end = "rebound"\nlongest = 1e-3\nafter = {after}'))
+    assert case.history is not None and np.array_equal(case.history.displacement, history.displacement)
+
+
+def test_contact_that_does_not_end_in_time_is_warned_about() -> None:
+    with pytest.warns(pc.InputWarning, match="not left its plane by 3e-5 s"):
+        history = pc.simulate(hits(), end="rebound", longest=3e-5, courant=0.9)
+    assert history.time[-1] == 3e-5 and history.complete
+    with pytest.warns(pc.InputWarning, match="not left its plane by 3e-5 s"):
+        pc.run(RUBBER.format(time='end = "rebound"\nlongest = 3e-5'))

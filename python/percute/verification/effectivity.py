@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 
 from percute.verification import figures, steps, turning
 from percute.verification.choices import RECONSTRUCTIONS as NAMES
-from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, Case, Found, cases, curve
+from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, VERDICT, Case, Found
+from percute.verification.impacts import cases, curve, inside, stated
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -52,6 +53,8 @@ def compute(section: Section, resolution: Resolution) -> None:
     if not resolution.small:
         section.add(_settled(results))
     section.add(_references(results), _runs(results))
+    every = [(each.estimates[r], each.effectivity(r)) for _, found in results for each in filter(None, found) for r in range(len(NAMES))]
+    section.add(inside(every))
 
 
 def _on_mesh(pairs: Sequence[tuple[float, float] | None]) -> list[float | None]:
@@ -164,6 +167,7 @@ def _runs(results: Iterable[Result]) -> Table:
     columns = [Column("case"), Column("reconstruction"), Column("elements"), Column("steps")]
     columns += [Column("e sup", "J^½", "[15]"), Column("e mean", "J^½", "[16]"), Column("ε sup", "", "[22]"), Column("ε mean", "", "[22]")]
     columns += [Column("impulse kept"), Column("contact part at the sup", "%", digits=3), Column("e_ref sup", "J^½"), Column("e_ref mean", "J^½")]
+    columns += [Column(name, digits=3) for name in VERDICT]
     caption = "All runs: estimate, relative error, the part of the contact impulse that the admissible force keeps, and true error."
     table = Table("effectivity-runs", caption, columns, on_page=False)
     for case, found in results:
@@ -171,7 +175,8 @@ def _runs(results: Iterable[Result]) -> Table:
             for each in filter(None, found):
                 e = each.estimates[r]
                 measures = (e.sup, e.mean, e.relative_sup, e.relative_mean, e.kept_impulse)
-                table.add(case.name, name, each.elements, each.steps, *measures, 100.0 * each.contact(r), each.exact[-1].sup, each.exact[-1].mean)
+                true = each.exact[-1]
+                table.add(case.name, name, each.elements, each.steps, *measures, 100.0 * each.contact(r), true.sup, true.mean, *stated(e))
     return table
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -183,6 +184,23 @@ class Case:
     def finest(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> Found:
         """Run it and give the results on the finest of the meshes that are estimated."""
         return [found for found in self.run(choices, stop) if found is not None][-1]
+
+
+def stated(estimate: pc.Estimate) -> tuple[str, str, float, float]:
+    """Give what the verdict states: trust, how the body touches, and the range of the effectivity index."""
+    verdict = json.loads(estimate._data.verdict())["verdict"]
+    low, high = verdict["effectivity"]
+    return verdict["trust"], verdict["touches"], low, high
+
+
+VERDICT = tuple(f"verdict: {name}" for name in ("trust", "touches", "lowest", "highest"))
+"""Columns of what `stated` gives."""
+
+
+def inside(found: Iterable[tuple[pc.Estimate, tuple[float, float]]]) -> str:
+    """Say in how many runs the range of the verdict contains the effectivity index of the largest error and of the mean."""
+    held = [low <= min(pair) and max(pair) <= high for estimate, pair in found for _, _, low, high in [stated(estimate)]]
+    return f"The range that the verdict states contains both indices in {sum(held)} of {len(held)} runs."
 
 
 def contact_size(speed: float) -> float:

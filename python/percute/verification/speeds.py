@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import percute as pc
 from percute.verification import bodies, bounces, figures
-from percute.verification.impacts import FLAT, GOOD, Case, Found, contact_size, steps_past
+from percute.verification.impacts import FLAT, GOOD, VERDICT, Case, Found, contact_size, inside, stated, steps_past
 from percute.verification.page import Column, Figure, Section, Table, interval, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -103,6 +103,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         ),
         _summary(results),
         _table(results),
+        inside((each.estimates[0], each.effectivity(0)) for _, (_, found) in results for each in found if each is not None),
     )
     # A family needs all its cases, and a run of many phases takes a minute.
     if not resolution.small:
@@ -122,6 +123,7 @@ def _table(results: Iterable[tuple[Run, Result]]) -> Table:
     columns += [Column("touches from", "µs", digits=3), Column("until", "µs", digits=3), Column("impulse kept", digits=3)]
     columns += [Column("sup", digits=3), Column("mean", digits=3), Column("time of the sup", "µs", digits=3)]
     columns += [Column(f"part of {part} at the sup", "%", digits=3) for part in ("contact", "inertia", "stress")]
+    columns += [Column(name, digits=3) for name in VERDICT]
     columns += [Column(f"e_ref {measure}, {which} reference", "J^½") for which in ("coarser", "finer") for measure in ("sup", "mean")]
     caption = "Effectivity index over speed, on each mesh: with the parts of the largest η, and with the true error against two references."
     table = Table("speeds", caption, columns, on_page=False)
@@ -143,6 +145,7 @@ def _table(results: Iterable[tuple[Run, Result]]) -> Table:
                 *each.effectivity(0),
                 1e6 * estimate.time_of_sup,
                 *(100.0 * part / parts.total for part in (parts.contact, parts.kinetic, parts.elastic)),
+                *stated(estimate),
                 *(value for true in each.exact for value in (true.sup, true.mean)),
             )
     return table

@@ -71,7 +71,7 @@ fn rebound(table: &Table<'_>, steps: &Steps<'_>) -> Result<Option<Rebound>, Case
         return surplus.map_or(Ok(None), refuse);
     };
     if end.text("")? != "rebound" {
-        return Err(end.must_be("a number in s, or \"rebound\""));
+        return Err(end.must_be("a positive number in s, or \"rebound\""));
     }
     if let Steps::Each(_, at) = steps {
         return Err(at.error("have an end of their own: with end = \"rebound\" give `courant` or `step`"));

@@ -12,6 +12,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
+use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options};
 
 /// Names of the energies over time.
@@ -41,7 +42,6 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, checked, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let over_time = times.instants().iter().copied().zip(simulation.balance_over_time.iter().copied()).collect();
         let facts = Facts {
             problem: &problem,
             left_out: checked.and_then(|checked| checked.left_out),
@@ -53,8 +53,7 @@ impl Report {
             own_contacts: estimate.own_contacts,
             residual: &largest_residual,
         };
-        let admissible = largest_residual.admissible;
-        let (rebound, verdict) = judged(subject, options, admissible, simulation, estimate, contact);
+        let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
         let (interrupted, warnings) = (facts.interrupted, all_warnings(&facts, subject, options));
         Self {
             format: FORMAT,
@@ -83,7 +82,7 @@ impl Report {
             residuals: estimate.residuals,
             largest_residual,
             balance: simulation.balance,
-            balance_over_time: Columns::new(over_time, ENERGIES),
+            balance_over_time: energies(times, simulation),
             kept_impulse: estimate.kept_impulse,
             own_contacts: estimate.own_contacts,
             contact: ContactReport::new(contact),
@@ -93,6 +92,12 @@ impl Report {
             seconds,
         }
     }
+}
+
+/// The energies at all instants.
+fn energies(times: &TimeGrid, simulation: &Simulation) -> Columns<(f64, Balance), 7> {
+    let balances = simulation.balance_over_time.iter().copied();
+    Columns::new(times.instants().iter().copied().zip(balances).collect(), ENERGIES)
 }
 
 /// The rebound and the verdict.

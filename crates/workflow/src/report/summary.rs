@@ -5,11 +5,14 @@ use crate::foreign::Consistency;
 use crate::message::{counted, percent, short, trimmed};
 use percute_core::dynamics::Balance;
 
+/// Nature of the error, in a line.
+const MEASURE: &str = "An estimate, not a strict bound, of the errors of space, time, mass and contact.";
+
 /// The summary of a run.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let verdict = format!("verdict   trust {}: {}", report.verdict.trust, report.verdict.text.join(" "));
-    layout(&lines(report)) + &meaning::lines(&verdict) + &layout(&[("result", result(report))])
+    layout(&lines(report)) + &meaning::lines(&verdict) + MEASURE + "\n" + &layout(&[("result", result(report))])
 }
 
 /// Names and values in two columns.
@@ -139,7 +142,7 @@ fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
         (if i == 0 { "worst" } else { "" }, value)
     };
     // The document and the picture have more.
-    report.worst_elements.iter().take(3).enumerate().map(line).collect()
+    report.worst_elements.iter().take(2).enumerate().map(line).collect()
 }
 
 fn balance(report: &Report) -> Vec<(&'static str, String)> {

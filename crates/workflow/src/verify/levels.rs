@@ -63,7 +63,7 @@ pub struct Verification {
     pub levels: Vec<Level>,
     /// Orders of convergence.
     pub orders: Orders,
-    /// Whether the finest mesh is fine enough; none if it cannot be said from one mesh.
+    /// Whether the finest mesh is fine enough; none with fewer than two refinements.
     pub settled: Option<Settled>,
     /// Whether the work was stopped before all levels were done.
     pub interrupted: bool,
@@ -151,7 +151,7 @@ impl Level {
 }
 
 impl Verification {
-    pub(super) fn new(levels: Vec<Level>, interrupted: bool) -> Self {
+    pub(super) fn new(levels: Vec<Level>, settled: Option<Settled>, interrupted: bool) -> Self {
         let of = |quantity: fn(&Level) -> Option<f64>| converging(&levels, quantity);
         let estimates = levels.iter().rev().map(|level| level.estimate.mean);
         let estimates: Vec<f64> = estimates.take(2).collect();
@@ -161,7 +161,6 @@ impl Verification {
             impulse: of(|level| level.impulse),
             rebound: of(|level| level.rebound),
         };
-        let settled = Settled::new(&levels, orders.estimate);
         Self { levels, orders, settled, interrupted }
     }
 }

@@ -106,35 +106,33 @@ pub fn verify<const D: usize, const N: usize>(
         histories.extend(history);
     }
     let finest = levels.len().saturating_sub(1);
-    let compared = compare(prepared, &mut levels, &histories, finest, observer);
+    let mut compared = compare(prepared, &mut levels, &histories, finest, observer);
     if compared.is_err() && stopped_now(observer) {
         stopped = true;
-        compare(prepared, &mut levels, &histories, finest.saturating_sub(1), observer)?;
-    } else {
-        compared?;
+        compared = compare(prepared, &mut levels, &histories, finest.saturating_sub(1), observer);
     }
-    Ok(Verification::new(levels, stopped))
+    Ok(Verification::new(levels, compared?, stopped))
 }
 
 impl<const D: usize, const N: usize> Prepared<D, N> {
     fn level(&self, options: Options, results: &Results<D>) -> Level {
         let Self { problem, times, critical_step } = self;
-        let subject = Subject { name: "", problem, times, critical_step: *critical_step, held: None };
+        let subject = Subject { name: "", problem, times, critical_step: *critical_step, held: None, checked: None };
         let Results { simulation, estimate, contact } = results;
         Level::new(&Report::new(&subject, options, simulation, estimate, contact, 0.0))
     }
 }
 
-/// Sets the true errors of all levels but the finest.
+/// Sets the true errors of all levels but the finest. Returns whether this is fine enough, if there are two refinements.
 fn compare<const D: usize, const N: usize>(
     prepared: &[Prepared<D, N>],
     levels: &mut [Level],
     histories: &[History<D>],
     finest: usize,
     observer: &mut dyn Observer,
-) -> Result<(), Failure> {
+) -> Result<Option<Settled>, Failure> {
     if finest == 0 {
-        return Ok(());
+        return Ok(None);
     }
     let runs: Vec<_> = prepared.iter().zip(histories).take(finest).map(|(p, h)| (&p.problem, h as _)).collect();
     let Prepared { problem, times, .. } = &prepared[finest];
@@ -142,7 +140,12 @@ fn compare<const D: usize, const N: usize>(
     let kept = histories.get(finest).map(|history| history as _);
     let errors = true_errors(&runs, (problem, times), kept, observer)?;
     levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
-    Ok(())
+    if finest == 1 {
+        return Ok(None);
+    }
+    let Prepared { problem, times, .. } = &prepared[finest - 1];
+    let before = true_errors(&runs[..1], (problem, times), Some(&histories[finest - 1]), observer)?;
+    Ok(before.first().zip(errors.first()).map(|(before, now)| Settled::new(before.mean, now.mean)))
 }
 
 /// Whether the observer still asks for a stop.

@@ -80,20 +80,13 @@ fn expected(verification: &Verification) -> Option<String> {
 fn conclusion(verification: &Verification) -> String {
     let stopped = if verification.interrupted { "Interrupted: the finest level done is the reference. " } else { "" };
     let Some(settled) = verification.settled else {
-        return format!(
-            "{stopped}Whether the finest mesh is fine enough cannot be said: the estimate does not fall yet."
-        );
+        return format!("{stopped}Whether the finest mesh is fine enough shows from two refinements on.");
     };
-    let excess = format!("{:.0} %", 100.0 * settled.excess);
+    let moved = format!("With the finest mesh the true error of the first moves by {:.1} %", 100.0 * settled.moved);
     let verdict = if settled.fine_enough {
-        format!(
-            "The finest mesh is fine enough: its own error makes the index of the first mesh at most {excess} too large."
-        )
+        "the finest is fine enough"
     } else {
-        format!(
-            "The finest mesh is not fine enough: its own error may make the index of the first mesh {excess} too large; \
-             take more levels."
-        )
+        "the finest is not fine enough; take more levels"
     };
-    format!("{stopped}{verdict}")
+    format!("{stopped}{moved}: {verdict} (at most 10 %).")
 }

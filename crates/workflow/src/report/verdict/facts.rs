@@ -7,7 +7,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
-use percute_estimator::{ErrorMeasures, Estimate, Options, Reconstruction};
+use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstruction};
 
 /// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs for bodies of
 /// 64 mm with waves of 5.3 km/s.
@@ -18,6 +18,8 @@ const APART: f64 = 1.25;
 pub(in crate::report) struct Facts {
     pub(super) dimension: usize,
     pub(super) reconstruction: Reconstruction,
+    /// Γ_DA, if it is not the default.
+    pub(super) acceleration: Option<Acceleration>,
     pub(super) contact: Contact,
     /// Normal velocity of the centre of mass before contact over the wave speed; none without contact.
     pub(super) speed_ratio: Option<f64>,
@@ -72,6 +74,7 @@ impl Facts {
         Self {
             dimension: D,
             reconstruction: beside.options.reconstruction,
+            acceleration: other_acceleration(beside.options, D),
             contact: Contact::new(problem, results),
             speed_ratio: speed,
             courant: beside.courant,
@@ -89,6 +92,11 @@ impl Facts {
             expected: expected(estimate),
         }
     }
+}
+
+fn other_acceleration(options: Options, dimension: usize) -> Option<Acceleration> {
+    let default = Options { acceleration: None, ..options }.acceleration(dimension);
+    options.acceleration.filter(|&given| given != default)
 }
 
 fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {

@@ -61,12 +61,12 @@ pub(super) const RULES: [Rule; 15] = [
     // bar-maps.csv at Δt = Δt_c: after release the shortest wave grows.
     Rule {
         applies: |f| f.dimension == 1 && f.courant > 0.99,
-        range: [0.4, 1.7],
+        range: [0.5, 1.7],
         situation: "bars at the critical step",
         doubt: Some("at the critical step a short wave grows after release; take courant = 0.9"),
     },
     // bar-maps.csv, effectivity-steps.csv.
-    Rule { applies: |f| f.dimension == 1, range: [0.85, 1.23], situation: "bars that strike a wall", doubt: None },
+    Rule { applies: |f| f.dimension == 1, range: [0.85, 1.26], situation: "bars that strike a wall", doubt: None },
     // speeds.csv, trapezoid 45° with a corner of one element.
     Rule {
         applies: |f| f.contact.single_element,
@@ -136,6 +136,9 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     }
     if facts.largest_friction > FRICTION {
         untested.push(format!("friction above {FRICTION}"));
+    }
+    if let Some(other) = facts.acceleration {
+        untested.push(format!("acceleration `{other}`"));
     }
     if facts.supported {
         untested.push("supports".to_string());

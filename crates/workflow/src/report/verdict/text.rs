@@ -52,11 +52,11 @@ pub(super) fn sentences(
 
 fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     let touches = match facts.contact.touches {
-        Touches::Edge => "The body touches along an edge",
-        Touches::End => "The body touches along an edge beside an inclined side",
-        Touches::Curve => "The body touches with a curve",
-        Touches::Corner => "The body touches with a corner",
-        Touches::None => "The body does not touch",
+        Touches::Edge => "An edge touches",
+        Touches::End => "An edge beside an inclined side touches",
+        Touches::Curve => "A curve touches",
+        Touches::Corner => "A corner touches",
+        Touches::None => "Nothing touches",
     };
     let speed = facts.speed_ratio.filter(|ratio| *ratio > 0.0);
     let speed = speed.map_or_else(String::new, |ratio| format!(" at {} of the wave speed", short(ratio, 2)));
@@ -70,11 +70,11 @@ fn place(facts: &Facts, shares: Shares) -> String {
     let Shares { contact, inertia, stress } = shares;
     let [contact, inertia, stress] = [contact, inertia, stress].map(per_cent);
     if facts.contact.touches == Touches::None {
-        return format!("Of the largest error {inertia} is inertia, {stress} stress.");
+        return format!("The peak of the error is {inertia} inertia, {stress} stress.");
     }
     let near = per_cent(facts.at_contact);
     format!(
-        "Elements that touch hold {near} of the squared error; at its peak {contact} is contact, {inertia} inertia, {stress} stress."
+        "Elements that touch hold {near} of the squared error; its peak is {contact} contact, {inertia} inertia, {stress} stress."
     )
 }
 
@@ -91,7 +91,7 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
     let steps =
         if expected.half_step < WORTH { "steps half as long alone" } else { "shorter steps alone do not help:" };
     let (size, step) = (change(expected.half_size), change(expected.half_step));
-    format!("{place}: half the element size changes the mean by {size}; {steps} {step}.")
+    format!("{place}: half the size changes the mean by {size}; {steps} {step}.")
 }
 
 fn per_cent(fraction: f64) -> String {

@@ -1,0 +1,102 @@
+"""The verdict on an estimate: situation, trust and recommendation."""
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import percute as pc
+import pytest
+from percute.verification.bodies import BODIES
+
+pytestmark = pytest.mark.filterwarnings("ignore::percute.InputWarning")
+ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
+
+
+def struck(mesh: pc.Mesh, *, tilt: float = 0.0, speed: float = 400.0, **changes: Any) -> pc.Estimate:
+    """Estimate the impact of a body on a plane that is turned under it by some degrees."""
+    angle = math.radians(tilt)
+    normal = np.array([math.sin(angle), math.cos(angle)])
+    lowest = float((mesh.points @ normal).min()) - 5e-7 * speed
+    plane = pc.Plane(point=normal * lowest, normal=normal, friction=changes.pop("friction", 0.2))
+    times = {"end": 12e-6, "courant": changes.pop("courant", 0.9)}
+    material = pc.Elastic(**ALUMINIUM, plane="stress")
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=-speed * normal, **changes)
+    return pc.estimate(pc.simulate(problem, **times))
+
+
+def facts(estimate: pc.Estimate) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(estimate.to_json())["verdict"]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("body", "tilt", "touches"),
+    [
+        ("block", 0.0, "edge"),
+        ("unstructured block", 0.0, "edge"),
+        ("block", 10.0, "corner"),
+        ("disc", 0.0, "curve"),
+        ("crowned block", 0.0, "curve"),
+        ("rounded block", 10.0, "curve"),
+        ("trapezoid 63°", 0.0, "end"),
+    ],
+)
+def test_how_a_body_touches(body: str, tilt: float, touches: str) -> None:
+    estimate = struck(BODIES[body]().refine(), tilt=tilt)
+    found = facts(estimate)
+    assert found["touches"] == touches and found["phases"] == 1 and found["untested"] == []
+    assert estimate.trust == "high" and estimate.verdict is not None and estimate.verdict.count(". ") == 2
+    assert found["speed_ratio"] == pytest.approx(400.0 / math.sqrt(70e9 / (2700.0 * (1 - 0.09))), rel=1e-6)
+    assert sum(found["shares"].values()) == pytest.approx(1.0)
+
+
+def test_a_disc_that_stands_on_one_of_its_edges_is_a_curve() -> None:
+    """The lowest edge of the polygon is parallel to the plane; the next ones turn by 15° and follow."""
+    assert facts(struck(BODIES["disc"]().refine(), tilt=7.5))["touches"] == "curve"
+
+
+def test_a_corner_of_one_element_and_a_thin_body() -> None:
+    corner = struck(BODIES["trapezoid 45° with a corner of one element"]().refine())
+    assert corner.trust == "limited" and facts(corner)["effectivity"][0] > 1.5 and "two elements" in str(corner.verdict)
+    thin = struck(BODIES["frame"]().refine(), tilt=10.0, speed=100.0)
+    assert thin.trust == "limited" and facts(thin)["slenderness"] < 0.15
+
+
+def test_properties_without_evidence_are_named() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    for changes, named in (
+        ({"friction": 1.0}, "friction above 0.5"),
+        ({"courant": 0.01}, "steps of 0.01"),
+        ({"speed": 800.0}, "of the wave speed"),
+        ({"speed": 1e-2}, "of the wave speed"),
+    ):
+        estimate = struck(mesh, **changes)  # type: ignore[arg-type]
+        assert estimate.trust == "limited" and len(facts(estimate)["untested"]) == 1
+        assert named in facts(estimate)["untested"][0] and "not tested" in str(estimate.verdict)
+
+
+def test_the_number_is_not_trusted_for_a_reason() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    history = struck(mesh).history
+    assert history is not None
+    for reconstruction in ("consistent", "published"):
+        estimate = pc.estimate(history, reconstruction=reconstruction)  # type: ignore[arg-type]
+        assert estimate.trust == "low" and "Do not trust the number" in str(estimate.verdict)
+    # The body is hurled back to its plane by its weight, again and again.
+    gravity = pc.BodyForce(value=(0.0, -2700.0 * 4e7))
+    plane = pc.Plane(point=(0, -1e-5), normal=(0, 1), friction=0.2)
+    material = pc.Elastic(**ALUMINIUM, plane="stress")
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(0, -10), body_forces=[gravity])
+    bounces = pc.estimate(pc.simulate(problem, end=300e-6, courant=0.9))
+    assert facts(bounces)["phases"] > 1 and bounces.trust == "low" and "several contacts" in str(bounces.verdict)
+
+
+def test_shorter_steps_help_where_they_do() -> None:
+    """The recommendation has the changes that `sources` expects."""
+    estimate = struck(BODIES["disc"]().refine(), speed=4.0)
+    sources = estimate.sources
+    assert sources is not None and sources.mean_with_half_size is not None
+    change = round(100 * (sources.mean_with_half_size / estimate.mean - 1))
+    assert f"by −{-change} %" in str(estimate.verdict) and "Refine the elements that touch" in str(estimate.verdict)
+    assert "Refine the whole mesh" in str(struck(BODIES["block"]().refine()).verdict)
