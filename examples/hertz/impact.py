@@ -97,7 +97,7 @@ class Run:
 def simulate(disc: Cylinder, mesh: pc.Mesh, speed: float, end: float, courant: float = 0.9) -> tuple[Run, pc.History]:
     """Simulate the impact of the disc at a speed (m/s), until `end` (s) after the first touch."""
     material = pc.Elastic(young=disc.young, poisson=disc.poisson, density=disc.density, plane=disc.plane)
-    plane = pc.Plane(point=(0.0, -disc.radius - FLIGHT * speed), normal=(0.0, 1.0), group="lower")
+    plane = pc.Plane(point=(0.0, -disc.radius - FLIGHT * speed), normal=(0.0, 1.0), friction=0.0, group="lower")
     problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(0.0, -speed))
     history = pc.simulate(problem, end=end + FLIGHT, courant=courant)
     last = (history.displacement[-1] - history.displacement[-2]) / (history.time[-1] - history.time[-2])

@@ -37,6 +37,7 @@ from percute.exact import Effectivity, TrueError
 from percute.files import open, run
 from percute.history import History, simulate, true_errors
 from percute.mesh import Mesh
+from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
@@ -89,6 +90,9 @@ __all__ = [
     "true_errors",
     "verify",
 ]
+
+_name_arguments("percute.exact")
+_name_arguments("percute")
 
 
 def __dir__() -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 import os
 import reprlib
+import sys
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar, cast
@@ -12,9 +13,11 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.errors import InputError, InputWarning
+from percute.errors import InputError, InputWarning, MissingFileError
 
 T = TypeVar("T")
+
+PACKAGE = os.path.join(os.path.dirname(__file__), "")
 
 LARGEST = 2**63 - 1
 """The largest whole number of the engine."""
@@ -43,10 +46,18 @@ def wrong(name: str, value: object, allowed: str) -> InputError:
     return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
 
 
+def caller() -> int:
+    """Give the level, from the caller of this function, of the line that called the public function."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(PACKAGE):
+        level, frame = level + 1, frame.f_back
+    return level
+
+
 def warn(plausibility_warnings: Iterable[str]) -> None:
     """Issue a plausibility warning at the line that called the public function."""
     for plausibility_warning in plausibility_warnings:
-        warnings.warn(plausibility_warning, InputWarning, stacklevel=3)
+        warnings.warn(plausibility_warning, InputWarning, stacklevel=caller())
 
 
 def instance(name: str, value: object, kind: type[T]) -> T:
@@ -101,9 +112,19 @@ def path(name: str, value: object) -> str:
     return file
 
 
+def new_file(name: str, value: object) -> str:
+    """Give the name of a file to come, in a folder that exists."""
+    file = path(name, value)
+    folder = os.path.dirname(file)
+    if folder and not os.path.isdir(folder):
+        shown = encodable(folder)
+        raise MissingFileError(f"`{name}`: cannot write {encodable(file)}: there is no folder {shown}; create it first, or give another name")
+    return file
+
+
 def vtkhdf(name: str, value: object) -> str:
     """Give the name of a history or an estimate file."""
-    file = path(name, value)
+    file = new_file(name, value)
     if not file.lower().endswith(".vtkhdf"):
         raise wrong(name, value, "a name that ends in .vtkhdf, by which ParaView knows the format; `History.export` writes .vtu")
     return file
@@ -178,6 +199,13 @@ def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDA
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def transposed(name: str, array: NDArray[Any], *columns: int | None) -> str:
+    """Say that rows and columns of an array are exchanged, if it has as many rows as it should have columns."""
+    if array.ndim == 2 and array.shape[0] in columns and array.shape[1] not in columns:
+        return f": it is transposed, give `{name}.T`"
+    return ""
+
+
 def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
     """Give whole numbers in rows of some columns; without columns, in one row."""
     array = _array(value)
@@ -192,7 +220,7 @@ def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]
     shape = (-1,) if columns is None else (-1, columns)
     if array.ndim != len(shape) or (columns is not None and array.shape[1] != columns):
         needed = "(n,)" if columns is None else f"(n, {columns})"
-        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}")
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}{transposed(name, array, columns)}")
     return np.ascontiguousarray(array, dtype=np.int64)
 
 

@@ -15,6 +15,7 @@ from percute.history import History, absolute, history_of_the_exception
 from percute.mesh_files import tell_of_mesh
 from percute.progress import ProgressOption, shown
 from percute.stored import StoredEstimate
+from percute.termination import file_closed_at_signals
 
 __all__ = ["open", "run"]
 
@@ -53,6 +54,7 @@ def run(
     *,
     store: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
+    long: bool = False,
     threads: int | None = None,
     window: int | None = None,
     progress: ProgressOption = None,
@@ -67,6 +69,8 @@ def run(
         A file for the history; by default the one that the case names in ``[output]``, else it is kept in memory.
     overwrite : bool, default: False
         Whether a file that exists already is replaced.
+    long : bool, default: False
+        As for `simulate`.
     threads, window : int, optional
         As for `estimate`.
     progress : bool or callable, optional
@@ -93,12 +97,13 @@ def run(
         As for `simulate` and `estimate`.
     """
     told = None if store is None else file_name("store", store)
-    replace, (threads, window) = flag("overwrite", overwrite), pace(threads, window)
+    replace, lasting, (threads, window) = flag("overwrite", overwrite), flag("long", long), pace(threads, window)
     with shown(progress) as tell, history_of_the_exception():
         name, content, source = _read(case)
         read = _percute.CaseData(name, content, os.path.dirname(source or ""))
         tell_of_mesh(read.import_warnings())
         asked = read.outputs(source, told, replace)
+        read.check_run(lasting)
         # The working directory may change in a callback.
         file, report = absolute(asked["history"]), absolute(asked["estimate"])
         warn(read.plausibility_warnings(file is None))
@@ -106,7 +111,8 @@ def run(
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         read, told_late = read.resolved(tell)
         warn([] if told_late is None else [told_late])
-        data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
+        with file_closed_at_signals(file):
+            data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
         history = History._of(data[0], name=name)
         estimated = Estimate._of(data[1], history, name)
         try:

@@ -22,6 +22,7 @@ from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.rebound import Rebound
+from percute.termination import file_closed_at_signals
 from percute.views import HistoryViews
 
 if TYPE_CHECKING:
@@ -312,6 +313,7 @@ def simulate(
     after: float | None = None,
     store: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
+    long: bool = False,
     progress: ProgressOption = None,
 ) -> History:
     """Simulate by central differences with a lumped mass and contact multipliers, eq. [28] to [38].
@@ -339,6 +341,8 @@ def simulate(
         See ``docs/history.md``. Disk space for the complete file is allocated at the start.
     overwrite : bool, default: False
         Whether a file that exists already is replaced.
+    long : bool, default: False
+        Whether a run of more than 1e10 elements times steps is allowed, which takes minutes to hours.
     progress : bool or callable, optional
         With True, progress is shown on a terminal or in a notebook. A function is called with a `Progress` about twenty
         times a second; an exception that it raises stops the run.
@@ -356,24 +360,27 @@ def simulate(
     Raises
     ------
     InputError
-        An argument is wrong; or the start is too near to a plane.
+        An argument is wrong; the start is too near to a plane, or the run is long without ``long``.
     SimulationError
         The run became unstable.
     ExistingFileError, StorageError
         The file exists already or cannot be written; the steps before that are in it.
     KeyboardInterrupt
-        After Ctrl-C. Like any exception that stops the run, it has the steps done as its ``history``; None before the first.
+        After Ctrl-C, and with ``store`` after the file is closed and complete. Like any exception that stops the run, it has the
+        steps done as its ``history``; None before the first.
     """
     instance("problem", problem, Problem)
     file = None if store is None else vtkhdf("store", store)
     replace = flag("overwrite", overwrite)
     if end == "rebound":
+        _percute.check_run(problem._data, _times(longest, courant, step, steps), flag("long", long))
         end = _rebound_end(problem, _times(None, courant, step, steps), longest, after, progress)
     elif longest is not None or after is not None:
         raise InputError('`longest` and `after` need end="rebound"; leave them out')
     times = _times(end, courant, step, steps)
+    _percute.check_run(problem._data, times, flag("long", long))
     warn(_percute.plausibility_warnings(problem._data, times, file is None))
-    with shown(progress) as tell, history_of_the_exception(problem):
+    with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
         data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import encodable, flag, flags, integers, number, numbers, table, whole, wrong
+from percute.checks import encodable, flag, flags, integers, new_file, number, numbers, table, transposed, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.immutable import Immutable
@@ -58,7 +58,8 @@ class Mesh(Immutable):
         places = numbers("points", points, most=2)
         places = places[:, None] if places.ndim == 1 else places
         if places.ndim != 2 or places.shape[1] not in (1, 2):
-            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2); leave out z")
+            way_out = transposed("points", places, 1, 2) or "; leave out z"
+            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2){way_out}")
         dimension = places.shape[1]
         edges = {} if edge_groups is None else table("edge_groups", edge_groups, "edges")
         elements = {} if element_groups is None else table("element_groups", element_groups, "elements")
@@ -212,7 +213,7 @@ class Mesh(Immutable):
         InputError
             A version that is not known, another format without meshlane, or names of groups with quotes or line breaks.
         """
-        file, replace, as_bytes = file_name("path", path), flag("overwrite", overwrite), flag("binary", binary)
+        file, replace, as_bytes = new_file("path", path), flag("overwrite", overwrite), flag("binary", binary)
         if not isinstance(version, str) or version not in ("4.1", "2.2"):
             raise wrong("version", version, '"4.1" or "2.2"')
         if is_gmsh(file):

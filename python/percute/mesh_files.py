@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import encodable
+from percute.checks import caller, encodable
 from percute.errors import (
     ExistingFileError,
     FileFormatError,
@@ -58,7 +58,7 @@ def is_gmsh(file: str) -> bool:
 def tell_of_mesh(messages: Iterable[str]) -> None:
     """Issue import warnings at the line that called the public function."""
     for message in messages:
-        warnings.warn(message, MeshWarning, stacklevel=3)
+        warnings.warn(message, MeshWarning, stacklevel=caller())
 
 
 def _meshlane(file: str) -> Any:
@@ -241,7 +241,7 @@ def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
             os.replace(each, target.parent / each.name)
     if lost:
         message = f"{name}: this format does not keep the groups {', '.join(sorted(map(repr, lost)))}; .msh files do"
-        warnings.warn(message, MeshWarning, stacklevel=3)
+        warnings.warn(message, MeshWarning, stacklevel=caller())
 
 
 def _folder(target: Path, name: str) -> Path:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import instance, items, numbers, table
+from percute.checks import instance, items, numbers, table, transposed
+from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
@@ -29,6 +30,9 @@ def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64
     if field is None:
         return None
     array = numbers(name, field, most=2)
+    nodes, dimension = mesh.points.shape
+    if array.ndim == 2 and array.shape == (dimension, nodes) != (nodes, dimension):
+        raise InputError(f"`{name}` has the shape {array.shape}; it must have ({nodes}, {dimension}){transposed(name, array, dimension)}")
     return array[:, None] if mesh.dimension == 1 and array.ndim == 1 else np.atleast_2d(array)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,21 +86,24 @@ class Plane:
         A point of the plane (m); one number for a bar.
     normal : (dimension,) floats
         A normal of any length, from the plane to the body.
-    friction : float, default: 0.0
-        Coefficient of friction μ, zero for a bar.
+    friction : float
+        Coefficient of friction μ, 0 without friction. Required but for a bar, which has none.
     group : str, optional
         Only edges of this group may touch; by default all free ones that face the plane.
     """
 
     point: Vector | ArrayLike
     normal: Vector | ArrayLike
-    friction: float = 0.0
+    friction: float = cast("float", None)
     group: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", _vector("point", self.point))
         object.__setattr__(self, "normal", _vector("normal", self.normal))
-        object.__setattr__(self, "friction", number("friction", self.friction))
+        friction: float | None = self.friction
+        if friction is None and len(cast("Vector", self.point)) > 1:
+            raise InputError("`friction` is missing: give the coefficient of friction, 0 without friction")
+        object.__setattr__(self, "friction", 0.0 if friction is None else number("friction", friction))
         if self.group is not None:
             text("group", self.group)
 

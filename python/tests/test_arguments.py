@@ -50,7 +50,7 @@ class Calls:
         return pc.Elastic(**({"young": 1.0, "density": 1.0} | wrong))
 
     def plane(self, **wrong: Any) -> object:
-        return pc.Plane(**({"point": (0, 0), "normal": (0, 1)} | wrong))
+        return pc.Plane(**({"point": (0, 0), "normal": (0, 1), "friction": 0.2} | wrong))
 
     def support(self, **wrong: Any) -> object:
         return pc.Support(**({"group": "left", "components": "x"} | wrong))

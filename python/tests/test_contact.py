@@ -180,7 +180,10 @@ def test_the_picture_shows_forces_and_zone(long: pc.History) -> None:
 def test_the_picture_of_two_planes_and_of_a_bar(bar_history: pc.History) -> None:
     mesh = pc.Mesh.rectangle(0.03, 0.02, nx=4, ny=3)
     away = np.column_stack([np.zeros(len(mesh.points)), 1e4 * (mesh.points[:, 1] - 0.01)])
-    planes = [pc.Plane(point=(0, -1e-4), normal=(0, 1), group="bottom"), pc.Plane(point=(0, 0.0201), normal=(0, -1), group="top")]
+    planes = [
+        pc.Plane(point=(0, -1e-4), normal=(0, 1), friction=0, group="bottom"),
+        pc.Plane(point=(0, 0.0201), normal=(0, -1), friction=0, group="top"),
+    ]
     problem = pc.Problem(mesh, material=block().material, obstacles=planes, initial_velocity=away)
     contact = pc.simulate(problem, end=5e-6, courant=0.9).contact
     figure, axes = plt.subplots(3)

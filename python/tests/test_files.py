@@ -3,6 +3,7 @@
 import os
 import pickle
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import h5py
@@ -55,10 +56,22 @@ def test_a_missing_file(tmp_path: Path) -> None:
         assert isinstance(raised.value, pc.MissingFileError)
 
 
+def begun(_: pc.Progress) -> None:
+    raise AssertionError("the work has begun")
+
+
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(pc.StorageError, match="folder") as raised:
-        pc.simulate(bar(), end=5e-6, courant=0.9, store=tmp_path / "none" / "bar.vtkhdf")
-    assert isinstance(raised.value, OSError)
+    """It is a mistake in the call, found before any work."""
+    none, history = tmp_path / "none", pc.simulate(bar(), end=5e-6, courant=0.9)
+    calls: list[Callable[[], object]] = [
+        lambda: pc.simulate(bar(), end=5e-6, courant=0.9, store=none / "bar.vtkhdf", progress=begun),
+        lambda: pc.estimate(history).save(none / "error.vtkhdf"),
+        lambda: bar().mesh.write(none / "bar.msh"),
+    ]
+    for call in calls:
+        with pytest.raises(pc.MissingFileError, match="there is no folder .*none; create it first") as raised:
+            call()
+        assert isinstance(raised.value, FileNotFoundError)
 
 
 def test_files_of_other_kinds(tmp_path: Path) -> None:
@@ -158,7 +171,7 @@ CASE = (Path(__file__).parents[2] / "examples" / "bar.toml").read_text() + "\n[o
         ('history = "one.vtkhdf"\nestimate = "one.vtkhdf"', None, pc.InputError, "is the file of [output] history too"),
         ('estimate = "case.toml"', None, pc.InputError, '[output], estimate: is "case.toml"; it must be a name that ends in .vtkhdf'),
         ("", "case.toml", pc.InputError, "`store` case.toml is the case file itself"),
-        ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.StorageError, "[output] estimate: cannot write none/one.vtkhdf"),
+        ('estimate = "none/one.vtkhdf"', "two.vtkhdf", pc.MissingFileError, "[output] estimate: cannot write none/one.vtkhdf"),
         ('estimate = "folder.vtkhdf"', "two.vtkhdf", pc.StorageError, "it is not a regular file"),
     ],
 )

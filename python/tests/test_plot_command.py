@@ -92,7 +92,7 @@ def test_mistakes_are_told_before_any_work(
 def test_without_matplotlib_the_command_names_the_way_out(files: tuple[Path, Path], tmp_path: Path) -> None:
     program = "import sys; sys.modules['matplotlib'] = None; from percute.pictures.command import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run([sys.executable, "-c", program, str(files[1])], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 1 and done.stderr == 'error: pictures need matplotlib: pip install "percute[plot]"\n'
+    assert done.returncode == 1 and done.stderr == 'error: pictures need matplotlib: pip install matplotlib\n'
 
 
 @pytest.mark.parametrize("quantity", [None, "displacement", "pressure"])

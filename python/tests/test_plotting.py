@@ -199,4 +199,4 @@ except pc.PercuteError as error:
     print(error)
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout == 'pictures need matplotlib: pip install "percute[plot]"\n'
+    assert done.stdout == 'pictures need matplotlib: pip install matplotlib\n'

@@ -16,8 +16,7 @@ use std::str::FromStr;
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the completed steps is still printed).";
 
 /// The remedy for `percute reproduce` without the Python package.
-pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
-    in the source folder. Its command `percute` computes the evidence";
+pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the source folder. Its command `percute` computes the evidence";
 
 /// The remedy for `percute plot` without the Python package.
 pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
@@ -88,6 +87,9 @@ pub struct RunArguments {
     /// Store the estimate, element by element, in this file (.vtkhdf) [default: the file in the case, if any]
     #[arg(long, value_name = "FILE")]
     pub estimate: Option<PathBuf>,
+    /// Allow a run of more than 1e10 elements times steps, which takes minutes to hours
+    #[arg(long)]
+    pub long: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub maps: MapArguments,
@@ -110,6 +112,9 @@ pub struct SimulateArguments {
     /// Replace an existing history
     #[arg(long)]
     pub force: bool,
+    /// Allow a simulation of more than 1e10 elements times steps, which takes minutes to hours
+    #[arg(long)]
+    pub long: bool,
     /// No progress and no warnings on standard error
     #[arg(long)]
     pub quiet: bool,

@@ -2,7 +2,8 @@
 //!
 //! Each task runs in a thread of its own and owns its data. The calling thread waits without the GIL, so that
 //! other Python threads run. Every 50 ms it takes the GIL, checks for signals and reports progress. Ctrl-C thus
-//! works during any task; a task that cannot stop at once gets the order to stop and ends later.
+//! works during any task; a task that cannot stop at once gets the order to stop and ends later. A task that writes a file is
+//! waited for until the file is closed, so that it is complete before the exception is raised and before the interpreter ends.
 
 use crate::errors::percute_error;
 use percute_core::observer::{Observer, Progress};
@@ -12,8 +13,8 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::{Duration, Instant};
 
 /// How often signals are checked.
 const POLL: Duration = Duration::from_millis(50);
@@ -47,13 +48,32 @@ impl ProgressNow {
 #[derive(Debug, Default)]
 pub(crate) struct Task {
     stop: AtomicBool,
+    /// Whether a file is being written.
+    writing: AtomicBool,
     progress: Mutex<Option<Progress>>,
+}
+
+/// Tasks that write a file, with their process: a forked one does not have them. The end of the interpreter waits for them.
+static WRITERS: Mutex<Vec<(u32, Weak<Task>)>> = Mutex::new(Vec::new());
+
+/// The time during which a task writes a file; it ends when this is dropped.
+#[derive(Debug)]
+pub(crate) struct Writing(Arc<Task>);
+
+impl Drop for Writing {
+    fn drop(&mut self) {
+        self.0.writing.store(false, Relaxed);
+    }
 }
 
 impl Task {
     /// Whether the work should stop.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Relaxed)
+    }
+
+    fn is_writing(&self) -> bool {
+        self.writing.load(Relaxed)
     }
 
     fn progress(&self) -> Option<Progress> {
@@ -64,6 +84,16 @@ impl Task {
 /// The work's side of a task.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch(pub(crate) Arc<Task>);
+
+impl Writing {
+    fn of(task: &Arc<Task>) -> Self {
+        let mut writers = WRITERS.lock().unwrap_or_else(PoisonError::into_inner);
+        writers.retain(|(_, task)| task.upgrade().is_some_and(|task| task.is_writing()));
+        writers.push((std::process::id(), Arc::downgrade(task)));
+        task.writing.store(true, Relaxed);
+        Self(task.clone())
+    }
+}
 
 impl Observer for Watch {
     fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
@@ -81,17 +111,38 @@ pub(crate) fn blocking<T: Send + 'static>(
     tell: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Watch(Arc::default());
-    let task = watch.0.clone();
+    carry_out(py, tell, &Arc::default(), work)
+}
+
+/// The same for work that writes a file until it drops its [`Writing`]: an exception is raised after that.
+///
+/// # Errors
+/// As [`blocking`].
+pub(crate) fn writing<T: Send + 'static>(
+    py: Python<'_>,
+    tell: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(Watch, Writing) -> T + Send + 'static,
+) -> PyResult<T> {
+    let task = Arc::default();
+    let writing = Writing::of(&task);
+    carry_out(py, tell, &task, move |watch| work(watch, writing))
+}
+
+fn carry_out<T: Send + 'static>(
+    py: Python<'_>,
+    tell: Option<&Bound<'_, PyAny>>,
+    task: &Arc<Task>,
+    work: impl FnOnce(Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    let watch = Watch(task.clone());
     let (sender, mut receiver) = sync_channel(1);
     // Nothing receives the result of a task that was left.
     let job = move || _ = sender.send(work(watch));
     let worker = std::thread::Builder::new().name("percute".into()).spawn(job)?;
-    let waited = wait(py, &task, &mut receiver, tell);
+    let waited = wait(py, task, &mut receiver, tell);
     if waited.is_err() {
         task.stop.store(true, Relaxed);
-        let receiver = &mut receiver;
-        py.detach(move || _ = receiver.recv_timeout(GRACE));
+        leave(py, task, &mut receiver);
     }
     match waited? {
         Some(done) => Ok(done),
@@ -123,6 +174,31 @@ fn wait<T: Send>(
                 tell_progress(tell, task, &mut told)?;
             }
         }
+    }
+}
+
+/// Waits for a task that has the order to stop: for [`GRACE`], and as long as it writes a file. A second signal ends
+/// the wait; the end of the interpreter then waits for the file.
+fn leave<T: Send>(py: Python<'_>, task: &Task, receiver: &mut Receiver<T>) {
+    let start = Instant::now();
+    while start.elapsed() < GRACE || task.is_writing() {
+        let receiver = &mut *receiver;
+        let answer = py.detach(move || receiver.recv_timeout(POLL));
+        if !matches!(answer, Err(RecvTimeoutError::Timeout)) || py.check_signals().is_err() {
+            return;
+        }
+    }
+}
+
+/// Stops all tasks that write a file and waits until the files are closed: the last act before the interpreter ends.
+#[pyfunction]
+pub(crate) fn close_files(py: Python<'_>) {
+    let writers = std::mem::take(&mut *WRITERS.lock().unwrap_or_else(PoisonError::into_inner));
+    let ours = writers.iter().filter(|(process, _)| *process == std::process::id());
+    let writers: Vec<Arc<Task>> = ours.filter_map(|(_, task)| task.upgrade()).collect();
+    writers.iter().for_each(|task| task.stop.store(true, Relaxed));
+    while writers.iter().any(|task| task.is_writing()) && py.check_signals().is_ok() {
+        py.detach(|| std::thread::sleep(POLL));
     }
 }
 

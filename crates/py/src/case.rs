@@ -5,6 +5,7 @@ use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, Instants, Source, parse};
+use percute_workflow::effort::Long;
 use percute_workflow::outputs;
 use percute_workflow::report::Warning;
 use percute_workflow::run::{located, resolved};
@@ -44,6 +45,12 @@ impl CaseData {
         let (case, warning) =
             found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
         Ok((Self { case }, warning.map(|warning| warning.message)))
+    }
+
+    /// Refuses a start that the simulation would refuse, and a long run unless `long` says so.
+    fn check_run(&self, py: Python<'_>, long: bool) -> PyResult<()> {
+        let long = Long::asked(long, "`long=True`");
+        each_dimension!(&self.case, case => case.check_run(true, long)).map_err(|error| errors::input(py, error))
     }
 
     /// Its plausibility warnings; with `in_memory`, its history is kept in memory.

@@ -192,6 +192,7 @@ pub(crate) fn output(py: Python<'_>, error: &Failure) -> PyErr {
             let message = format!("{what} {file}: the file exists already; give another name, or overwrite=True");
             exception(py, "ExistingFileError", &message)
         }
+        Failure::NoFolder { .. } => exception(py, "MissingFileError", &error.to_string()),
         Failure::Unwritable { .. } => exception(py, "StorageError", &error.to_string()),
         other => input(py, other.to_string()),
     }

@@ -31,7 +31,7 @@ mod _percute {
     use std::ffi::OsString;
 
     #[pymodule_export]
-    use super::bridge::ProgressNow;
+    use super::bridge::{ProgressNow, close_files};
     #[pymodule_export]
     use super::case::CaseData;
     #[pymodule_export]
@@ -53,7 +53,7 @@ mod _percute {
     #[pymodule_export]
     use super::reference::{errors_against_history, errors_against_simulation};
     #[pymodule_export]
-    use super::simulate::{open_history, plausibility_warnings, rebound_end, run_case, simulate};
+    use super::simulate::{check_run, open_history, plausibility_warnings, rebound_end, run_case, simulate};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
     #[pymodule_export]
@@ -65,6 +65,12 @@ mod _percute {
         module.add("MOST_THREADS", percute_estimator::MOST_THREADS)?;
         module.add("MOST_LEVELS", percute_workflow::verify::MOST_LEVELS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+
+    /// `; did you mean …?` about the name of an argument, or nothing.
+    #[pyfunction]
+    fn hint(given: &str, known: Vec<String>) -> String {
+        percute_workflow::message::hint(given, known.iter().map(String::as_str))
     }
 
     /// Runs the command `percute` with these arguments, the program's name first, as the process's

@@ -8,7 +8,7 @@ use crate::options::{Wanted, analysis};
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
 use crate::{bridge, errors, time};
-use percute_core::dynamics::Balance;
+use percute_core::dynamics::{Balance, SimulationError, check_start};
 use percute_core::history::Step;
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
@@ -18,12 +18,14 @@ use percute_estimator::Options;
 use percute_io::Overwrite;
 use percute_io::history::Writer;
 use percute_workflow::Failure;
-use percute_workflow::case::{CaseOf, Instants, Source};
+use percute_workflow::case::{CaseOf, Instants, Source, refused_start};
+use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
 use percute_workflow::run::{self, Analysis, Storage, TakeStep};
 use percute_workflow::until::Until;
 use pyo3::prelude::*;
+use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -153,6 +155,11 @@ pub(crate) fn rebound_end(
     })
 }
 
+/// The keys of `material`.
+fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Option<String>> {
+    problem.statement().materials.iter().map(|(group, _)| group.clone()).collect()
+}
+
 /// Plausibility warnings about a run; with `in_memory`, its history is kept in memory.
 #[pyfunction]
 pub(crate) fn plausibility_warnings(
@@ -163,16 +170,33 @@ pub(crate) fn plausibility_warnings(
 ) -> PyResult<Vec<String>> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let (plausibility_warnings, needed, groups) = each_dimension!(&problem.problem, problem => {
+    let (plausibility_warnings, needed, names) = each_dimension!(&problem.problem, problem => {
         let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
-        let groups: Vec<_> = problem.statement().materials.iter().map(|(group, _)| group.clone()).collect();
-        (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups)
+        (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups(problem))
     });
     let told = plausibility_warnings.into_iter().map(|plausibility_warning| {
-        format!("`{}`: {}", errors::argument(plausibility_warning.place, &groups), plausibility_warning.message)
+        format!("`{}`: {}", errors::argument(plausibility_warning.place, &names), plausibility_warning.message)
     });
     let scarce = memory::scarce(needed, memory::available(), in_memory).map(|message| format!("`mesh`: {message}"));
     Ok(told.chain(scarce).collect())
+}
+
+/// Refuses a start that the simulation would refuse, and a long run unless `long` says so, before warnings and any work.
+#[pyfunction]
+pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, long: bool) -> PyResult<()> {
+    let (end, courant, step, steps) = times;
+    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    each_dimension!(&problem.problem, problem => {
+        if let Err(error @ SimulationError::StartsTooNear { obstacle, .. }) = check_start(problem, &times) {
+            let (place, message) = refused_start(problem, &times, obstacle, &error);
+            return Err(errors::input(py, format!("`{}`: {message}", errors::argument(place, &groups(problem)))));
+        }
+        let effort = Effort::of(problem, &times, Options::default().every);
+        match effort.refusal(&times, false, Long::asked(long, "`long=True`")) {
+            Some(told) => Err(errors::input(py, format!("`end` {told}"))),
+            None => Ok(()),
+        }
+    })
 }
 
 /// Opens the history in a file.
@@ -240,11 +264,11 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         let growing = store.is_none().then(|| Growing::new(&times));
         let task = {
             let (problem, store, growing) = (problem.clone(), store.clone(), growing.clone());
-            move |mut watch: Watch| {
+            move |mut watch: Watch, open: Option<Box<dyn Any + Send>>| {
                 let file = store.as_ref().map(|store| store.begin(&problem, &times)).transpose()?;
                 let mut keep = growing.as_ref().map(|growing| |step: &Step<'_, D>| growing.push(step));
                 let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
-                let done = work(Storage { file, memory }, &mut watch);
+                let done = work(Storage { file, memory, open }, &mut watch);
                 if let (Err(failure), Some(store)) = (&done, &store)
                     && failure.is_refused_start()
                 {
@@ -253,8 +277,11 @@ impl<const D: usize, const N: usize> Planned<D, N> {
                 done
             }
         };
-        let outcome = bridge::blocking(py, progress, task)
-            .and_then(|done| done.map_err(|failure| errors::run(py, &located(failure))));
+        let done = match &store {
+            Some(_) => bridge::writing(py, progress, |watch, open| task(watch, Some(Box::new(open)))),
+            None => bridge::blocking(py, progress, |watch| task(watch, None)),
+        };
+        let outcome = done.and_then(|done| done.map_err(|failure| errors::run(py, &located(failure))));
         let kept = growing.and_then(|growing| growing.take());
         let data =
             |history, balance| HistoryData { run: either(Arc::new(Run::new(problem, history, options, balance))) };

@@ -7,6 +7,7 @@ use percute_core::history::SinkError;
 use percute_estimator::reference::ReferenceError;
 use percute_estimator::{EstimateError, RunError};
 use percute_io::FileError;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -66,6 +67,9 @@ pub enum Failure {
         file: PathBuf,
         cause: String,
     },
+    /// A file in a folder that is not there.
+    #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
+    NoFolder { what: &'static str, file: PathBuf, cause: String },
     /// Standard output or standard error cannot be written.
     #[error("cannot write the result: {0}")]
     Output(#[from] std::io::Error),
@@ -91,6 +95,7 @@ impl Failure {
             | Self::Unreadable { .. }
             | Self::Argument(_)
             | Self::Exists { .. }
+            | Self::NoFolder { .. }
             | Self::History { .. }
             | Self::Inconsistent { .. }
             | Self::Reference(_)
@@ -98,6 +103,13 @@ impl Failure {
             Self::File(error) => !error.cause.is_of_the_system(),
             Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => false,
         }
+    }
+
+    /// A file that the argument or key `what` names and that cannot be made.
+    #[must_use]
+    pub fn unwritable(what: &'static str, file: &Path, cause: &std::io::Error) -> Self {
+        let (file, missing, cause) = (file.to_path_buf(), cause.kind() == ErrorKind::NotFound, cause.to_string());
+        if missing { Self::NoFolder { what, file, cause } } else { Self::Unwritable { what, file, cause } }
     }
 
     /// Whether the simulation refused the start: its history file is removed then.

@@ -4,6 +4,7 @@
 
 pub mod case;
 pub mod choice;
+pub mod effort;
 pub mod export;
 mod failure;
 pub mod foreign;

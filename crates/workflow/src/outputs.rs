@@ -59,9 +59,7 @@ pub fn check(inputs: &[(&str, &Path)], outputs: &[Option<OutputFile<'_>>], force
         if !force && file.exists() {
             return Err(Failure::Exists { what, file: file.to_path_buf() });
         }
-        let fail =
-            |cause: std::io::Error| Failure::Unwritable { what, file: file.to_path_buf(), cause: cause.to_string() };
-        writable::check(file).map_err(fail)?;
+        writable::check(file).map_err(|cause| Failure::unwritable(what, file, &cause))?;
     }
     Ok(())
 }

@@ -17,6 +17,7 @@ use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
 use percute_io::history::Writer;
+use std::any::Any;
 use std::sync::atomic::AtomicBool;
 
 /// The analysis of the steps of a run or of a history.
@@ -47,6 +48,8 @@ pub struct Storage<'s, const D: usize> {
     pub file: Option<Writer<D>>,
     /// Memory.
     pub memory: Option<&'s mut TakeStep<'s, D>>,
+    /// Dropped as soon as the file is closed.
+    pub open: Option<Box<dyn Any + Send>>,
 }
 
 impl Analysis {
@@ -295,7 +298,20 @@ fn drive<const D: usize, const N: usize>(
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
-    let Storage { mut file, mut memory } = storage;
+    let Storage { file, memory, open } = storage;
+    let done = drive_into(ordered, times, threads, (file, memory), beside, observer);
+    drop(open);
+    done
+}
+
+fn drive_into<'s, const D: usize, const N: usize>(
+    ordered: &Ordered<'_, D, N>,
+    times: &TimeGrid,
+    threads: Option<usize>,
+    (mut file, mut memory): (Option<Writer<D>>, Option<&'s mut TakeStep<'s, D>>),
+    beside: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Simulation, Failure> {
     let stored = file.is_some() || memory.is_some();
     let mut store = |step: &Step<'_, D>| {
         file.as_mut().map_or(Ok(()), |file| file.push(step))?;

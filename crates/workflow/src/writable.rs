@@ -1,7 +1,7 @@
 //! Whether a file can be written, asked before any work is done for it.
 
 use std::fs::OpenOptions;
-use std::io::{Error, Result};
+use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 
 /// Makes sure that a file can be made or replaced. What is there is left as it is.
@@ -12,7 +12,8 @@ pub fn check(file: &Path) -> Result<()> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.exists() {
         let folder = folder.display();
-        return Err(Error::other(format!("there is no folder {folder}; create it first, or give another name")));
+        let message = format!("there is no folder {folder}; create it first, or give another name");
+        return Err(Error::new(ErrorKind::NotFound, message));
     }
     // Not the target of a link: a link to nothing must not be taken for a new file and removed.
     let new = match std::fs::symlink_metadata(file) {

@@ -68,7 +68,7 @@ fn analysis() -> Analysis {
 fn ran(problem: &TriangleProblem) -> (Results<2>, History<2>) {
     let mut history = History::new(&times());
     let mut keep = |step: &Step<'_, 2>| history.push(step);
-    let storage = Storage { file: None, memory: Some(&mut keep) };
+    let storage = Storage { file: None, memory: Some(&mut keep), open: None };
     let results = run(problem, &times(), &analysis(), storage, &mut Unobserved).unwrap();
     (results, history)
 }
@@ -145,7 +145,7 @@ fn a_stored_history_has_the_results_of_its_run() {
     let path = folder.path().join("shuffled.vtkhdf");
     let writer =
         plan(&problem, &times, &Options::default(), None).unwrap().create(&path, Overwrite::allowed(false)).unwrap();
-    simulate(&problem, &times, Storage { file: Some(writer), memory: None }, &mut Unobserved).unwrap();
+    simulate(&problem, &times, Storage { file: Some(writer), memory: None, open: None }, &mut Unobserved).unwrap();
     let ByDimension::Plane(stored) = open(&path).unwrap() else { panic!("a bar") };
     let read = stored.estimate(&analysis(), false, &mut Unobserved).unwrap().results;
     assert_eq!((&read.estimate, &read.contact), (&results.estimate, &results.contact));
@@ -223,7 +223,7 @@ fn failures_name_the_numbers_of_the_mesh() {
 fn a_refused_start_names_the_node_of_the_mesh() {
     let (mesh, new) = shuffled();
     let near = problem(mesh, 0.2 * 100.0 * times().step(0));
-    let storage = Storage { file: None, memory: None };
+    let storage = Storage { file: None, memory: None, open: None };
     let failure = simulate(&near, &times(), storage, &mut Unobserved).unwrap_err();
     let bottom: Vec<usize> = (0..41).map(|i| new.node[i]).collect();
     let said = failure.to_string();

@@ -203,7 +203,8 @@ fn as_good_as_the_case<const D: usize, const N: usize>(problem: &Problem<D, N>, 
     same(problem, &options);
     let (problem_again, options_again) = again(problem, &options);
     let estimate = |problem, options| {
-        let (analysis, storage) = (Analysis { options, ..Analysis::default() }, Storage { file: None, memory: None });
+        let (analysis, storage) =
+            (Analysis { options, ..Analysis::default() }, Storage { file: None, memory: None, open: None });
         let results = run(problem, times, &analysis, storage, &mut Unobserved).unwrap();
         (results.simulation, results.estimate)
     };

@@ -52,7 +52,7 @@ def pyplot() -> Any:
     try:
         import matplotlib.pyplot as plt
     except ImportError as error:
-        raise PercuteError('pictures need matplotlib: pip install "percute[plot]"') from error
+        raise PercuteError('pictures need matplotlib: pip install matplotlib') from error
     return plt
 
 

@@ -19,7 +19,7 @@ try:
     from matplotlib.figure import Figure as Drawing
     from matplotlib.ticker import NullLocator
 except ImportError:
-    raise PercuteError('the figures need matplotlib: pip install "percute[plot]"')
+    raise PercuteError('the figures need matplotlib: pip install matplotlib')
 
 __all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", "lines", "mesh_maps", "ordered", "own", "ratio", "save"]
 

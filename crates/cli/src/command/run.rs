@@ -10,6 +10,7 @@ use percute_core::each_dimension;
 use percute_estimator::{EstimateError, Options, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants};
+use percute_workflow::effort::Long;
 use percute_workflow::history::stored_case;
 use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::run::{Analysis, Storage, located, run};
@@ -36,6 +37,7 @@ fn run_case<const D: usize, const N: usize>(
     let fields = maps.fields || case.output.fields;
     within("--instants", instants, case.times.end())?;
     request(stored, "--estimate", maps, Request::default)?;
+    case.check_run(true, Long::asked(arguments.long, "--long"))?;
     let told = console.warn_about(case, work.quiet);
     let Some(case) = &resolved(case, work.quiet, console)? else { return Ok(INTERRUPTED) };
     within("--instants", instants, case.times.end())?;
@@ -46,7 +48,7 @@ fn run_case<const D: usize, const N: usize>(
     let start = Instant::now();
     let (analysis, storage) = (
         Analysis { options, request, contact_steps: stored.is_some() || print.report.is_some() },
-        Storage { file: history, memory: None },
+        Storage { file: history, memory: None, open: None },
     );
     let done = run(&case.problem, &case.times, &analysis, storage, watch).map_err(|failure| located(case, failure));
     let results = match done {

@@ -8,6 +8,7 @@ use crate::progress::Watch;
 use percute_core::each_dimension;
 use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
+use percute_workflow::effort::Long;
 use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::report::{reported, simulated};
 use percute_workflow::run::{self, Storage, located};
@@ -23,12 +24,13 @@ fn simulate<const D: usize, const N: usize>(
     arguments: &SimulateArguments,
     console: &mut Console<'_>,
 ) -> Result<u8, Failure> {
-    let SimulateArguments { force, quiet, .. } = *arguments;
+    let SimulateArguments { force, quiet, long, .. } = *arguments;
     let named = named_after(&arguments.case);
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(OutputFile { what: "history", file: &named });
     check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
+    case.check_run(false, Long::asked(long, "--long"))?;
     console.warn_about(case, quiet);
     if !quiet {
         console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
@@ -37,7 +39,7 @@ fn simulate<const D: usize, const N: usize>(
     let writer = begin_history(case, history, force, quiet, console)?;
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
     let start = Instant::now();
-    let storage = Storage { file: Some(writer), memory: None };
+    let storage = Storage { file: Some(writer), memory: None, open: None };
     let done = run::simulate(&case.problem, &case.times, storage, watch);
     let simulation = done.map_err(|failure| located(case, failure))?;
     watch.clear();

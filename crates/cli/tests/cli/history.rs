@@ -134,7 +134,7 @@ fn outputs_are_checked_before_any_work() {
     std::fs::write(bench.path("text.vtkhdf"), "mine").unwrap();
     std::fs::create_dir(bench.path("folder")).unwrap();
     let before = files(&bench);
-    let wrong: [(&[&str], i32, &str); 14] = [
+    let wrong: [(&[&str], i32, &str); 16] = [
         (&["simulate", "case.toml", "--history", "there.vtkhdf"], 2, "--history there.vtkhdf: the file exists already"),
         (&["run", "case.toml", "--history", "text.vtkhdf"], 2, "--force to replace it"),
         (&["run", "case.toml", "--estimate", "text.vtkhdf"], 2, "--estimate text.vtkhdf: the file exists already"),
@@ -149,8 +149,18 @@ fn outputs_are_checked_before_any_work() {
             "--estimate ./a is the file of --history too",
         ),
         (&["run", "case.toml", "--history", "a.svg", "--picture", "a.svg"], 2, "is the file of --history too"),
-        (&["run", "case.toml", "--history", "none/a"], 1, "--history: cannot write none/a"),
-        (&["run", "case.toml", "--estimate", "none/a"], 1, "--estimate: cannot write none/a"),
+        (&["run", "case.toml", "--history", "none/a"], 2, "--history: cannot write none/a: there is no folder none"),
+        (&["run", "case.toml", "--estimate", "none/a"], 2, "--estimate: cannot write none/a: there is no folder none"),
+        (
+            &["run", "case.toml", "--picture", "none/a.svg"],
+            2,
+            "--picture: cannot write none/a.svg: there is no folder none",
+        ),
+        (
+            &["estimate", "there.vtkhdf", "--output", "none/a"],
+            2,
+            "--output: cannot write none/a: there is no folder none",
+        ),
         (&["simulate", "case.toml", "--history", "folder", "--force"], 1, "not a regular file"),
         (&["run", "case.toml", "--history", "a.vtkhdf", "--picture", "a.jpg"], 2, "ends in .svg or .png"),
     ];
@@ -283,7 +293,7 @@ fn a_finished_history_needs_no_recovery() {
     done(&bench, &["simulate", "case.toml"]);
     let before = std::fs::read(bench.path("case.vtkhdf")).unwrap();
     let said = done(&bench, &["recover", "case.vtkhdf"]);
-    assert!(said.contains("is complete already") && said.contains("nothing was changed"), "{said}");
+    assert!(said.contains("is closed already") && said.contains("nothing was changed"), "{said}");
     assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == before);
 }
 

@@ -129,7 +129,7 @@ fn other_signals_close_a_history_too() {
         let output = send(signal, simulating(&bench));
         assert_eq!(output.status.code(), Some(130), "{signal}: {}", stderr(&output));
         let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
-        assert!(info.contains("; complete"), "{signal}: {info}");
+        assert!(info.contains("; the run was stopped there, and its file is closed"), "{signal}: {info}");
     }
 }
 
@@ -142,13 +142,18 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     child.kill().unwrap();
     child.wait().unwrap();
     let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
-    assert!(info.contains("INCOMPLETE"), "{info}");
+    assert!(info.contains("INCOMPLETE: the run goes on or was killed;"), "{info}");
+    let words = info.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("; after a kill, `percute recover case.vtkhdf` closes the file"),
+        "the cure is cut off: {info}"
+    );
     let estimate = ["estimate", "case.vtkhdf", "--json", "--every", "1000"];
     let before = bench.percute(&estimate);
     assert_eq!(before.status.code(), Some(0), "{}", stderr(&before));
     let recovered = bench.percute(&["recover", "case.vtkhdf"]);
     assert_eq!(recovered.status.code(), Some(0), "{}", stderr(&recovered));
-    assert!(stdout(&recovered).contains("is now complete and has "), "{}", stdout(&recovered));
-    assert!(stdout(&bench.percute(&["info", "case.vtkhdf"])).contains("; complete"));
+    assert!(stdout(&recovered).contains("is now closed, with "), "{}", stdout(&recovered));
+    assert!(!stdout(&bench.percute(&["info", "case.vtkhdf"])).contains("complete"));
     assert!(result(&stdout(&before)) == result(&stdout(&bench.percute(&estimate))));
 }

@@ -140,15 +140,12 @@ fn run<const D: usize, const N: usize>(
     let (mut done, mut interrupted) = (0, false);
 
     for n in 0..=times.step_count() {
-        let motion = match n.checked_sub(1) {
-            Some(last) => Motion::Advance { h: times.velocity_step(last), dt: times.step(last) },
-            None => Motion::Start,
-        };
-        body.step(dynamics, n, motion);
-        contact.react(dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
-        if n == 0 {
-            contact.settle_start(dynamics);
-            refuse_a_start_too_near(dynamics, &contact)?;
+        if let Some(last) = n.checked_sub(1) {
+            let motion = Motion::Advance { h: times.velocity_step(last), dt: times.step(last) };
+            body.step(dynamics, n, motion);
+            contact.react(dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
+        } else {
+            start(dynamics, &mut body, &mut contact)?;
         }
         body.sum_up(dynamics, n);
         let step = Step {
@@ -174,6 +171,30 @@ fn run<const D: usize, const N: usize>(
         }
     }
     Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
+}
+
+/// The forces and the contact at t_0.
+fn start<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    body: &mut MovingBody<D>,
+    contact: &mut Contact<D>,
+) -> Result<(), SimulationError> {
+    body.step(dynamics, 0, Motion::Start);
+    contact.react(dynamics, 0, &body.displacement, &body.velocity, &mut body.forces.total);
+    contact.settle_start(dynamics);
+    refuse_a_start_too_near(dynamics, contact)
+}
+
+/// Refuses a start that a simulation refuses, before anything is made for it.
+///
+/// # Errors
+/// [`SimulationError::StartsTooNear`].
+pub fn check_start<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Result<(), SimulationError> {
+    let dynamics = &Dynamics::new(problem, times);
+    start(dynamics, &mut MovingBody::new(dynamics), &mut Contact::new(problem.surface().nodes().len()))
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at

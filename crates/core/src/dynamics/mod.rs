@@ -15,7 +15,7 @@ mod update;
 
 pub use balance::Balance;
 pub use balancing::Balancing;
-pub use central_difference::{Simulation, SimulationError, simulate, simulate_threaded};
+pub use central_difference::{Simulation, SimulationError, check_start, simulate, simulate_threaded};
 pub use critical_step::{critical_time_step, element_time_step};
 pub use evaluation::{Evaluation, replay};
 pub use internal_force::Stiffness;

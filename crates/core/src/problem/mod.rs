@@ -9,7 +9,7 @@ mod renumber;
 
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub use plausibility::{PlausibilityWarning, plausibility_warnings};
+pub use plausibility::{PlausibilityWarning, cause_of_refused_start, plausibility_warnings};
 
 use crate::contact::{ContactSurface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};

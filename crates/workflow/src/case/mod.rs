@@ -46,10 +46,11 @@ pub(crate) use source::At;
 pub use source::{CaseError, Source};
 pub use statement::{NotRepresentable, problem_from, statement};
 
+use crate::effort::{Effort, Long};
 use crate::report::Subject;
 use crate::until::Until;
-use percute_core::dynamics::SimulationError;
-use percute_core::problem::Problem;
+use percute_core::dynamics::{SimulationError, check_start};
+use percute_core::problem::{Place, Problem, cause_of_refused_start};
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
@@ -128,6 +129,20 @@ fn read<const D: usize, const N: usize>(
     Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_file })
 }
 
+/// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the obstacle.
+#[must_use]
+pub fn refused_start<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    obstacle: usize,
+    error: &SimulationError,
+) -> (Place, String) {
+    match cause_of_refused_start(problem, times) {
+        Some(cause) => (cause.place, format!("{}. As it is, {error}", cause.message)),
+        None => (Place { table: "obstacle", index: Some(obstacle), key: "point" }, error.to_string()),
+    }
+}
+
 /// The document in a text.
 fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     DeTable::parse(source.text()).map_err(|error| {
@@ -166,9 +181,28 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     #[must_use]
     pub fn refused_start(&self, error: &SimulationError) -> Option<CaseError> {
         let SimulationError::StartsTooNear { obstacle, .. } = error else { return None };
+        let (place, message) = refused_start(&self.problem, &self.times, *obstacle, error);
+        self.error_at(place, message)
+    }
+
+    /// Refuses a start that the simulation would refuse, and a run that takes long unless `long` says so, before
+    /// warnings and before any work; `estimated` if the error is estimated beside the run.
+    ///
+    /// # Errors
+    /// The place in the file.
+    pub fn check_run(&self, estimated: bool, long: Long) -> Result<(), CaseError> {
+        let start = check_start(&self.problem, &self.times).err();
+        let refused = start.and_then(|error| self.refused_start(&error)).or_else(|| {
+            let effort = Effort::of(&self.problem, &self.times, self.options.every);
+            let told = effort.refusal(&self.times, estimated, long)?;
+            self.error_at(Place { table: "time", index: None, key: "end" }, told)
+        });
+        refused.map_or(Ok(()), Err)
+    }
+
+    fn error_at(&self, place: Place, message: String) -> Option<CaseError> {
         let document = parsed(&self.source).ok()?;
         let root = Table::root(&self.source, document.get_ref());
-        let place = percute_core::problem::Place { table: "obstacle", index: Some(*obstacle), key: "point" };
-        Some(self.source.error(&place::find(&root, place), error.to_string()))
+        Some(self.source.error(&place::find(&root, place), message))
     }
 }

@@ -11,6 +11,7 @@ pub use mesh::{GroupInfo, MeshInfo, of_mesh};
 pub use setting::{MaterialInfo, PlaneInfo};
 
 use crate::case::{CaseOf, NotRepresentable, Output};
+use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
 use crate::message::{bytes, counted, trimmed};
 use crate::report::build::problem_summary;
@@ -52,6 +53,10 @@ pub struct CaseInfo {
     pub contact_memory: u64,
     pub output_history: Option<String>,
     pub output_estimate: Option<String>,
+    pub element_steps: u64,
+    pub simulation_seconds: f64,
+    pub run_seconds: f64,
+    pub long: bool,
 }
 
 /// A history.
@@ -118,6 +123,7 @@ fn writer(Provenance { program, architecture, system }: &Provenance) -> String {
 pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<Info, NotRepresentable> {
     let Output { history, estimate, .. } = &case.output;
     let name = |file: &Option<std::path::PathBuf>| file.as_ref().map(|file| file.display().to_string());
+    let effort = Effort::of(&case.problem, &case.times, case.options.every);
     Ok(Info::Case(Box::new(CaseInfo {
         format: FORMAT,
         versions: Versions::of_this_program(),
@@ -135,6 +141,10 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
         contact_memory: memory::of_contact(&case.problem, &case.times),
         output_history: name(history),
         output_estimate: name(estimate),
+        element_steps: effort.element_steps,
+        simulation_seconds: effort.simulation_seconds,
+        run_seconds: effort.run_seconds,
+        long: effort.is_long(),
     })))
 }
 
@@ -186,6 +196,9 @@ impl CaseInfo {
         lines.extend(self.materials.iter().map(MaterialInfo::line));
         lines.extend(self.planes.iter().map(PlaneInfo::line));
         lines.extend(self.time.lines());
+        let (run, simulation) = (duration(self.run_seconds), duration(self.simulation_seconds));
+        let long = if self.long { "; such a run needs --long" } else { "" };
+        lines.push(("duration", format!("run {run}, simulate {simulation}{long}")));
         lines.push(("history", format!("{} on disk", bytes(self.history_bytes))));
         let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));
         lines.push(("memory", format!("about {run} for the run, and {estimate} for the estimate")));
@@ -208,7 +221,16 @@ impl HistoryInfo {
         lines.push(("body", body(&self.problem)));
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| counted(steps, "step"));
-        let ended = if self.complete { "complete" } else { "INCOMPLETE (running, or killed)" };
+        let ended = match (self.complete, self.steps == Some(self.time.steps_planned)) {
+            (true, true) => "complete".to_string(),
+            (true, false) => "the run was stopped there, and its file is closed".to_string(),
+            (false, _) => {
+                let file = &self.file;
+                format!(
+                    "INCOMPLETE: the run goes on or was killed; after a kill, `percute recover {file}` closes the file"
+                )
+            }
+        };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));

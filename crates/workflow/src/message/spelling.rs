@@ -31,22 +31,38 @@ fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<
     known.into_iter().filter_map(|name| Some((near(name)?, name))).min_by_key(|&(changes, _)| changes).map(|(_, n)| n)
 }
 
-/// Names that other programs and books have.
-const ELSEWHERE: [(&str, &str); 14] = [
-    ("nu", "poisson"),
-    ("e", "young"),
-    ("modulus", "young"),
-    ("rho", "density"),
-    ("mu", "friction"),
-    ("dt", "step"),
-    ("cfl", "courant"),
-    ("t", "end"),
-    ("tend", "end"),
-    ("duration", "end"),
-    ("v", "velocity"),
-    ("v0", "velocity"),
-    ("area", "section"),
-    ("plane", "obstacle"),
+/// Names of keys of a case and of arguments in Python, each with names that other programs and books have.
+const ELSEWHERE: [(&str, &[&str]); 30] = [
+    ("young", &["e", "modulus", "emod"]),
+    ("poisson", &["nu", "pr"]),
+    ("density", &["rho"]),
+    ("friction", &["mu", "cof"]),
+    ("section", &["area", "a"]),
+    ("plane", &["stress", "state", "hypothesis"]),
+    ("step", &["dt", "timestep", "time_step", "delta_t"]),
+    ("courant", &["cfl", "safety"]),
+    ("end", &["t", "tend", "t_end", "tmax", "t_max", "duration", "time", "until"]),
+    ("velocity", &["v", "v0"]),
+    ("initial_velocity", &["v", "v0", "velocity"]),
+    ("displacement", &["u", "u0"]),
+    ("initial_displacement", &["u", "u0", "displacement"]),
+    ("obstacle", &["plane", "contact", "wall", "ground"]),
+    ("obstacles", &["plane", "planes", "contact", "contacts", "wall", "walls", "ground"]),
+    ("supports", &["bc", "bcs", "boundary", "boundary_conditions", "dirichlet", "constraints"]),
+    ("tractions", &["loads", "pressure", "neumann", "forces"]),
+    ("body_forces", &["gravity", "weight", "g"]),
+    ("points", &["nodes", "vertices", "coordinates", "coords", "xy"]),
+    ("cells", &["elements", "triangles", "connectivity", "faces"]),
+    ("point", &["origin", "position", "x0"]),
+    ("normal", &["direction", "n"]),
+    ("components", &["dofs", "dof", "axes", "axis", "directions"]),
+    ("value", &["pressure", "force", "f"]),
+    ("store", &["file", "filename", "path", "output", "history"]),
+    ("path", &["file", "filename", "name"]),
+    ("overwrite", &["force", "replace", "exist_ok"]),
+    ("threads", &["n_threads", "num_threads", "n_jobs", "workers"]),
+    ("elements", &["n", "nx"]),
+    ("length", &["l"]),
 ];
 
 /// `; did you mean …?`, or nothing.
@@ -54,7 +70,8 @@ const ELSEWHERE: [(&str, &str); 14] = [
 pub fn hint<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
     let low = given.to_lowercase();
-    let elsewhere = ELSEWHERE.iter().find(|(name, ours)| *name == low && known.contains(ours)).map(|(_, ours)| *ours);
+    let meant = |(ours, others): &(&str, &[&str])| known.contains(ours) && others.contains(&low.as_str());
+    let elsewhere = ELSEWHERE.iter().find(|entry| meant(entry)).map(|(ours, _)| *ours);
     elsewhere.or_else(|| nearest(given, known)).map(|name| format!("; did you mean `{name}`?")).unwrap_or_default()
 }
 

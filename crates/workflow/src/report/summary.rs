@@ -15,15 +15,26 @@ pub fn summary(report: &Report) -> String {
     layout(&lines(report)) + &meaning::lines(&verdict) + MEASURE + "\n" + &layout(&[("result", result(report))])
 }
 
+/// Columns of the screen, and of the names.
+const SCREEN: usize = 80;
+const NAMES: usize = 10;
+
 /// Names and values in two columns.
 pub(crate) fn layout(lines: &[(&str, String)]) -> String {
-    lines.iter().map(|(name, value)| cut(&format!("{name:<10}{value}")) + "\n").collect()
+    lines.iter().map(|(name, value)| wrapped(&format!("{name:<NAMES$}{value}"))).collect()
 }
 
-/// A line that fits the screen.
-fn cut(line: &str) -> String {
-    let line = line.trim_end();
-    if line.chars().count() <= 80 { line.to_string() } else { line.chars().take(79).chain(['…']).collect() }
+/// A line as lines that fit the screen. It breaks at a space, and only a word that is longer than a line within it.
+fn wrapped(line: &str) -> String {
+    let (mut all, mut rest) = (String::new(), line.trim_end().to_string());
+    while let Some((end, _)) = rest.char_indices().nth(SCREEN) {
+        let space = rest[..=end].rfind(' ').filter(|at| !rest[..*at].chars().skip(NAMES).all(|c| c == ' '));
+        let tail = rest.split_off(space.unwrap_or(end));
+        all += rest.trim_end();
+        all.push('\n');
+        rest = format!("{:NAMES$}{}", "", tail.trim_start());
+    }
+    all + &rest + "\n"
 }
 
 fn lines(report: &Report) -> Vec<(&'static str, String)> {
@@ -216,4 +227,22 @@ fn warnings(report: &Report) -> Vec<(&'static str, String)> {
         lines.push(("WARNINGS", format!("and {}: {names}", all.len() - 1)));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_are_wrapped_and_nothing_is_cut() {
+        let words =
+            "INCOMPLETE: its run goes on or was killed; after a kill, `percute recover beam.vtkhdf` closes the file";
+        let shown = layout(&[("holds", words.to_string()), ("case", "x".repeat(200)), ("", "y".repeat(70))]);
+        assert!(shown.lines().all(|line| line.chars().count() <= 80), "{shown}");
+        let together = |text: &str| text.split_whitespace().collect::<String>();
+        let all = format!("holds{words}case{}{}", "x".repeat(200), "y".repeat(70));
+        assert_eq!(together(&shown), together(&all));
+        assert_eq!(shown.lines().count(), 2 + 3 + 1);
+        assert!(shown.lines().nth(1).is_some_and(|line| line.starts_with("          after")), "{shown}");
+    }
 }

@@ -90,7 +90,7 @@ pub fn verify<const D: usize, const N: usize>(
         let mut keep = history.as_mut().map(|history| |step: &Step<'_, D>| history.push(step));
         let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
         let analysis = Analysis { options, ..Analysis::default() };
-        let results = run(problem, times, &analysis, Storage { file: None, memory }, observer);
+        let results = run(problem, times, &analysis, Storage { file: None, memory, open: None }, observer);
         let results = match results {
             Err(_) if stopped_now(observer) && !levels.is_empty() => {
                 stopped = true;

@@ -48,6 +48,21 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
     all
 }
 
+/// What makes a start that the simulation refuses: more likely than a plane that is too near, a wrong unit.
+#[must_use]
+pub fn cause_of_refused_start<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Option<PlausibilityWarning> {
+    // The extent of the body does not change its waves.
+    let units = |warning: &PlausibilityWarning| {
+        ["units", "supersonic"].contains(&warning.name)
+            && ["", "young", "density", "velocity"].contains(&warning.place.key)
+    };
+    let size = units::size_of_body(problem.mesh().size(), units::LARGE_IF_REFUSED);
+    plausibility_warnings(problem, times).into_iter().find(units).or(size)
+}
+
 /// A plausibility warning about a key.
 fn plausibility_warning(
     place: Place,

@@ -22,6 +22,8 @@ const SLOW: f64 = 10.0;
 const FAST: f64 = 2e4;
 /// Larger than all but a few bodies that strike something: piles have tens of metres.
 const LARGE: f64 = 60.0;
+/// If the start is refused, a body above this size is more likely in millimetres: its steps are too long.
+pub(super) const LARGE_IF_REFUSED: f64 = 1.0;
 /// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one in
 /// other units.
 const WIDE: f64 = 10.0;
@@ -37,7 +39,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let size = problem.mesh().size();
     // An import warning of the mesh file names the key that corrects it.
     let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");
-    let mut all: Vec<PlausibilityWarning> = size_of_body(size).filter(|_| !reported).into_iter().collect();
+    let mut all: Vec<PlausibilityWarning> = size_of_body(size, LARGE).filter(|_| !reported).into_iter().collect();
     for (index, material) in problem.materials().iter().enumerate() {
         all.extend([density(material, index), stiffness(material, size, index)].into_iter().flatten().take(1));
         all.extend(extent(material, size, index));
@@ -64,13 +66,15 @@ fn units(table: &'static str, index: Option<usize>, key: &'static str, message: 
     Some(plausibility_warning(at(table, index, key), "units", brief, message))
 }
 
-fn size_of_body(size: f64) -> Option<PlausibilityWarning> {
-    if size <= LARGE {
+pub(super) fn size_of_body(size: f64, large: f64) -> Option<PlausibilityWarning> {
+    if size <= large {
         return None;
     }
     let (shown, metres) = (short(size), short(1e-3 * size));
-    let message =
-        format!("the body is {shown} m large; lengths are in metres: if these are millimetres, make it {metres} m");
+    let message = format!(
+        "the body is {shown} m large; lengths are in metres: if these are millimetres, make it {metres} m (a mesh from a \
+             file: `scale` 1e-3)"
+    );
     units("mesh", None, "", message)
 }
 
