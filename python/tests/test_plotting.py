@@ -169,7 +169,7 @@ def test_figures_are_saved_with_the_same_bytes(ending: str, block_history: pc.Hi
 def test_files_are_checked_before_anything_is_drawn(block_history: pc.History, tmp_path: Path) -> None:
     with pytest.raises(pc.InputError, match=r"`save` is 'map.jpg'; the name must end in .svg or .png or .pdf"):
         block_history.plot(save="map.jpg")
-    with pytest.raises(pc.StorageError, match="there is no folder"):
+    with pytest.raises(pc.MissingFileError, match="there is no folder"):
         block_history.plot(save=tmp_path / "none" / "map.svg")
     (tmp_path / "folder.svg").mkdir()
     with pytest.raises(pc.StorageError, match="not a regular file"):

@@ -100,7 +100,7 @@ def test_files_are_checked_first(estimate: pc.Estimate, tmp_path: Path, method: 
     assert (tmp_path / name).stat().st_size > 1000
     with pytest.raises(pc.InputError, match="ends in"):
         write(tmp_path / wrong)
-    with pytest.raises(pc.StorageError, match="folder"):
+    with pytest.raises(pc.MissingFileError, match="there is no folder"):
         write(tmp_path / "none" / name)
     estimate.save(tmp_path / "e.vtkhdf")
     with pytest.raises(pc.InputError, match="the estimate itself"):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from percute.checks import encodable, flag, wrong
 from percute.checks import path as file_name
-from percute.errors import ExistingFileError, InputError, PercuteError, StorageError
+from percute.errors import ExistingFileError, InputError, MissingFileError, PercuteError, StorageError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,7 +86,7 @@ def writable(name: str, file: object, overwrite: object, endings: tuple[str, ...
         raise InputError(f"`{name}` is {encodable(file_name(name, file))!r}; the name must end in {' or '.join(endings)}")
     folder = os.path.dirname(path)
     if not os.path.isdir(folder):
-        raise StorageError(f"{shown}: there is no folder {encodable(folder)}; create it first, or give another name")
+        raise MissingFileError(f"{shown}: there is no folder {encodable(folder)}; create it first, or give another name")
     if os.path.lexists(path):
         if not os.path.isfile(path):
             raise StorageError(f"{shown}: it is not a regular file")
