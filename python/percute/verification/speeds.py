@@ -88,13 +88,14 @@ def compute(section: Section, resolution: Resolution) -> None:
     runs = [(case, speed) for case in wanted for speed in resolution.either(FEW, SPEEDS)]
     found = resolution.map(run, runs, _cost)
     results = list(zip(runs, found, strict=True))
+    held = inside((each.estimates[0], each.effectivity(0)) for _, (_, meshes) in results for each in meshes if each is not None)
     section.add(
         "Impacts of bodies that touch with a corner, a curve, or an edge beside an inclined side, from 400 to 0.4 m/s. The gap shrinks with the "
         "speed, so that a body touches at the same instant at each speed. Each run goes on through contact and release. Where a corner touches "
         "slowly, its zone of contact is smaller than any element of a uniform mesh. The meshes of the references are therefore refined "
         f"towards the corners of the outline that come into contact: to {_micrometres(SPEEDS[0])} at {SPEEDS[0]:g} m/s, to "
         f"{_micrometres(SPEEDS[-1])} at {SPEEDS[-1]:g} m/s, with a size that grows by a quarter of the distance. The tables have "
-        "the true error against this reference and against one with elements of twice that size everywhere.",
+        f"the true error against this reference and against one with elements of twice that size everywhere. {held}",
         Figure(
             "speeds",
             "Effectivity index of `corrected` on mesh 2 over the speed across the plane (both axes logarithmic), against the finer reference. "
@@ -103,7 +104,6 @@ def compute(section: Section, resolution: Resolution) -> None:
         ),
         _summary(results),
         _table(results),
-        inside((each.estimates[0], each.effectivity(0)) for _, (_, found) in results for each in found if each is not None),
     )
     # A family needs all its cases, and a run of many phases takes a minute.
     if not resolution.small:
