@@ -19,6 +19,7 @@ from percute.checks import encodable, flag, instance, items, numbers, optional_n
 from percute.contact import Contact
 from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
 from percute.foreign import ForeignArrays
+from percute.kept import kept
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.rebound import Rebound
@@ -145,6 +146,12 @@ class History(HistoryViews):
         return self._data.times[: self._data.count]
 
     @cached_property
+    def steps(self) -> NDArray[np.int64]:
+        """Number of the step of each instant in the run, shape (instants,): 0, 1, 2, … unless a file keeps a part of them."""
+        kept = self._data.steps()
+        return np.arange(len(self)) if kept is None else kept
+
+    @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
         mapped = self._view("displacement")
@@ -153,17 +160,25 @@ class History(HistoryViews):
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
+        self._expect("reaction")
         mapped = self._view("reaction")
         return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
+        self._expect("reaction")
         mapped = self._view("touching")
         # Any byte but 0 means true in the file; a bool of numpy must be 1.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
         return mapped.view(np.bool_)
+
+    def _expect(self, name: str) -> None:
+        """Refuse a field that a thinned history lacks."""
+        if name in self._data.lacks():
+            told = f"{name} is not in this history, which keeps a part of its run; simulate again with {name!r} among `fields`"
+            raise InputError(f"{self.path}: {told}")
 
     def _view(self, name: str) -> NDArray[Any] | None:
         """Give an array of the file; None if it cannot be mapped."""
@@ -212,15 +227,22 @@ class History(HistoryViews):
     def _motion(self) -> Sequence[NDArray[np.float64]]:
         return self._data.motion()
 
-    @property
+    def _moving(self, which: int) -> NDArray[np.float64]:
+        """Give velocity or acceleration: by the scheme, or as a thinned history keeps them."""
+        if self._data.steps() is None:
+            return self._motion[which]
+        self._expect(("velocity", "acceleration")[which])
+        return self._data.stored_motion(which == 1)
+
+    @cached_property
     def velocity(self) -> NDArray[np.float64]:
         """Velocities v_n (m/s), shape (instants, nodes, dimension), eq. [29], [31]; computed on first access."""
-        return self._motion[0]
+        return self._moving(0)
 
-    @property
+    @cached_property
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations a_n (m/s²), shape (instants, nodes, dimension), eq. [30]; computed on first access."""
-        return self._motion[1]
+        return self._moving(1)
 
     @cached_property
     def balance(self) -> Balance:
@@ -274,7 +296,8 @@ class History(HistoryViews):
         return self._data.count
 
     def __repr__(self) -> str:
-        held = f"{len(self)} instants to {self.time[-1]:.4g} s"
+        kept = "" if self._data.steps() is None else "part of a run: "
+        held = f"{kept}{len(self)} instants to {self.time[-1]:.4g} s"
         planned = "" if self.complete else f" of {len(self._data.times)} planned"
         nodes, dimension = self.displacement.shape[1:]
         return f"<percute.History: {held}{planned}, {nodes} nodes, {dimension}D>"
@@ -312,6 +335,9 @@ def simulate(
     longest: float | None = None,
     after: float | None = None,
     store: str | os.PathLike[str] | None = None,
+    every: int | None = None,
+    times: ArrayLike | None = None,
+    fields: Iterable[str] | None = None,
     overwrite: bool = False,
     long: bool = False,
     progress: ProgressOption = None,
@@ -339,6 +365,13 @@ def simulate(
     store : str or path, optional
         A file, such as ``"block.vtkhdf"``, to which the steps are written during the run; they are then not kept in memory.
         See ``docs/history.md``. Disk space for the complete file is allocated at the start.
+    every : int, optional
+        With ``store``: the file keeps every k-th step, and the last. Estimate, balance and contact results need all steps.
+    times : (n,) floats, optional
+        Instead of ``every``: the file keeps the steps nearest to these times (s), the first and the last.
+    fields : list of str, optional
+        With ``store``: the fields in the file, out of ``"displacement"`` (always kept), ``"velocity"``, ``"acceleration"`` and
+        ``"reaction"``. By default all four if steps are left out, else displacement and reaction.
     overwrite : bool, default: False
         Whether a file that exists already is replaced.
     long : bool, default: False
@@ -371,17 +404,18 @@ def simulate(
     """
     instance("problem", problem, Problem)
     file = None if store is None else vtkhdf("store", store)
+    keep = kept(every, times, fields, file)
     replace = flag("overwrite", overwrite)
     if end == "rebound":
         _percute.check_run(problem._data, _times(longest, courant, step, steps), flag("long", long))
         end = _rebound_end(problem, _times(None, courant, step, steps), longest, after, progress)
     elif longest is not None or after is not None:
         raise InputError('`longest` and `after` need end="rebound"; leave them out')
-    times = _times(end, courant, step, steps)
-    _percute.check_run(problem._data, times, flag("long", long))
-    warn(_percute.plausibility_warnings(problem._data, times, file is None))
+    grid = _times(end, courant, step, steps)
+    _percute.check_run(problem._data, grid, flag("long", long))
+    warn(_percute.plausibility_warnings(problem._data, grid, file is None))
     with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
-        data = _percute.simulate(problem._data, times, absolute(file), replace, tell)
+        data = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
     return History._of(data, problem, "" if file is None else encodable(file))
 
 

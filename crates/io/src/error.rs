@@ -88,6 +88,13 @@ pub enum FileCause {
     /// A value that is not allowed.
     #[error("`{name}`: {detail}")]
     Value { name: String, detail: String },
+    /// A history that keeps a part of its run only.
+    #[error(
+        "the file keeps {held} of {of} instants{reactions}; the estimate, the energies (`balance`), the contact results, the true \
+         error and motion by the scheme need all steps: run again without `every`, `times` and `fields` of the history, or \
+         take the estimate that `percute run` makes during the run, which uses all steps"
+    )]
+    Thinned { held: usize, of: usize, reactions: &'static str },
     /// A shape that the stored bytes cannot fill.
     #[error("`{name}` has the shape {given:?}, but only {stored} bytes are stored in this file for it")]
     Hollow { name: String, given: Vec<usize>, stored: u64 },

@@ -170,6 +170,7 @@ fn of_file(py: Python<'_>, path: &Path, cause: &FileCause, message: &str) -> PyE
             return exception(py, "ExistingFileError", &message);
         }
         FileCause::NotAFile => "StorageError",
+        FileCause::Thinned { .. } => "InputError",
         cause if cause.is_of_the_system() => "StorageError",
         _ => "FileFormatError",
     };

@@ -4,10 +4,12 @@ use crate::bridge::Watch;
 use crate::history::HistoryData;
 use crate::{bridge, errors};
 use percute_core::each_dimension;
+use percute_core::history::StepSource;
 use percute_io::Overwrite;
 use percute_workflow::Failure;
 use percute_workflow::choice::StepChoice;
 use percute_workflow::export::{Export, Names, Request};
+use percute_workflow::history::lacks;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -27,11 +29,14 @@ pub(crate) fn export(
 ) -> PyResult<Vec<PathBuf>> {
     let instants = if choice.2.is_some() { "`times`" } else { "`steps`" };
     let names = Names { path: "`path`", instants, fields: "`fields`", estimate: "`estimate`" };
-    let request = Request { names, steps: chosen(choice), fields, error };
+    let lacks = each_dimension!(&history.run, run => run.file().and_then(lacks));
+    let request = Request { lacks, names, steps: chosen(choice), fields, error };
     each_dimension!(&history.run, run => {
         let run = run.clone();
         let work = move |mut watch: Watch| -> Result<Vec<PathBuf>, Failure> {
-            let export = Export::new(&run.problem, run.source(), &path, &request)?;
+            let stored = run.stored_source();
+            let source = stored.as_ref().map_or(run.source(), |stored| stored as &dyn StepSource<_>);
+            let export = Export::new(&run.problem, source, &path, &request)?;
             let inputs: Vec<(&str, &Path)> = inputs.iter().map(|file| ("input", file.as_path())).collect();
             export.check("`path`", &inputs, overwrite)?;
             // A stop has an exception of its own.

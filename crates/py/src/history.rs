@@ -16,6 +16,7 @@ use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::HistoryFile;
 use percute_workflow::foreign::{Completed, Derived, Lacks, Origin};
+use percute_workflow::history::lacks;
 use percute_workflow::report::{Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -183,6 +184,27 @@ impl HistoryData {
         })
     }
 
+    /// The number of each instant in the run of a thinned history; none for one with all steps.
+    fn steps<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
+        each_dimension!(&self.run, run => {
+            let kept = run.file()?.kept()?;
+            Some(view::column(py, &kept.steps[..run.count()], |n| *n as i64))
+        })
+    }
+
+    /// Fields that a thinned history lacks.
+    fn lacks(&self) -> Vec<&'static str> {
+        each_dimension!(&self.run, run => run.file().and_then(lacks)).unwrap_or_default()
+    }
+
+    /// The velocity or, with `acceleration`, the acceleration that a thinned history has; from its file.
+    fn stored_motion<'py>(&self, py: Python<'py>, acceleration: bool) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        each_dimension!(&self.run, run => {
+            let field = if acceleration { stored_acceleration } else { stored_velocity };
+            view::field(py, &read(py, run, field)?, Vec::as_slice, &run.shape())
+        })
+    }
+
     /// Velocity and acceleration, derived now.
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 2]> {
         each_dimension!(&self.run, run => {
@@ -216,6 +238,20 @@ impl HistoryData {
     fn any_problem(&self) -> AnyProblem {
         map_dimension!(&self.run, run => run.problem.clone())
     }
+}
+
+fn stored_velocity<const D: usize, const N: usize>(
+    file: &HistoryFile<D, N>,
+    steps: Range<usize>,
+) -> Result<Vec<[f64; D]>, FileError> {
+    Ok(file.velocity(steps)?.unwrap_or_default())
+}
+
+fn stored_acceleration<const D: usize, const N: usize>(
+    file: &HistoryFile<D, N>,
+    steps: Range<usize>,
+) -> Result<Vec<[f64; D]>, FileError> {
+    Ok(file.acceleration(steps)?.unwrap_or_default())
 }
 
 /// Bytes of a field that are read at once: enough for the disk, and soon done for who presses Ctrl-C.

@@ -9,7 +9,7 @@ use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::FileError;
-use percute_io::history::{HistoryFile, HistorySource};
+use percute_io::history::{HistoryFile, HistorySource, StoredSteps};
 use percute_workflow::Failure;
 use percute_workflow::foreign::{self, Graded, Origin};
 use percute_workflow::history::Stored;
@@ -79,6 +79,14 @@ impl<const D: usize, const N: usize> Run<D, N> {
         }
     }
 
+    /// The stored steps of a file, which may be thinned.
+    pub(crate) fn stored_source(&self) -> Option<StoredSteps<'_, D, N>> {
+        match &self.steps {
+            Steps::Memory(_) => None,
+            Steps::File(_, source) => Some(source.stored()),
+        }
+    }
+
     /// The same until `watch` asks for a stop.
     pub(crate) fn stoppable(&self, watch: Watch) -> Stoppable<'_, D> {
         Stoppable { source: self.source(), watch }
@@ -136,6 +144,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
         accept: bool,
         watch: &mut Watch,
     ) -> Result<Graded<D>, Failure> {
+        self.file().map_or(Ok(()), HistoryFile::expect_all)?;
         if let Some(origin) = self.origin.clone() {
             let origin = &Origin { accept, ..origin };
             return foreign::estimate(&self.problem, source, origin, analysis, watch);

@@ -18,7 +18,8 @@ use percute_estimator::Options;
 use percute_io::Overwrite;
 use percute_io::history::Writer;
 use percute_workflow::Failure;
-use percute_workflow::case::{CaseOf, Instants, Source, refused_start};
+use percute_workflow::case::{CaseOf, Instants, Keep, Source, refused_start};
+use percute_workflow::choice::StepChoice;
 use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
@@ -37,6 +38,23 @@ type Either<const D: usize, const N: usize> = fn(Arc<Run<D, N>>) -> AnyRun;
 /// How the instants are stated: end, courant, step, steps.
 pub(crate) type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
 
+/// The part of a run that its file keeps: every k-th step, or times (s); and names of fields.
+type Kept = (Option<usize>, Option<Vec<f64>>, Option<Vec<String>>);
+
+/// Checks it against the instants of the run.
+fn keep_of(py: Python<'_>, (every, wanted, fields): Kept, times: &TimeGrid) -> PyResult<Keep> {
+    let steps = match (every, wanted) {
+        (Some(every), _) => StepChoice::Every(every),
+        (None, Some(wanted)) => StepChoice::Times(wanted),
+        (None, None) => StepChoice::All,
+    };
+    steps.of(times.instants()).map_err(|told| errors::input(py, format!("`times`: {told}")))?;
+    if let Some(told) = fields.iter().flatten().find_map(|name| Keep::unknown(name)) {
+        return Err(errors::input(py, format!("`fields`: {told}")));
+    }
+    Ok(Keep { steps, fields })
+}
+
 /// Simulates. What is raised on the way has what was done as its `history`: the data, or the file.
 #[pyfunction]
 pub(crate) fn simulate(
@@ -44,12 +62,14 @@ pub(crate) fn simulate(
     problem: &ProblemData,
     times: Times,
     store: Option<PathBuf>,
+    keep: Kept,
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<HistoryData> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let store = store.map(|path| Store::new(path, overwrite, Options::default(), None));
+    let keep = keep_of(py, keep, &times)?;
+    let store = store.map(|path| Store::new(path, overwrite, Options::default(), None, keep));
     match &problem.problem {
         ByDimension::Bar(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Bar),
         ByDimension::Plane(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Plane),
@@ -117,7 +137,8 @@ fn run_one<const D: usize, const N: usize>(
     either: Either<D, N>,
 ) -> PyResult<(HistoryData, Arc<Made<D, N>>)> {
     let (problem, times, options) = (Arc::new(case.problem.clone()), case.times.clone(), analysis.options);
-    let store = store.map(|path| Store::new(path, overwrite, case.options, Some(case.source.clone())));
+    let store = store
+        .map(|path| Store::new(path, overwrite, case.options, Some(case.source.clone()), case.output.keep.clone()));
     let work = {
         let (problem, times) = (problem.clone(), times.clone());
         move |storage: Storage<'_, D>, watch: &mut Watch| {
@@ -219,13 +240,15 @@ struct Store {
     /// Options that its estimate takes unless told otherwise.
     options: Options,
     case: Option<Source>,
+    /// The part of the run that it keeps.
+    keep: Keep,
     /// Set as soon as the file is that of this run.
     ours: Arc<AtomicBool>,
 }
 
 impl Store {
-    fn new(path: PathBuf, overwrite: bool, options: Options, case: Option<Source>) -> Self {
-        Self { path, overwrite, options, case, ours: Arc::default() }
+    fn new(path: PathBuf, overwrite: bool, options: Options, case: Option<Source>, keep: Keep) -> Self {
+        Self { path, overwrite, options, case, keep, ours: Arc::default() }
     }
 
     /// Makes the file.
@@ -234,7 +257,7 @@ impl Store {
         problem: &Problem<D, N>,
         times: &TimeGrid,
     ) -> Result<Writer<D>, Failure> {
-        let plan = plan(problem, times, &self.options, self.case.as_ref())?;
+        let plan = plan(problem, times, &self.options, self.case.as_ref(), &self.keep)?;
         let writer = plan.create(&self.path, Overwrite::allowed(self.overwrite))?;
         self.ours.store(true, Relaxed);
         Ok(writer)

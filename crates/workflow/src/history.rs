@@ -1,6 +1,6 @@
 //! Histories in files: with the statement of their problem in the language of the case files.
 
-use crate::case::{NotRepresentable, Source, problem_from, statement};
+use crate::case::{Keep, NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
 use crate::foreign::{self, Graded, Lacks, Origin};
 use crate::report::Subject;
@@ -18,7 +18,7 @@ use percute_io::history::{HistoryFile, Plan};
 use std::path::Path;
 
 /// The file that will hold the history of a problem, with the options that its estimate takes unless
-/// told otherwise, and the case file that it came from.
+/// told otherwise, the case file that it came from, and the part of the run that it keeps.
 ///
 /// # Errors
 /// A problem that the language of the case files cannot say.
@@ -27,9 +27,10 @@ pub fn plan<'p, const D: usize, const N: usize>(
     times: &'p TimeGrid,
     options: &Options,
     case: Option<&Source>,
+    keep: &Keep,
 ) -> Result<Plan<'p, D, N>, NotRepresentable> {
     let case = case.map(stored_case);
-    Ok(Plan::new(problem, times, &statement(problem, Some(options))?, case.as_ref()))
+    Ok(Plan::new(problem, times, &statement(problem, Some(options))?, case.as_ref()).keeping(keep.of(times)))
 }
 
 /// A case file as it is stored in others.
@@ -60,6 +61,15 @@ pub type AnyStored = ByDimension<Box<Stored<1, 2>>, Box<Stored<2, 3>>>;
 /// A file that is no history or is damaged; a statement with a mistake, with its line.
 pub fn open(path: &Path) -> Result<AnyStored, Failure> {
     Ok(map_dimension!(percute_io::history::open(path)?, file => Box::new(Stored::new(file, path)?)))
+}
+
+/// The fields that a thinned history lacks; none for one with all steps, from which all fields follow.
+#[must_use]
+pub fn lacks<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> Option<Vec<&'static str>> {
+    file.kept()?;
+    let [velocity, acceleration] = file.stored();
+    let there = [("velocity", velocity), ("acceleration", acceleration), ("reaction", !file.lacks_reactions())];
+    Some(there.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect())
 }
 
 impl<const D: usize, const N: usize> Stored<D, N> {
@@ -113,6 +123,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         accept: bool,
         observer: &mut dyn Observer,
     ) -> Result<Graded<D>, Failure> {
+        self.file.expect_all()?;
         let source = self.file.source(&self.problem)?;
         let origin = self.origin().map(|origin| Origin { accept, ..origin });
         let done = match origin {

@@ -46,8 +46,9 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     /// A sink that hands the steps on in the numbers of the user.
-    pub(crate) fn sink<'s>(&'s self, take: &'s mut TakeStep<'s, D>) -> RestoringSink<'s, D> {
-        RestoringSink { take, numbering: self.numbering(), fields: Fields::default() }
+    /// The steps in `motion`, ascending, have their velocity and acceleration.
+    pub(crate) fn sink<'s>(&'s self, take: &'s mut TakeStep<'s, D>, motion: Vec<usize>) -> RestoringSink<'s, D> {
+        RestoringSink { take, motion, numbering: self.numbering(), fields: Fields::default() }
     }
 
     /// A nodal field in the numbers of the user.
@@ -202,16 +203,23 @@ impl<const D: usize> StepSource<D> for OrderedSource<'_, D> {
 /// Hands steps on in the numbers of the user.
 pub(crate) struct RestoringSink<'s, const D: usize> {
     take: &'s mut TakeStep<'s, D>,
+    motion: Vec<usize>,
     numbering: Option<&'s Numbering>,
     fields: Fields<D>,
 }
 
 impl<const D: usize> StateSink<D> for RestoringSink<'_, D> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let mut step = *state.step();
+        let wanted = self.motion.binary_search(&step.index).is_ok();
+        let motion = wanted.then(|| (state.velocity(), state.acceleration()));
+        if let Some((velocity, acceleration)) = &motion {
+            (step.velocity, step.acceleration) = (Some(velocity.as_slice()), Some(acceleration.as_slice()));
+        }
         match self.numbering {
-            None => (self.take)(state.step()),
+            None => (self.take)(&step),
             Some(numbering) => {
-                let restored = self.fields.reordered(state.step(), |new, old| numbering.restore_nodal(new, old));
+                let restored = self.fields.reordered(&step, |new, old| numbering.restore_nodal(new, old));
                 (self.take)(&restored)
             }
         }

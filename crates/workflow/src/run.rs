@@ -313,12 +313,17 @@ fn drive_into<'s, const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Simulation, Failure> {
     let stored = file.is_some() || memory.is_some();
+    let kept = file.as_ref().and_then(Writer::kept);
+    let [velocity, acceleration] = kept.map_or([false; 2], |kept| [kept.velocity, kept.acceleration]);
+    let motion = kept.filter(|_| velocity || acceleration).map_or_else(Vec::new, |kept| kept.steps.clone());
     let mut store = |step: &Step<'_, D>| {
-        file.as_mut().map_or(Ok(()), |file| file.push(step))?;
-        memory.as_mut().map_or(Ok(()), |keep| keep(step))
+        let motion = [step.velocity.filter(|_| velocity), step.acceleration.filter(|_| acceleration)];
+        let with = |[velocity, acceleration]: [_; 2]| Step { velocity, acceleration, ..*step };
+        file.as_mut().map_or(Ok(()), |file| file.push(&with(motion)))?;
+        memory.as_mut().map_or(Ok(()), |keep| keep(&with([None; 2])))
     };
     // The history first: a step that cannot be estimated is still stored.
-    let mut sinks = (stored.then(|| ordered.sink(&mut store)), beside);
+    let mut sinks = (stored.then(|| ordered.sink(&mut store, motion)), beside);
     let simulation = simulate_threaded(ordered.problem(), times, threads, &mut sinks, observer);
     match (simulation, file) {
         (Ok(simulation), Some(history)) => {

@@ -19,6 +19,7 @@ use percute_estimator::{Options, Request};
 use percute_io::Overwrite;
 use percute_testkit::{Renumbering, renumbered};
 use percute_workflow::Failure;
+use percute_workflow::case::Keep;
 use percute_workflow::history::{open, plan};
 use percute_workflow::run::{Analysis, Results, Storage, balance, estimate, motion, run, simulate, true_errors};
 
@@ -143,8 +144,10 @@ fn a_stored_history_has_the_results_of_its_run() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shuffled.vtkhdf");
-    let writer =
-        plan(&problem, &times, &Options::default(), None).unwrap().create(&path, Overwrite::allowed(false)).unwrap();
+    let writer = plan(&problem, &times, &Options::default(), None, &Keep::default())
+        .unwrap()
+        .create(&path, Overwrite::allowed(false))
+        .unwrap();
     simulate(&problem, &times, Storage { file: Some(writer), memory: None, open: None }, &mut Unobserved).unwrap();
     let ByDimension::Plane(stored) = open(&path).unwrap() else { panic!("a bar") };
     let read = stored.estimate(&analysis(), false, &mut Unobserved).unwrap().results;

@@ -10,7 +10,7 @@ use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::choice::StepChoice;
 use percute_workflow::export::{Export, Names, Request};
-use percute_workflow::history::{Stored, open};
+use percute_workflow::history::{Stored, lacks, open};
 use percute_workflow::message::counted;
 
 pub(super) fn command(arguments: &ExportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -26,8 +26,15 @@ fn export<const D: usize, const N: usize>(
     let error = estimate.as_deref().map(estimate_file::open).transpose()?.map(|file| file.by_element);
     let instants = if arguments.times.is_some() { "--times" } else { "--steps" };
     let names = Names { path: "--output", instants, fields: "--fields", estimate: "--estimate" };
-    let request = Request { names, steps: choice(arguments), fields: arguments.fields.clone(), error };
+    let request = Request {
+        lacks: lacks(&stored.file),
+        names,
+        steps: choice(arguments),
+        fields: arguments.fields.clone(),
+        error,
+    };
     let source = stored.file.source(&stored.problem)?;
+    let source = source.stored();
     let export = Export::new(&stored.problem, &source, output, &request)?;
     let mut inputs = vec![("history", history.as_path())];
     inputs.extend(estimate.as_deref().map(|file| ("estimate file", file)));

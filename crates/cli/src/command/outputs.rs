@@ -52,7 +52,7 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
     quiet: bool,
     console: &mut Console<'_>,
 ) -> Result<Writer<D>, Failure> {
-    let plan = history::plan(&case.problem, &case.times, &case.options, Some(&case.source))?;
+    let plan = history::plan(&case.problem, &case.times, &case.options, Some(&case.source), &case.output.keep)?;
     let writer = plan.create(output.file, Overwrite::allowed(force)).map_err(taken)?;
     if !quiet {
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));

@@ -1,5 +1,6 @@
 //! An open history file.
 
+use super::kept::KeptSteps;
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
@@ -54,12 +55,15 @@ pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) contact_nodes: Vec<usize>,
     pub(super) given: [bool; 2],
     pub(super) given_contact: [bool; 2],
+    pub(super) stored: [bool; 2],
+    pub(super) kept: Option<KeptSteps>,
+    pub(super) lacks_reactions: bool,
 }
 
 /// A history in a file. Steps are read on demand, and the file is open only during reading.
 #[derive(Clone, Debug)]
 pub struct HistoryFile<const D: usize, const N: usize> {
-    contents: Arc<Contents<D, N>>,
+    pub(super) contents: Arc<Contents<D, N>>,
 }
 
 /// The place of an array in the file, for mapping into memory.

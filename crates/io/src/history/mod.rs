@@ -1,19 +1,22 @@
 //! Histories in files.
 
 mod file;
+mod kept;
 mod open;
 mod plan;
 mod recover;
 mod rows;
 mod source;
+mod thinned;
 mod writer;
 
 pub use file::{AnyHistoryFile, HistoryFile, NativeArray};
+pub use kept::{Kept, KeptSteps};
 pub use open::open;
 pub(crate) use open::{case, provenance};
 pub use plan::Plan;
 pub use recover::{Recovered, recover};
-pub use source::HistorySource;
+pub use source::{HistorySource, StoredSteps};
 pub use writer::Writer;
 
 /// Path of the displacements in a file.

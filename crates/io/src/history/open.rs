@@ -2,6 +2,7 @@
 
 use super::DISPLACEMENT;
 use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
+use super::kept;
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{read, vectors};
@@ -47,7 +48,10 @@ where
     let times = times(&vtk, &ours)?;
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
-    let (initial_displacement, given) = fields::<D>(&vtk, instants, nodes)?;
+    let (initial_displacement, stored) = fields::<D>(&vtk, instants, nodes)?;
+    let kept = kept::read(&ours, times.instants())?;
+    // Motion by the scheme follows from all steps as well.
+    let given = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
     let velocity = ours.data("initial_velocity")?;
     velocity.expect(&[nodes, D], "(nodes, dimension)")?;
     let initial_velocity = velocity.floats()?.as_chunks::<D>().0.to_vec();
@@ -71,6 +75,9 @@ where
         contact_nodes,
         given,
         given_contact,
+        stored,
+        kept,
+        lacks_reactions: ours.has_attribute("without_reactions"),
     }))
 }
 

@@ -1,5 +1,6 @@
 //! A history file before its run: its size and its parts.
 
+use super::kept::Kept;
 use super::rows::{Places, write_vectors};
 use super::writer::Writer;
 use crate::create::{Overwrite, Unnamed};
@@ -7,7 +8,7 @@ use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{write_grid, write_groups};
 use crate::steps::write_steps;
-use crate::write::{Case, Texts, group, numbers, offset, ours, room, statement, unit};
+use crate::write::{Case, Texts, attribute, group, numbers, offset, ours, room, statement, unit};
 use hdf5::Group;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -25,6 +26,7 @@ pub struct Plan<'p, const D: usize, const N: usize> {
     statement: String,
     case: Option<Case>,
     given: [bool; 2],
+    kept: Option<Kept>,
 }
 
 impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
@@ -32,7 +34,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// language of the case files; `case` is the case file as given.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
-        Self { problem, times, statement: statement.to_string(), case: case.cloned(), given: [false; 2] }
+        Self { problem, times, statement: statement.to_string(), case: case.cloned(), given: [false; 2], kept: None }
     }
 
     /// Whether the steps have their own velocities and accelerations.
@@ -41,26 +43,51 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         Self { given: [velocity, acceleration], ..self }
     }
 
+    /// Keeps a part of the run only.
+    #[must_use]
+    pub fn keeping(self, kept: Option<Kept>) -> Self {
+        let given = kept.as_ref().map_or(self.given, |kept| [kept.velocity, kept.acceleration]);
+        Self { given, kept, ..self }
+    }
+
+    /// Whether the file has reactions and touching status.
+    fn has_contact(&self) -> bool {
+        !self.problem.surface().nodes().is_empty() && self.kept.as_ref().is_none_or(|kept| kept.reaction)
+    }
+
+    /// Whether the file lacks steps or reactions.
+    fn is_thinned(&self) -> bool {
+        let lacks = |kept: &Kept| kept.steps.len() <= self.times.step_count() || !kept.reaction;
+        self.kept.as_ref().is_some_and(lacks)
+    }
+
     /// Size of the file (bytes), exact up to a few kB of the HDF5 library.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let mesh = self.problem.mesh();
         let (nodes, cells, instants) = (mesh.node_count() as u64, mesh.element_count() as u64, self.instants() as u64);
-        let (d, contact) = (D as u64, self.problem.surface().nodes().len() as u64);
+        let (d, contact) = (D as u64, if self.has_contact() { self.problem.surface().nodes().len() as u64 } else { 0 });
         let vectors = 1 + self.given.iter().filter(|given| **given).count() as u64;
         let step = 24 * nodes * vectors + contact * (8 * d + 1);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
         let steps = 8 * (7 + vectors);
         let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
         let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
+        let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
         let groups = PER_GROUP * (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
         let texts = self.statement.len() + self.case.as_ref().map_or(0, |case| case.name.len() + case.text.len());
-        let fixed = grid + facets + elements + groups + 8 * d * nodes + 8 * contact + texts as u64 + LIBRARY;
+        let fixed = grid + facets + elements + groups + 8 * d * nodes + 8 * contact + texts as u64 + run + LIBRARY;
         instants.saturating_mul(step + steps).saturating_add(fixed)
     }
 
     fn instants(&self) -> usize {
-        self.times.step_count() + 1
+        self.kept.as_ref().map_or(self.times.step_count() + 1, |kept| kept.steps.len())
+    }
+
+    /// The instants in the file (s).
+    fn stored_times(&self) -> Vec<f64> {
+        let all = self.times.instants();
+        self.kept.as_ref().map_or_else(|| all.to_vec(), |kept| kept.steps.iter().map(|&n| all[n]).collect())
     }
 
     /// Creates the file, with space for all steps and the initial displacement, and its writing thread.
@@ -79,7 +106,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement()).map_err(create)?;
         let path = unnamed.path().to_path_buf();
         let held = unnamed.put()?;
-        Writer::new(&path, held, places, self.times.step_count(), self.given).map_err(create)
+        Writer::new(&path, held, places, self.times.step_count(), (self.given, self.kept.clone())).map_err(create)
     }
 
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<Places, FileCause> {
@@ -92,8 +119,9 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
-        let instants = self.times.instants();
+        let instants = &self.stored_times();
         unit(&numbers(&ours, "times", &[instants.len()], instants)?, "s")?;
+        self.run(&ours)?;
         let (reaction, touching) = self.contact(&ours)?;
         let [velocity, acceleration] = self.given;
         let fields =
@@ -117,13 +145,30 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             complete: offset(&complete)?,
             nodes: mesh.node_count(),
             contact_nodes: self.problem.surface().nodes().len(),
+            has_contact: self.has_contact(),
         })
+    }
+
+    /// The steps of a thinned history in its run; and whether motion comes from the scheme, as it does if any is kept.
+    fn run(&self, ours: &Group) -> Result<(), FileCause> {
+        let Some(kept) = &self.kept else { return Ok(()) };
+        attribute(ours, "by_scheme", 1_u8)?;
+        if !kept.reaction && !self.problem.surface().nodes().is_empty() {
+            attribute(ours, "without_reactions", 1_u8)?;
+        }
+        if self.is_thinned() {
+            let steps: Vec<i64> = kept.steps.iter().map(|n| *n as i64).collect();
+            numbers(ours, "steps", &[steps.len()], &steps)?;
+            let times = self.times.instants();
+            unit(&numbers(ours, "run_times", &[times.len()], times)?, "s")?;
+        }
+        Ok(())
     }
 
     /// Contact data, if any node can touch, and the place of their rows.
     fn contact(&self, ours: &Group) -> Result<(u64, u64), FileCause> {
         let surface = self.problem.surface().nodes();
-        if surface.is_empty() {
+        if !self.has_contact() {
             return Ok((0, 0));
         }
         let contact = group(ours, "contact")?;

@@ -18,12 +18,17 @@ pub(super) struct Places {
     pub(super) complete: u64,
     pub(super) nodes: usize,
     pub(super) contact_nodes: usize,
+    /// Whether the file has reactions and touching status.
+    pub(super) has_contact: bool,
 }
 
 /// A copy of a step, passed between threads.
 #[derive(Debug, Default)]
 pub(super) struct Row<const D: usize> {
+    /// Its number in the run.
     pub(super) index: usize,
+    /// Its place in the file.
+    place: usize,
     displacement: Vec<[f64; D]>,
     reaction: Vec<[f64; D]>,
     touching: Vec<u8>,
@@ -33,8 +38,8 @@ pub(super) struct Row<const D: usize> {
 
 impl<const D: usize> Row<D> {
     /// Copies a step into the memory of the previous one.
-    pub(super) fn take(&mut self, step: &Step<'_, D>) {
-        self.index = step.index;
+    pub(super) fn take(&mut self, step: &Step<'_, D>, place: usize) {
+        (self.index, self.place) = (step.index, place);
         let fields = [
             (&mut self.displacement, Some(step.displacement)),
             (&mut self.reaction, Some(step.reaction)),
@@ -51,7 +56,7 @@ impl<const D: usize> Row<D> {
 
     /// Writes the rows of the step, and then their count.
     pub(super) fn write(&self, file: &File, places: &Places) -> io::Result<()> {
-        let (n, nodes) = (self.index as u64, places.nodes as u64);
+        let (n, nodes) = (self.place as u64, places.nodes as u64);
         let contact = places.contact_nodes as u64;
         let fields = [
             (Some(places.displacement), &self.displacement),
@@ -63,7 +68,7 @@ impl<const D: usize> Row<D> {
                 write_vectors(file, place + n * nodes * 24, values)?;
             }
         }
-        if contact > 0 {
+        if places.has_contact {
             let reaction = bytes(self.reaction.as_flattened());
             file.write_all_at(&reaction, places.reaction + n * contact * 8 * D as u64)?;
             file.write_all_at(&self.touching, places.touching + n * contact)?;

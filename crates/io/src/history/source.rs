@@ -90,7 +90,9 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         rows: Range<usize>,
         first: usize,
     ) -> Result<Option<Vec<[f64; D]>>, FileCause> {
-        if !self.file.given()[which] {
+        // Motion by the scheme is made again from all steps; a thinned history has no other.
+        let there = if self.file.kept().is_some() { self.file.stored() } else { self.file.given() };
+        if !there[which] {
             return Ok(None);
         }
         let data = fields.data(["velocity", "acceleration"][which])?;
@@ -177,6 +179,19 @@ impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
     }
 
     fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        self.file.expect_all()?;
+        self.replay_stored(take)
+    }
+}
+
+impl<const D: usize, const N: usize> HistorySource<D, N> {
+    /// The stored steps, also of a thinned history: numbered by their place in the file, and with the motion that it has.
+    #[must_use]
+    pub fn stored(&self) -> StoredSteps<'_, D, N> {
+        StoredSteps(self)
+    }
+
+    fn replay_stored(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         let step = 24 * self.file.mesh().node_count() + 16 * self.file.contact_nodes().len();
         let size = (BLOCK / step.max(1)).max(1);
         for start in (0..self.count()).step_by(size) {
@@ -185,5 +200,23 @@ impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
             self.hand_on(&block, steps, take)?;
         }
         Ok(())
+    }
+}
+
+/// The stored steps of a history, which may be thinned.
+#[derive(Clone, Copy, Debug)]
+pub struct StoredSteps<'s, const D: usize, const N: usize>(&'s HistorySource<D, N>);
+
+impl<const D: usize, const N: usize> StepSource<D> for StoredSteps<'_, D, N> {
+    fn times(&self) -> &TimeGrid {
+        self.0.times()
+    }
+
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        self.0.replay_stored(take)
     }
 }

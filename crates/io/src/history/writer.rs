@@ -1,5 +1,6 @@
 //! Writes the steps of a run during the run.
 
+use super::kept::Kept;
 use super::recover::set_steps;
 use super::rows::{Places, Row};
 use crate::error::{FileCause, FileError};
@@ -24,7 +25,10 @@ pub struct Writer<const D: usize> {
     places: Places,
     last: usize,
     next: usize,
+    /// Number of instants in the file.
+    stored: usize,
     given: [bool; 2],
+    kept: Option<Kept>,
     rows: Option<SyncSender<Row<D>>>,
     used: Receiver<Row<D>>,
     thread: Option<JoinHandle<Result<(), Failure>>>,
@@ -47,14 +51,21 @@ impl Failure {
 }
 
 impl<const D: usize> Writer<D> {
-    pub(super) fn new(path: &Path, held: Held, places: Places, last: usize, given: [bool; 2]) -> io::Result<Self> {
+    pub(super) fn new(
+        path: &Path,
+        held: Held,
+        places: Places,
+        last: usize,
+        (given, kept): ([bool; 2], Option<Kept>),
+    ) -> io::Result<Self> {
         let (rows, taken) = sync_channel(WAITING);
         let (back, used) = channel();
         let own = held.file().try_clone()?;
         let work = move || write_all(&own, &places, &taken, &back);
         let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
         let (rows, thread) = (Some(rows), Some(thread));
-        Ok(Self { path: path.to_path_buf(), held, places, last, next: 0, given, rows, used, thread, failed: None })
+        let path = path.to_path_buf();
+        Ok(Self { path, held, places, last, next: 0, stored: 0, given, kept, rows, used, thread, failed: None })
     }
 
     /// The file.
@@ -67,6 +78,12 @@ impl<const D: usize> Writer<D> {
     #[must_use]
     pub fn count(&self) -> usize {
         self.next
+    }
+
+    /// The part of the run that the file keeps; all without one.
+    #[must_use]
+    pub fn kept(&self) -> Option<&Kept> {
+        self.kept.as_ref()
     }
 
     /// Waits for the last step, writes the number of steps for VTK, marks the file complete and waits for
@@ -84,14 +101,14 @@ impl<const D: usize> Writer<D> {
     }
 
     fn complete(&self) -> Result<(), FileCause> {
-        let failed = |detail: String| FileCause::Finish { detail, steps: self.next };
+        let failed = |detail: String| FileCause::Finish { detail, steps: self.stored };
         let told = |error: io::Error| failed(error.to_string());
         self.held.file().sync_data().map_err(told)?;
         let mine = self.held.file().metadata().map_err(told)?;
         if !self.path.metadata().is_ok_and(|there| (there.dev(), there.ino()) == (mine.dev(), mine.ino())) {
             return Err(FileCause::Lost);
         }
-        set_steps(&self.path, self.next).map_err(failed)?;
+        set_steps(&self.path, self.stored).map_err(failed)?;
         self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
         self.held.file().sync_all().map_err(told)
     }
@@ -107,11 +124,13 @@ impl<const D: usize> Writer<D> {
         }
     }
 
+    fn check_order(&self, step: &Step<'_, D>) -> Result<(), StepError> {
+        let (given, expected, last) = (step.index, self.next, self.last);
+        if given != expected || given > last { Err(StepError::Order { given, expected, last }) } else { Ok(()) }
+    }
+
     fn check(&self, step: &Step<'_, D>) -> Result<(), StepError> {
-        let (n, expected, last) = (step.index, self.next, self.last);
-        if n != expected || n > last {
-            return Err(StepError::Order { given: n, expected, last });
-        }
+        let n = step.index;
         for (had, (field, there)) in self
             .given
             .into_iter()
@@ -139,9 +158,14 @@ impl<const D: usize> Writer<D> {
         if let Some(failure) = &self.failed {
             return Err(failure.cause());
         }
+        self.check_order(step)?;
+        let Some(place) = self.kept.as_ref().map_or(Some(step.index), |kept| kept.row_of(step.index)) else {
+            self.next += 1;
+            return Ok(());
+        };
         self.check(step)?;
         let mut row = self.used.try_recv().unwrap_or_default();
-        row.take(step);
+        row.take(step, place);
         let sent = self.rows.as_ref().is_some_and(|rows| rows.send(row).is_ok());
         if !sent {
             self.stop();
@@ -149,11 +173,11 @@ impl<const D: usize> Writer<D> {
                 self.failed.get_or_insert(Failure { step: self.next, kind: io::ErrorKind::Other, code: None });
             return Err(failure.cause());
         }
-        self.next += 1;
+        (self.next, self.stored) = (self.next + 1, place + 1);
         Ok(())
     }
 
-    /// Appends a step.
+    /// Appends a step; one that the file does not keep is only counted.
     ///
     /// # Errors
     /// A step that does not fit, or a file that cannot be written.

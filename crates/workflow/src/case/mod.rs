@@ -19,12 +19,14 @@
 //! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
 //! - `[estimate]`: `reconstruction`, `acceleration`, `every`;
 //! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
-//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields.
+//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields, or the names of those
+//!   that the history keeps; `every` or `times`, the steps that it keeps.
 //!
 //! The reader goes through the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
 mod estimate;
+mod keep;
 mod load;
 mod material;
 mod mesh;
@@ -41,6 +43,7 @@ mod text;
 mod time;
 mod value;
 
+pub use keep::{FIELDS, Keep};
 pub use output::{Instants, Output};
 pub(crate) use source::At;
 pub use source::{CaseError, Source};

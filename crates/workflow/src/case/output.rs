@@ -1,5 +1,6 @@
 //! `[output]`: the files that a run makes.
 
+use super::keep::{self, Keep};
 use super::source::CaseError;
 use super::table::Table;
 use crate::choice::{late, nearest, too_late};
@@ -26,6 +27,8 @@ pub struct Output {
     pub instants: Instants,
     /// Whether the estimate file holds the admissible fields too.
     pub fields: bool,
+    /// The part of the run that the history keeps.
+    pub keep: Keep,
 }
 
 /// Instants of an estimate file.
@@ -72,7 +75,8 @@ impl Instants {
 pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
     let mut output = Output::default();
     let Some(table) = root.single("output")? else { return Ok(output) };
-    table.only(&["history", "estimate", "instants", "fields"])?;
+    table.only(&["history", "estimate", "instants", "fields", "every", "times"])?;
+    output.keep.steps = keep::steps(&table)?;
     for (key, slot) in [("history", &mut output.history), ("estimate", &mut output.estimate)] {
         if let Some(value) = table.get(key) {
             let name = value.text("the name of a file")?;
@@ -97,14 +101,21 @@ pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
         };
     }
     if let Some(value) = table.get("fields") {
-        output.fields = value.flag()?;
+        if value.is_list() {
+            (output.keep.fields, output.fields) = keep::fields(&value)?;
+        } else {
+            let allowed = "true, false, or a list of names such as [\"displacement\", \"velocity\"]";
+            output.fields = value.flag().map_err(|_| value.must_be(allowed))?;
+        }
     }
     Ok(output)
 }
 
 /// Refuses instants after the end of the run: they are more likely in other units.
 pub(super) fn check(root: &Table<'_>, output: &Output, end: f64) -> Result<(), CaseError> {
-    let (Instants::Times(times), Some(table)) = (&output.instants, root.single("output")?) else { return Ok(()) };
+    let Some(table) = root.single("output")? else { return Ok(()) };
+    keep::check(&table, &output.keep, end)?;
+    let Instants::Times(times) = &output.instants else { return Ok(()) };
     let (Some(at), Some(value)) = (times.iter().position(|&t| late(t, end)), table.get("instants")) else {
         return Ok(());
     };

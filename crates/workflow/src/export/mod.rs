@@ -37,6 +37,8 @@ pub struct Request {
     /// Names of its fields; by default displacement, velocity, reaction, stress and von Mises stress, and the error if there
     /// is an estimate.
     pub fields: Option<Vec<String>>,
+    /// Of a thinned history, the fields that it lacks; `source` then gives its stored steps.
+    pub lacks: Option<Vec<&'static str>>,
     /// e_E of each element (J^½), eq. \[20\], of an estimate.
     pub error: Option<Vec<f64>>,
 }
@@ -49,6 +51,8 @@ pub struct Export<'a, const D: usize, const N: usize> {
     format: Format,
     rows: Rows<'a, D, N>,
     instants: Vec<(usize, f64)>,
+    /// Whether velocities and accelerations follow from the scheme.
+    by_scheme: bool,
 }
 
 impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
@@ -83,7 +87,15 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
             return Err(wrong(told));
         }
         let instants = steps.into_iter().map(|step| (step, held[step])).collect();
-        Ok(Self { problem, source, path, format, rows: Rows { problem, quantities, error }, instants })
+        Ok(Self {
+            problem,
+            source,
+            path,
+            format,
+            rows: Rows { problem, quantities, error },
+            instants,
+            by_scheme: request.lacks.is_none(),
+        })
     }
 
     /// The files, first the one to open.
@@ -130,7 +142,7 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
         let last = steps.last().copied().unwrap_or(0);
         let source = Watched { source: self.source, observer: RefCell::new(observer), last };
         let mut take = |step: &Step<'_, D>| Ok(writer.push(&rows.at(step))?);
-        match run::chosen(self.problem, &source, &steps, rows.need_motion(), &mut take) {
+        match run::chosen(self.problem, &source, &steps, rows.need_motion() && self.by_scheme, &mut take) {
             Ok(()) => {}
             Err(cause) if cause.is::<Done>() => {}
             Err(cause) if cause.is::<Stopped>() => return Ok(None),

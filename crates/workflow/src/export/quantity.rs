@@ -113,10 +113,18 @@ pub(super) fn quantities(request: &Request) -> Result<Vec<Quantity>, Failure> {
         let told = format!("{of}: there is no field {name:?}; choose from {}{}", known.join(", "), hint(name, known));
         return Err(Failure::Argument(told));
     }
+    let lacks = |quantity: &Quantity| request.lacks.iter().flatten().any(|name| *name == quantity.field().name);
+    if let Some(quantity) = Quantity::ALL.iter().find(|q| fields.is_some() && wanted(q) && lacks(q)) {
+        let (of, name) = (request.names.fields, quantity.field().name);
+        let told = format!(
+            "{of}: {name:?} is not in this history, which keeps a part of its run; run again with it among `fields`"
+        );
+        return Err(Failure::Argument(told));
+    }
     let chosen = |quantity: &Quantity| match quantity {
         Quantity::Displacement => true,
         Quantity::Error => estimated,
-        other => wanted(other),
+        other => wanted(other) && !lacks(other),
     };
     if wanted(&Quantity::Error) && !estimated {
         return Err(Failure::Argument(format!(

@@ -10,7 +10,7 @@ pub use estimate::{EstimateInfo, of_estimate};
 pub use mesh::{GroupInfo, MeshInfo, of_mesh};
 pub use setting::{MaterialInfo, PlaneInfo};
 
-use crate::case::{CaseOf, NotRepresentable, Output};
+use crate::case::{CaseOf, FIELDS, NotRepresentable, Output};
 use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
 use crate::message::{bytes, counted, trimmed};
@@ -73,8 +73,25 @@ pub struct HistoryInfo {
     pub steps: Option<usize>,
     pub complete: bool,
     pub given: Given,
+    pub kept: Option<KeptInfo>,
     pub bytes: u64,
     pub estimate_memory: u64,
+}
+
+/// The part of its run that a thinned history keeps.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs)]
+pub struct KeptInfo {
+    pub instants: usize,
+    pub fields: Vec<&'static str>,
+}
+
+/// The instants and fields of a history.
+fn kept<const D: usize, const N: usize>(stored: &Stored<D, N>) -> KeptInfo {
+    let [velocity, acceleration] = stored.file.stored();
+    let there = [true, velocity, acceleration, !stored.file.lacks_reactions()];
+    let fields = FIELDS.into_iter().zip(there).filter(|(_, there)| *there).map(|(name, _)| name).collect();
+    KeptInfo { instants: stored.file.count(), fields }
 }
 
 /// The steps of a run.
@@ -135,7 +152,7 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
             after_contact: case.until.map(|until| until.after),
             ..TimeInfo::new(&case.times, case.critical_step)
         },
-        history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source))?.bytes(),
+        history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source), &case.output.keep)?.bytes(),
         run_memory: memory::of_run(&case.problem, &case.times),
         estimate_memory: percute_estimator::memory(&case.problem, &case.times, &case.options) as u64,
         contact_memory: memory::of_contact(&case.problem, &case.times),
@@ -160,8 +177,9 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         written_by: file.provenance().clone(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
-        time: TimeInfo::new(file.times(), subject.critical_step),
-        steps: file.count().checked_sub(1),
+        time: TimeInfo::new(file.kept().map_or(file.times(), |kept| &kept.times), subject.critical_step),
+        steps: file.count().checked_sub(1).map(|last| file.kept().map_or(last, |kept| kept.steps[last])),
+        kept: file.kept().map(|_| kept(stored)),
         complete: file.is_complete(),
         given: Given { velocity, acceleration },
         bytes: file.bytes(),
@@ -232,6 +250,9 @@ impl HistoryInfo {
             }
         };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
+        if let Some(KeptInfo { instants, fields }) = &self.kept {
+            lines.push(("keeps", format!("{} only: {}", counted(*instants, "instant"), fields.join(", "))));
+        }
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));
         lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
