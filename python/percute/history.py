@@ -407,7 +407,8 @@ def simulate(
     keep = kept(every, times, fields, file)
     replace = flag("overwrite", overwrite)
     if end == "rebound":
-        _percute.check_run(problem._data, _times(longest, courant, step, steps), flag("long", long))
+        if longest is not None and steps is None:
+            _percute.check_run(problem._data, _times(longest, courant, step, steps), flag("long", long))
         end = _rebound_end(problem, _times(None, courant, step, steps), longest, after, progress)
     elif longest is not None or after is not None:
         raise InputError('`longest` and `after` need end="rebound"; leave them out')
