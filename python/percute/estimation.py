@@ -385,7 +385,8 @@ def estimate(
     Warns
     -----
     InputWarning
-        The last instant of a history of another program is left out, because its contact forces are not known.
+        The last instant of a history of another program is left out, because its contact forces are not known. Or it has samples
+        that are farther apart than the steps of a solver.
 
     Raises
     ------
@@ -411,8 +412,7 @@ def estimate(
     accept = flag("force", force)
     with shown(progress) as tell:
         data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
-    notice = data.left_out()
-    warn([] if notice is None else [notice])
+    warn(data.notices())
     return Estimate._of(data, history, history._name)
 
 

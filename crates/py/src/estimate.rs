@@ -18,7 +18,7 @@ use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
 use percute_workflow::foreign::{Checked, Graded};
-use percute_workflow::report::{PARTS, Report, SOURCES, Subject};
+use percute_workflow::report::{PARTS, Report, SOURCES, Subject, left_out, sampled};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -308,10 +308,12 @@ impl EstimateData {
         (given.velocity, given.acceleration)
     }
 
-    /// The last instant of the history was left out: why.
-    fn left_out(&self) -> Option<String> {
-        each_dimension!(&self.made, m => m.checked.as_ref().and_then(|checked| checked.left_out))
-            .map(percute_workflow::report::left_out)
+    /// What became of a history of another program before its estimate.
+    fn notices(&self) -> Vec<String> {
+        each_dimension!(&self.made, m => m.checked.as_ref().map_or_else(Vec::new, |checked| {
+            let left_out = checked.left_out.map(left_out);
+            left_out.into_iter().chain(checked.samples.as_ref().map(sampled)).collect()
+        }))
     }
 
     /// Names of the method's choices, and the samples taken.

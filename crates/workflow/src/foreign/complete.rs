@@ -115,7 +115,7 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
                 return Ok(());
             }
             let Some(before) = window.before else { return Ok(()) };
-            let known = window.now.acceleration.is_some() && self.lacks.reaction;
+            let known = window.now.acceleration.is_some();
             if !known && window.now.reaction.iter().all(|r| *r == [0.0; D]) {
                 needed = enters(&balance, before, window.now);
             }

@@ -5,21 +5,26 @@ mod causes;
 mod complete;
 mod limits;
 mod measure;
+mod samples;
 mod window;
 
 pub use complete::{Completed, Derived, Lacks};
 pub use measure::Consistency;
+pub use samples::Samples;
 
 use crate::failure::Failure;
+use crate::message::percent;
 use crate::run::{self, Analysis, Results};
 use causes::Suspect;
-use limits::exceeded;
+use limits::{BALANCE, exceeded};
 use measure::{Trial, measure};
+use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
-use percute_estimator::RunError;
+use percute_core::time::{TimeGrid, is_stable};
+use percute_estimator::{Request, RunError};
+use samples::Between;
 use std::path::PathBuf;
 
 /// What is known of the origin of a history of another program.
@@ -44,6 +49,8 @@ pub struct Checked {
     pub left_out: Option<f64>,
     /// How consistent it is.
     pub consistency: Consistency,
+    /// Its samples, if they are farther apart than the steps of a solver.
+    pub samples: Option<Samples>,
 }
 
 /// The results for a history.
@@ -71,29 +78,82 @@ pub fn estimate<const D: usize, const N: usize>(
 ) -> Result<Graded<D>, Failure> {
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
-    let consistency = check(problem, &complete, origin)?;
-    let checked = Checked { derived, left_out: complete.left_out(), consistency };
-    let results = run::estimate(problem, &complete, analysis, observer)?;
-    Ok(Graded { results, times: complete.times().clone(), checked: Some(checked) })
+    let critical = critical_time_step(problem);
+    let (consistency, samples) = check(problem, &complete, critical, origin)?;
+    let mut checked = Checked { derived, left_out: complete.left_out(), consistency, samples };
+    let last = complete.times().step_count();
+    let between = samples.map(|_| Between::new(&complete, critical)).transpose();
+    let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
+    let Some(between) = between else {
+        let analysis = &requested(analysis, |step| step.min(last));
+        let results = run::estimate(problem, &complete, analysis, observer)?;
+        return Ok(Graded { results, times: complete.times().clone(), checked: Some(checked) });
+    };
+    let filled = Completed::new(problem, &between, Lacks { reaction: true, touching: true }).map_err(unread)?;
+    checked.derived = filled.derived().to_vec();
+    let analysis = &requested(analysis, |step| between.starts[step.min(between.starts.len() - 1)]);
+    let results = run::estimate(problem, &filled, analysis, observer)?;
+    checked.consistency.energy = results.simulation.balance.energy_drift;
+    Ok(Graded { results, times: filled.times().clone(), checked: Some(checked) })
+}
+
+/// The analysis with its maps at other steps.
+fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
+    let Request { steps, fields } = &analysis.request;
+    let mut steps: Vec<usize> = steps.iter().map(|&n| step(n)).collect();
+    steps.dedup();
+    Analysis { request: Request { steps, fields: *fields }, ..analysis.clone() }
+}
+
+/// The samples, if the steps of the solver were shorter: beyond the critical step (s), or by the accelerations.
+fn samples<const D: usize>(
+    source: &dyn StepSource<D>,
+    found: &Consistency,
+    critical: f64,
+    origin: &Origin,
+) -> Result<Option<Samples>, Failure> {
+    let (count, distance) = (source.count(), source.times().longest_step());
+    let differs = found.acceleration.filter(|differs| *differs > BALANCE);
+    if differs.is_none() && is_stable(distance, critical) {
+        return Ok(None);
+    }
+    let samples = Samples { count, distance, critical_steps: distance / critical };
+    match (found.velocity, found.acceleration) {
+        (Some(_), Some(_)) => Ok(Some(samples)),
+        (None, Some(differs)) if found.balance <= BALANCE && !origin.accept => Err(Failure::Inconsistent {
+            file: origin.file.clone(),
+            figure: format!("its accelerations differ from those of the displacements by {}", percent(differs)),
+            cause: Some("the instants are samples, not the steps of the solver; give velocities too".to_string()),
+        }),
+        _ => Ok(None),
+    }
 }
 
 /// The figures of a history; figures over their limits are an error, with the likely cause.
 fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
+    critical: f64,
     origin: &Origin,
-) -> Result<Consistency, Failure> {
+) -> Result<(Consistency, Option<Samples>), Failure> {
     let (mut found, evidence) = measure(problem, source, Trial::default()).map_err(unread)?;
-    let exceeded = exceeded(&found);
+    let samples = samples(source, &found, critical, origin)?;
+    let sampled = samples.is_some();
+    let mut exceeded = exceeded(&found);
+    // These compare an instant with the next step of the solver, which a sample does not have.
+    let of_steps = ["velocity", "touching", "gap_under_force"];
+    exceeded.retain(|excess| !sampled || !of_steps.contains(&excess.name));
     if let (Some(first), false) = (exceeded.first(), origin.accept) {
         let suspect = Suspect { problem, source, found: &found, evidence: &evidence };
         let cause = suspect.cause(&exceeded).map_err(unread)?;
         let figure = exceeded.iter().find(|excess| excess.name == "balance").unwrap_or(first).what.clone();
         return Err(Failure::Inconsistent { file: origin.file.clone(), figure, cause });
     }
-    let balance = run::balance(problem, source).map_err(unread)?;
-    found.energy = balance.last().map_or(0.0, |last| last.energy_drift);
-    Ok(found)
+    if !sampled {
+        let balance = run::balance(problem, source).map_err(unread)?;
+        found.energy = balance.last().map_or(0.0, |last| last.energy_drift);
+    }
+    Ok((found, samples))
 }
 
 fn unread(cause: SinkError) -> Failure {

@@ -32,6 +32,7 @@ const WORST: usize = 5;
 impl Report {
     /// Puts together what a run, or the estimate of a history, gave.
     #[must_use]
+    #[allow(clippy::too_many_lines, reason = "a line for each key")]
     pub fn new<const D: usize, const N: usize>(
         subject: &Subject<'_, D, N>,
         options: Options,
@@ -44,7 +45,7 @@ impl Report {
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let facts = Facts {
             problem: &problem,
-            left_out: checked.and_then(|checked| checked.left_out),
+            checked,
             plausibility_warnings: &foreseen(subject, estimate),
             drift: simulation.balance.energy_drift,
             interrupted: estimate.steps < times.step_count(),
@@ -71,6 +72,7 @@ impl Report {
             given: estimate.given,
             derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
             consistency: checked.map(|checked| checked.consistency),
+            samples: checked.and_then(|checked| checked.samples),
             held,
             error: estimate.error,
             meaning: meaning(),

@@ -22,9 +22,9 @@ pub use summary::summary;
 pub use verdict::{Shares, Touches, Trust, Verdict};
 pub(crate) use warnings::few_samples;
 pub use warnings::reported;
-pub use warnings::{Warning, left_out};
+pub use warnings::{Warning, left_out, sampled};
 
-use crate::foreign::{Checked, Consistency, Derived};
+use crate::foreign::{Checked, Consistency, Derived, Samples};
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -72,6 +72,7 @@ pub struct Report {
     pub given: Given,
     pub derived: Vec<Derived>,
     pub consistency: Option<Consistency>,
+    pub samples: Option<Samples>,
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: ErrorMeasures,

@@ -1,6 +1,7 @@
 //! What the user should look at before trusting a result.
 
 use super::{LargestResidual, ProblemSummary};
+use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, trimmed};
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
@@ -28,8 +29,7 @@ pub struct Warning {
 
 /// What the warnings look at.
 pub(super) struct Facts<'a> {
-    /// The last instant of a history (s), if it was left out.
-    pub(super) left_out: Option<f64>,
+    pub(super) checked: Option<&'a Checked>,
     pub(super) problem: &'a ProblemSummary,
     pub(super) plausibility_warnings: &'a [PlausibilityWarning],
     pub(super) drift: f64,
@@ -45,6 +45,7 @@ pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
     [
         not_admissible(facts),
         last_instant(facts),
+        samples(facts),
         energy_drift(facts),
         kept_impulse(facts),
         no_contact(facts),
@@ -84,8 +85,24 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
-    let message = left_out(facts.left_out?);
+    let message = left_out(facts.checked?.left_out?);
     warning("last_instant", "the last instant of the history is left out", message)
+}
+
+fn samples(facts: &Facts<'_>) -> Option<Warning> {
+    let samples = facts.checked?.samples?;
+    warning("samples", format!("samples {:.3} critical steps apart", samples.critical_steps), sampled(&samples))
+}
+
+/// The limits of an estimate from samples.
+#[must_use]
+pub fn sampled(samples: &Samples) -> String {
+    let Samples { count, distance, critical_steps } = samples;
+    format!(
+        "the history has {count} samples, {critical_steps:.3} critical steps apart; the motion between them is interpolated, \
+         and contact forces are derived from it: changes within {distance:.3e} s are not seen, and beyond some 4 critical \
+         steps the estimate is too large"
+    )
 }
 
 /// The reason why the last instant (s) of a history is left out.

@@ -1,0 +1,147 @@
+//! Histories that are sampled more coarsely than the steps of their solver.
+
+use super::window::{Held, windows};
+use percute_core::history::{SinkError, Step, StepSource};
+use percute_core::time::{TimeError, TimeGrid};
+use serde::Serialize;
+
+/// Courant number of the instants between samples.
+const COURANT: f64 = 0.9;
+
+/// The samples of a history.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Samples {
+    /// Their number.
+    pub count: usize,
+    /// The longest time between two of them (s).
+    pub distance: f64,
+    /// The same over the critical step.
+    pub critical_steps: f64,
+}
+
+/// A history with instants between its samples, less than a critical step apart. The motion between two samples is the
+/// polynomial of degree 5 that has their displacements, velocities and accelerations. It has no contact forces.
+pub(crate) struct Between<'s, const D: usize> {
+    samples: &'s dyn StepSource<D>,
+    /// The index of each sample among all instants.
+    pub(crate) starts: Vec<usize>,
+    times: TimeGrid,
+}
+
+/// Weights of the displacement, velocity and acceleration (each over its power of Δt) of the first and the second sample.
+type Weights = [f64; 6];
+
+impl<'s, const D: usize> Between<'s, D> {
+    /// Instants between samples for this critical step (s).
+    pub(crate) fn new(samples: &'s dyn StepSource<D>, critical: f64) -> Result<Self, TimeError> {
+        let given = &samples.times().instants()[..samples.count()];
+        let (mut instants, mut starts) = (vec![given[0]], vec![0]);
+        for pair in given.windows(2) {
+            let parts = ((pair[1] - pair[0]) / (COURANT * critical)).ceil().max(1.0) as usize;
+            let inner = (1..parts).map(|j| pair[0] + (pair[1] - pair[0]) * (j as f64 / parts as f64));
+            instants.extend(inner);
+            instants.push(pair[1]);
+            starts.push(instants.len() - 1);
+        }
+        Ok(Self { samples, starts, times: TimeGrid::from_instants(instants)? })
+    }
+
+    /// The motion at an instant between two samples.
+    fn motion(&self, from: &Held<D>, to: &Held<D>, index: usize) -> Option<[Vec<[f64; D]>; 3]> {
+        let dt = to.time - from.time;
+        let s = (self.times.instants()[index] - from.time) / dt;
+        let (velocity, acceleration) = (from.velocity.as_ref()?, from.acceleration.as_ref()?);
+        let (next_velocity, next_acceleration) = (to.velocity.as_ref()?, to.acceleration.as_ref()?);
+        let of = |weights: Weights, scale: f64| {
+            let node = |node: usize| {
+                std::array::from_fn(|c| {
+                    let values = [
+                        from.displacement[node][c],
+                        dt * velocity[node][c],
+                        dt * dt * acceleration[node][c],
+                        to.displacement[node][c],
+                        dt * next_velocity[node][c],
+                        dt * dt * next_acceleration[node][c],
+                    ];
+                    weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>() / scale
+                })
+            };
+            (0..from.displacement.len()).map(node).collect()
+        };
+        let [place, rate, curvature] = weights(s);
+        Some([of(place, 1.0), of(rate, dt), of(curvature, dt * dt)])
+    }
+}
+
+/// The quintic Hermite polynomials at s in [0, 1], and their first and second derivatives.
+fn weights(s: f64) -> [Weights; 3] {
+    const POWERS: [[f64; 6]; 6] = [
+        [1.0, 0.0, 0.0, -10.0, 15.0, -6.0],
+        [0.0, 1.0, 0.0, -6.0, 8.0, -3.0],
+        [0.0, 0.0, 0.5, -1.5, 1.5, -0.5],
+        [0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+        [0.0, 0.0, 0.0, -4.0, 7.0, -3.0],
+        [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
+    ];
+    let derivative = |powers: [f64; 6]| -> [f64; 6] {
+        std::array::from_fn(|k| if k < 5 { (k + 1) as f64 * powers[k + 1] } else { 0.0 })
+    };
+    let value = |powers: [f64; 6]| powers.iter().rev().fold(0.0, |sum, power| sum * s + power);
+    [
+        POWERS.map(value),
+        POWERS.map(|powers| value(derivative(powers))),
+        POWERS.map(|powers| value(derivative(derivative(powers)))),
+    ]
+}
+
+impl<const D: usize> StepSource<D> for Between<'_, D> {
+    fn times(&self) -> &TimeGrid {
+        &self.times
+    }
+
+    fn count(&self) -> usize {
+        self.times.instants().len()
+    }
+
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        windows(self.samples, &mut |window| {
+            let now = window.now;
+            let (reaction, touching) = (vec![[0.0; D]; now.reaction.len()], vec![false; now.touching.len()]);
+            let start = self.starts[now.index];
+            take(&Step { index: start, time: now.time, reaction: &reaction, touching: &touching, ..now.step() })?;
+            let Some(after) = window.after else { return Ok(()) };
+            for index in start + 1..self.starts[after.index] {
+                let Some([displacement, velocity, acceleration]) = self.motion(now, after, index) else { continue };
+                take(&Step {
+                    index,
+                    time: self.times.instants()[index],
+                    displacement: &displacement,
+                    reaction: &reaction,
+                    touching: &touching,
+                    velocity: Some(&velocity),
+                    acceleration: Some(&acceleration),
+                })?;
+            }
+            Ok(())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_of_degree_five_are_exact() {
+        // u = s⁵ between 0 and 1: u, u', u'' are 0 at 0, and 1, 5, 20 at 1.
+        for s in [0.0, 0.3, 0.5, 1.0] {
+            let [place, rate, curvature] = weights(s);
+            let of = |w: Weights| w[3] + 5.0 * w[4] + 20.0 * w[5];
+            let expected = [s.powi(5), 5.0 * s.powi(4), 20.0 * s.powi(3)];
+            for (found, expected) in [place, rate, curvature].map(of).into_iter().zip(expected) {
+                // A few roundings of numbers up to 20 · 60.
+                assert!((found - expected).abs() < 1e-12, "{s}: {found} {expected}");
+            }
+        }
+    }
+}
