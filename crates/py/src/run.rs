@@ -11,7 +11,8 @@ use percute_estimator::Options;
 use percute_io::FileError;
 use percute_io::history::{HistoryFile, HistorySource, StoredSteps};
 use percute_workflow::Failure;
-use percute_workflow::foreign::{self, Graded, Origin};
+use percute_workflow::foreign::Origin;
+use percute_workflow::grade::{self, Graded};
 use percute_workflow::history::Stored;
 use percute_workflow::run::Analysis;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -147,7 +148,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
         self.file().map_or(Ok(()), HistoryFile::expect_all)?;
         if let Some(origin) = self.origin.clone() {
             let origin = &Origin { accept, ..origin };
-            return foreign::estimate(&self.problem, source, origin, analysis, watch);
+            return grade::estimate(&self.problem, source, origin, analysis, watch);
         }
         let results = percute_workflow::run::estimate(&self.problem, source, analysis, watch)?;
         Ok(Graded { results, times: self.times().clone(), checked: None })

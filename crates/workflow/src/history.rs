@@ -2,7 +2,8 @@
 
 use crate::case::{Keep, NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
-use crate::foreign::{self, Graded, Lacks, Origin};
+use crate::foreign::{Lacks, Origin};
+use crate::grade::{self, Graded};
 use crate::report::Subject;
 use crate::run::{self, Analysis};
 use percute_core::contact::{ContactRecorder, ContactResults};
@@ -116,7 +117,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     /// inconsistent one.
     ///
     /// # Errors
-    /// As [`foreign::estimate`].
+    /// As [`grade::estimate`].
     pub fn estimate(
         &self,
         analysis: &Analysis,
@@ -127,7 +128,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         let source = self.file.source(&self.problem)?;
         let origin = self.origin().map(|origin| Origin { accept, ..origin });
         let done = match origin {
-            Some(origin) => foreign::estimate(&self.problem, &source, &origin, analysis, observer),
+            Some(origin) => grade::estimate(&self.problem, &source, &origin, analysis, observer),
             None => run::estimate(&self.problem, &source, analysis, observer).map(|results| Graded {
                 results,
                 times: self.file.times().clone(),

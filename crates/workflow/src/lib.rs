@@ -1,5 +1,5 @@
 //! From a case file to a report, for the command and for Python: the case language ([`case`]), runs ([`run`]), histories
-//! in files ([`history`]) and of other programs ([`foreign`]), the report and its JSON document ([`report`]), and the contents of files ([`info`]).
+//! in files ([`history`]) and of other programs ([`foreign`], [`grade`]), the report and its JSON document ([`report`]), and the contents of files ([`info`]).
 //! Nothing here prints.
 
 pub mod case;
@@ -8,6 +8,7 @@ pub mod effort;
 pub mod export;
 mod failure;
 pub mod foreign;
+pub mod grade;
 pub mod history;
 pub mod info;
 pub mod message;

@@ -9,7 +9,7 @@ use crate::progress::Watch;
 use percute_core::each_dimension;
 use percute_estimator::{Options, Request};
 use percute_workflow::Failure;
-use percute_workflow::foreign::Graded;
+use percute_workflow::grade::Graded;
 use percute_workflow::history::{Stored, open};
 use percute_workflow::outputs::OutputFile;
 use percute_workflow::report::Subject;

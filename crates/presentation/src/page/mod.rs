@@ -61,3 +61,47 @@ pub fn page(contents: &Contents<'_>) -> String {
         title = escaped(&title),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::mesh::TriangleMesh;
+
+    /// The page of a document on a mesh of two triangles.
+    fn shown(document: &str) -> String {
+        let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let mesh =
+            TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
+        let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
+        page(&Contents { document: &document, body: &body, statement: "", case: None, surface: None })
+    }
+
+    #[test]
+    fn a_document_of_an_earlier_version_has_a_page() {
+        let html = shown(r#"{"error": {"sup": 1.5}}"#);
+        assert!(html.contains("<h2>Error of the elements</h2>") && html.ends_with("</html>\n"));
+        for absent in ["<h2>Contact</h2>", "<h2>Sources of the error</h2>", "Trust:", "NaN"] {
+            assert!(!html.contains(absent), "{absent}");
+        }
+    }
+
+    #[test]
+    fn verdict_rebound_and_consistency_are_shown_where_they_are_known() {
+        let html = shown(
+            r#"{"error": {"sup": 1.5}, "verdict": {"trust": "limited", "text": ["Refine <there>.", "Keep Δt_c."]},
+                "contact": {"first_touch": 1e-6}, "consistency": {"balance": 2.5e-9},
+                "rebound": {"restitution": 0.875, "velocity_before": [0.0, -4.0], "velocity_after": null, "ended": false}}"#,
+        );
+        for part in [
+            "<div class=\"verdict limited\"><p><b class=\"trust\">Trust: limited</b></p>",
+            "<p>Refine &lt;there&gt;.</p>\n<p>Keep Δ<i>t</i><sub>c</sub>.</p>",
+            "<dt>Restitution</dt><dd>0.875<",
+            "<td>velocity before</td><td class=\"n\">(0, −4)</td>",
+            "<td>velocity after</td><td class=\"n\">–</td>",
+            "<td>ended</td><td class=\"n\">no</td>",
+            "2.5·10<sup>−9</sup>",
+        ] {
+            assert!(html.contains(part), "{part}");
+        }
+    }
+}

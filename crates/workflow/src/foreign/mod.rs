@@ -10,21 +10,18 @@ mod window;
 
 pub use complete::{Completed, Derived, Lacks};
 pub use measure::Consistency;
+pub(crate) use samples::Between;
 pub use samples::Samples;
 
 use crate::failure::Failure;
 use crate::message::percent;
-use crate::run::{self, Analysis, Results};
 use causes::Suspect;
 use limits::{BALANCE, exceeded};
 use measure::{Trial, measure};
-use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
-use percute_core::observer::Observer;
 use percute_core::problem::Problem;
-use percute_core::time::{TimeGrid, is_stable};
-use percute_estimator::{Request, RunError};
-use samples::Between;
+use percute_core::time::is_stable;
+use percute_estimator::RunError;
 use std::path::PathBuf;
 
 /// What is known of the origin of a history of another program.
@@ -53,58 +50,6 @@ pub struct Checked {
     pub samples: Option<Samples>,
 }
 
-/// The results for a history.
-#[derive(Clone, Debug)]
-pub struct Graded<const D: usize> {
-    /// Those of the estimate.
-    pub results: Results<D>,
-    /// The instants that were estimated.
-    pub times: TimeGrid,
-    /// What was found before; none for a history of percute.
-    pub checked: Option<Checked>,
-}
-
-/// Derives the missing parts of a history of another program, checks its consistency, and analyses its steps. A history that
-/// is not consistent is refused, unless it is to be accepted.
-///
-/// # Errors
-/// An inconsistent history; as [`run::estimate`].
-pub fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
-    origin: &Origin,
-    analysis: &Analysis,
-    observer: &mut dyn Observer,
-) -> Result<Graded<D>, Failure> {
-    let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
-    let derived = [complete.derived(), &origin.derived].concat();
-    let critical = critical_time_step(problem);
-    let (consistency, samples) = check(problem, &complete, critical, origin)?;
-    let mut checked = Checked { derived, left_out: complete.left_out(), consistency, samples };
-    let last = complete.times().step_count();
-    let between = samples.map(|_| Between::new(&complete, critical)).transpose();
-    let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
-    let Some(between) = between else {
-        let analysis = &requested(analysis, |step| step.min(last));
-        let results = run::estimate(problem, &complete, analysis, observer)?;
-        return Ok(Graded { results, times: complete.times().clone(), checked: Some(checked) });
-    };
-    let filled = Completed::new(problem, &between, Lacks { reaction: true, touching: true }).map_err(unread)?;
-    checked.derived = filled.derived().to_vec();
-    let analysis = &requested(analysis, |step| between.starts[step.min(between.starts.len() - 1)]);
-    let results = run::estimate(problem, &filled, analysis, observer)?;
-    checked.consistency.energy = results.simulation.balance.energy_drift;
-    Ok(Graded { results, times: filled.times().clone(), checked: Some(checked) })
-}
-
-/// The analysis with its maps at other steps.
-fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
-    let Request { steps, fields } = &analysis.request;
-    let mut steps: Vec<usize> = steps.iter().map(|&n| step(n)).collect();
-    steps.dedup();
-    Analysis { request: Request { steps, fields: *fields }, ..analysis.clone() }
-}
-
 /// The samples, if the steps of the solver were shorter: beyond the critical step (s), or by the accelerations.
 fn samples<const D: usize>(
     source: &dyn StepSource<D>,
@@ -129,14 +74,14 @@ fn samples<const D: usize>(
     }
 }
 
-/// The figures of a history; figures over their limits are an error, with the likely cause.
-fn check<const D: usize, const N: usize>(
+/// The figures of a history but for its energy; figures over their limits are an error, with the likely cause.
+pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
     critical: f64,
     origin: &Origin,
 ) -> Result<(Consistency, Option<Samples>), Failure> {
-    let (mut found, evidence) = measure(problem, source, Trial::default()).map_err(unread)?;
+    let (found, evidence) = measure(problem, source, Trial::default()).map_err(unread)?;
     let samples = samples(source, &found, critical, origin)?;
     let sampled = samples.is_some();
     let mut exceeded = exceeded(&found);
@@ -149,13 +94,9 @@ fn check<const D: usize, const N: usize>(
         let figure = exceeded.iter().find(|excess| excess.name == "balance").unwrap_or(first).what.clone();
         return Err(Failure::Inconsistent { file: origin.file.clone(), figure, cause });
     }
-    if !sampled {
-        let balance = run::balance(problem, source).map_err(unread)?;
-        found.energy = balance.last().map_or(0.0, |last| last.energy_drift);
-    }
     Ok((found, samples))
 }
 
-fn unread(cause: SinkError) -> Failure {
+pub(crate) fn unread(cause: SinkError) -> Failure {
     Failure::from_sink(cause, RunError::Source)
 }

@@ -1,0 +1,67 @@
+//! The estimate of a history of another program: what it lacks is derived, its consistency is checked, its samples are filled.
+
+use crate::failure::Failure;
+use crate::foreign::{Between, Checked, Completed, Lacks, Origin, check, unread};
+use crate::run::{self, Analysis, Results};
+use percute_core::dynamics::critical_time_step;
+use percute_core::history::StepSource;
+use percute_core::observer::Observer;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::Request;
+
+/// The results for a history.
+#[derive(Clone, Debug)]
+pub struct Graded<const D: usize> {
+    /// Those of the estimate.
+    pub results: Results<D>,
+    /// The instants that were estimated.
+    pub times: TimeGrid,
+    /// What was found before; none for a history of percute.
+    pub checked: Option<Checked>,
+}
+
+/// Derives the missing parts of a history of another program, checks its consistency, and analyses its steps. A history that
+/// is not consistent is refused, unless it is to be accepted.
+///
+/// # Errors
+/// An inconsistent history; as [`run::estimate`].
+pub fn estimate<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    origin: &Origin,
+    analysis: &Analysis,
+    observer: &mut dyn Observer,
+) -> Result<Graded<D>, Failure> {
+    let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
+    let derived = [complete.derived(), &origin.derived].concat();
+    let critical = critical_time_step(problem);
+    let (mut consistency, samples) = check(problem, &complete, critical, origin)?;
+    if samples.is_none() {
+        let balance = run::balance(problem, &complete).map_err(unread)?;
+        consistency.energy = balance.last().map_or(0.0, |last| last.energy_drift);
+    }
+    let mut checked = Checked { derived, left_out: complete.left_out(), consistency, samples };
+    let last = complete.times().step_count();
+    let between = samples.map(|_| Between::new(&complete, critical)).transpose();
+    let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
+    let Some(between) = between else {
+        let analysis = &requested(analysis, |step| step.min(last));
+        let results = run::estimate(problem, &complete, analysis, observer)?;
+        return Ok(Graded { results, times: complete.times().clone(), checked: Some(checked) });
+    };
+    let filled = Completed::new(problem, &between, Lacks { reaction: true, touching: true }).map_err(unread)?;
+    checked.derived = filled.derived().to_vec();
+    let analysis = &requested(analysis, |step| between.starts[step.min(between.starts.len() - 1)]);
+    let results = run::estimate(problem, &filled, analysis, observer)?;
+    checked.consistency.energy = results.simulation.balance.energy_drift;
+    Ok(Graded { results, times: filled.times().clone(), checked: Some(checked) })
+}
+
+/// The analysis with its maps at other steps.
+fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
+    let Request { steps, fields } = &analysis.request;
+    let mut steps: Vec<usize> = steps.iter().map(|&n| step(n)).collect();
+    steps.dedup();
+    Analysis { request: Request { steps, fields: *fields }, ..analysis.clone() }
+}
