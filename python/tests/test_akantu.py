@@ -64,3 +64,10 @@ def test_the_page_has_the_table_of_the_example(graded: dict[str, list[float]]) -
 def rows(page: str) -> list[list[str]]:
     """Give the numbers of the table."""
     return [line.strip("| ").split(" | ")[1:] for line in page.splitlines() if line.startswith(("| flight", "| impact"))]
+
+
+def test_the_verdict_knows_no_penalty(example: Any) -> None:
+    problem = example.impact_problem()
+    estimate = pc.estimate(example.history(problem, example.impact(1e14, 90)))
+    # The evidence has multipliers only.
+    assert estimate.trust == "limited" and "contact by a penalty" in estimate.verdict

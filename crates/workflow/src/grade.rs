@@ -1,14 +1,14 @@
 //! The estimate of a history of another program: what it lacks is derived, its consistency is checked, its samples are filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Lacks, Origin, check, unread};
+use crate::foreign::{Between, Checked, Completed, Lacks, Origin, Refusal, check};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
-use percute_core::history::StepSource;
+use percute_core::history::{SinkError, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::Request;
+use percute_estimator::{Request, RunError};
 
 /// The results for a history.
 #[derive(Clone, Debug)]
@@ -36,7 +36,8 @@ pub fn estimate<const D: usize, const N: usize>(
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
     let critical = critical_time_step(problem);
-    let (mut consistency, samples) = check(problem, &complete, critical, origin)?;
+    let (mut consistency, samples) =
+        check(problem, &complete, critical, origin).map_err(|refusal| refused(refusal, origin))?;
     if samples.is_none() {
         let balance = run::balance(problem, &complete).map_err(unread)?;
         consistency.energy = balance.last().map_or(0.0, |last| last.energy_drift);
@@ -64,4 +65,15 @@ fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
     let mut steps: Vec<usize> = steps.iter().map(|&n| step(n)).collect();
     steps.dedup();
     Analysis { request: Request { steps, fields: *fields }, ..analysis.clone() }
+}
+
+fn refused(refusal: Refusal, origin: &Origin) -> Failure {
+    match refusal {
+        Refusal::Unread(cause) => unread(cause),
+        Refusal::Inconsistent { figure, cause } => Failure::Inconsistent { file: origin.file.clone(), figure, cause },
+    }
+}
+
+fn unread(cause: SinkError) -> Failure {
+    Failure::from_sink(cause, RunError::Source)
 }

@@ -195,7 +195,7 @@ fn a_refused_start_leaves_no_file() {
 fn a_history_that_no_disk_can_hold_is_refused_before_the_run() {
     let large = BLOCK.replace("nx = 5, ny = 4", "nx = 160, ny = 128").replace("courant = 0.9", "step = 1e-12");
     let bench = Bench::new(&large);
-    let output = bench.percute(&["simulate", "case.toml"]);
+    let output = bench.percute(&["simulate", "case.toml", "--long"]);
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("case.vtkhdf") && said.contains("free"), "{said}");

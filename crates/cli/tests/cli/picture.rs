@@ -96,7 +96,7 @@ fn names_are_escaped() {
 fn a_picture_that_cannot_be_written_fails_before_the_run() {
     let bench = Bench::new(BAR);
     let output = bench.percute(&["run", "case.toml", "--picture", "none/map.svg"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
     assert!(stderr(&output).contains("none/map.svg"), "{}", stderr(&output));
 }

@@ -8,6 +8,10 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use serde::Serialize;
 
+/// Forces that would change the velocity of a node by this share in a step count as a term of the balance. In the flight of a
+/// rigid body all others are rounding, in single precision up to 1e-4 of it.
+const FLIGHT: f64 = 1e-2;
+
 /// The figures of consistency; each is 0 in a history that fits its problem exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Consistency {
@@ -185,6 +189,7 @@ impl<'p, const D: usize, const N: usize> Pass<'p, D, N> {
         if let (Some(used), Some(reaction)) = (used, reaction) {
             let terms = self.balance.terms(now, used);
             self.weigh(&terms, &self.nodal(reaction), now.time);
+            self.fly(window);
         }
         if let Some(derived) = derived {
             self.motion(window, &derived);
@@ -228,6 +233,14 @@ impl<'p, const D: usize, const N: usize> Pass<'p, D, N> {
                 }
             }
         }
+    }
+
+    /// Takes in the force that the velocities of a step are compared with.
+    fn fly(&mut self, window: Window<'_, D>) {
+        let Some([_, forward]) = self.balance.half_steps(window) else { return };
+        let mass = self.balance.problem().mass();
+        let most = forward.iter().zip(mass).map(|(v, m)| m * dot(v, v).sqrt()).fold(0.0, f64::max);
+        self.residual[1] = self.residual[1].max(FLIGHT * most / self.balance.times().velocity_step(window.now.index));
     }
 
     /// Compares given velocities and accelerations with those of the displacements.

@@ -13,15 +13,14 @@ pub use measure::Consistency;
 pub(crate) use samples::Between;
 pub use samples::Samples;
 
-use crate::failure::Failure;
 use crate::message::percent;
 use causes::Suspect;
-use limits::{BALANCE, exceeded};
+use limits::BALANCE;
+pub(crate) use limits::exceeded;
 use measure::{Trial, measure};
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::is_stable;
-use percute_estimator::RunError;
 use std::path::PathBuf;
 
 /// What is known of the origin of a history of another program.
@@ -50,13 +49,29 @@ pub struct Checked {
     pub samples: Option<Samples>,
 }
 
+/// Why a history cannot be graded.
+pub(crate) enum Refusal {
+    Unread(SinkError),
+    /// A figure over its limit, with the likely cause.
+    Inconsistent {
+        figure: String,
+        cause: Option<String>,
+    },
+}
+
+impl From<SinkError> for Refusal {
+    fn from(error: SinkError) -> Self {
+        Self::Unread(error)
+    }
+}
+
 /// The samples, if the steps of the solver were shorter: beyond the critical step (s), or by the accelerations.
 fn samples<const D: usize>(
     source: &dyn StepSource<D>,
     found: &Consistency,
     critical: f64,
     origin: &Origin,
-) -> Result<Option<Samples>, Failure> {
+) -> Result<Option<Samples>, Refusal> {
     let (count, distance) = (source.count(), source.times().longest_step());
     let differs = found.acceleration.filter(|differs| *differs > BALANCE);
     if differs.is_none() && is_stable(distance, critical) {
@@ -65,8 +80,7 @@ fn samples<const D: usize>(
     let samples = Samples { count, distance, critical_steps: distance / critical };
     match (found.velocity, found.acceleration) {
         (Some(_), Some(_)) => Ok(Some(samples)),
-        (None, Some(differs)) if found.balance <= BALANCE && !origin.accept => Err(Failure::Inconsistent {
-            file: origin.file.clone(),
+        (None, Some(differs)) if found.balance <= BALANCE && !origin.accept => Err(Refusal::Inconsistent {
             figure: format!("its accelerations differ from those of the displacements by {}", percent(differs)),
             cause: Some("the instants are samples, not the steps of the solver; give velocities too".to_string()),
         }),
@@ -80,8 +94,8 @@ pub(crate) fn check<const D: usize, const N: usize>(
     source: &dyn StepSource<D>,
     critical: f64,
     origin: &Origin,
-) -> Result<(Consistency, Option<Samples>), Failure> {
-    let (found, evidence) = measure(problem, source, Trial::default()).map_err(unread)?;
+) -> Result<(Consistency, Option<Samples>), Refusal> {
+    let (found, evidence) = measure(problem, source, Trial::default())?;
     let samples = samples(source, &found, critical, origin)?;
     let sampled = samples.is_some();
     let mut exceeded = exceeded(&found);
@@ -90,13 +104,9 @@ pub(crate) fn check<const D: usize, const N: usize>(
     exceeded.retain(|excess| !sampled || !of_steps.contains(&excess.name));
     if let (Some(first), false) = (exceeded.first(), origin.accept) {
         let suspect = Suspect { problem, source, found: &found, evidence: &evidence };
-        let cause = suspect.cause(&exceeded).map_err(unread)?;
+        let cause = suspect.cause(&exceeded)?;
         let figure = exceeded.iter().find(|excess| excess.name == "balance").unwrap_or(first).what.clone();
-        return Err(Failure::Inconsistent { file: origin.file.clone(), figure, cause });
+        return Err(Refusal::Inconsistent { figure, cause });
     }
     Ok((found, samples))
-}
-
-pub(crate) fn unread(cause: SinkError) -> Failure {
-    Failure::from_sink(cause, RunError::Source)
 }

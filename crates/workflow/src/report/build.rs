@@ -111,10 +111,10 @@ fn judged<const D: usize, const N: usize>(
     estimate: &Estimate<D>,
     contact: &ContactResults<D>,
 ) -> (Option<Rebound>, Verdict) {
-    let Subject { problem, times, critical_step, .. } = *subject;
+    let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
     let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
-    let beside = verdict::Beside { options, courant, drift, admissible, rebound: rebound.as_ref() };
+    let beside = verdict::Beside { options, courant, drift, admissible, rebound: rebound.as_ref(), checked };
     let verdict = Verdict::new(&verdict::Facts::new(problem, estimate, contact, beside), &estimate.parts);
     (rebound, verdict)
 }

@@ -19,7 +19,7 @@ pub struct Rebound {
     pub normal_before: f64,
     /// Normal component of `velocity_after` (m/s).
     pub normal_after: Option<f64>,
-    /// Coefficient of restitution; none if contact has not ended, or if the body does not arrive.
+    /// Coefficient of restitution; none if contact has not ended, if the body does not arrive, or if it has supports.
     pub restitution: Option<f64>,
     /// First instant at which a node touches (s).
     pub first_touch: f64,
@@ -51,7 +51,9 @@ impl Rebound {
         let time = |n: usize| contact.instants[n.min(steps - 1)];
         let after = ended.then(|| velocity(last + 1));
         let (normal_before, normal_after) = (frame.split(&before).0, after.map(|v| frame.split(&v).0));
-        let restitution = normal_after.filter(|_| normal_before < 0.0).map(|v| -v / normal_before);
+        // A support changes the momentum, too.
+        let free = problem.prescribed().is_empty() && normal_before < 0.0;
+        let restitution = normal_after.filter(|_| free).map(|v| -v / normal_before);
         let (first_touch, release) = (time(first + 1), time(last + 1));
         Some(Self {
             velocity_before: before.to_vec(),

@@ -1,4 +1,4 @@
-//! The summary of a run: at most 24 lines of 80 columns.
+//! The summary of a run: at most 28 lines of 80 columns.
 
 use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
@@ -243,6 +243,6 @@ mod tests {
         let all = format!("holds{words}case{}{}", "x".repeat(200), "y".repeat(70));
         assert_eq!(together(&shown), together(&all));
         assert_eq!(shown.lines().count(), 2 + 3 + 1);
-        assert!(shown.lines().nth(1).is_some_and(|line| line.starts_with("          after")), "{shown}");
+        assert!(shown.lines().nth(1).is_some_and(|line| line.starts_with("          recover")), "{shown}");
     }
 }

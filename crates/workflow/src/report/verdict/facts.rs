@@ -1,6 +1,7 @@
 //! The facts that a verdict follows from.
 
 use super::touches::Contact;
+use crate::foreign::{Checked, exceeded};
 use crate::report::rebound::Rebound;
 use percute_core::contact::ContactResults;
 use percute_core::ids::ElementId;
@@ -12,6 +13,9 @@ use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstr
 /// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs for bodies of
 /// 64 mm with waves of 5.3 km/s.
 const APART: f64 = 1.25;
+
+/// Relative errors below this are rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// What a verdict follows from. More may be added: rules name the facts that they read.
 #[derive(Clone, Debug)]
@@ -40,6 +44,12 @@ pub(in crate::report) struct Facts {
     pub(super) admissible: bool,
     pub(super) kept_impulse: Option<f64>,
     pub(super) expected: Option<Expected>,
+    /// Of a history of another program: its first figure over a limit.
+    pub(super) inconsistent: Option<String>,
+    /// Penetration and gap under a force, over the element size; 0 with multipliers.
+    pub(super) off_contact: f64,
+    /// Whether the history has samples instead of steps.
+    pub(super) sampled: bool,
 }
 
 /// The part of the contact surface in the squared mean error, and expected changes of the mean error, relative.
@@ -59,6 +69,8 @@ pub(in crate::report) struct Beside<'a> {
     pub(in crate::report) drift: f64,
     pub(in crate::report) admissible: bool,
     pub(in crate::report) rebound: Option<&'a Rebound>,
+    /// Of a history of another program.
+    pub(in crate::report) checked: Option<&'a Checked>,
 }
 
 impl Facts {
@@ -68,6 +80,7 @@ impl Facts {
         results: &ContactResults<D>,
         beside: Beside<'_>,
     ) -> Self {
+        let figures = beside.checked.map(|checked| &checked.consistency);
         let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
         let speed = beside.rebound.map(|rebound| -rebound.normal_before / wave_speed);
@@ -90,7 +103,17 @@ impl Facts {
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
             expected: expected(estimate),
+            inconsistent: figures.and_then(|found| exceeded(found).into_iter().next()).map(|excess| excess.what),
+            off_contact: figures.map_or(0.0, |found| found.penetration.max(found.gap_under_force)),
+            sampled: beside.checked.is_some_and(|checked| checked.samples.is_some()),
         }
+    }
+}
+
+impl Facts {
+    /// Whether the error is zero to rounding, as in the flight of a rigid body.
+    pub(super) fn is_exact(&self) -> bool {
+        self.error.sup <= ROUNDING * self.error.reference_sup
     }
 }
 

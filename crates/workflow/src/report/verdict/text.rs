@@ -25,6 +25,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     if !facts.admissible {
         doubts.push("a residual shows that the fields are not admissible".to_string());
     }
+    doubts.extend(facts.inconsistent.iter().map(|figure| format!("the history is not consistent: {figure}")));
     // A drift that is no number must not pass.
     if facts.energy_drift.is_nan() || facts.energy_drift > DRIFT {
         doubts.push(format!("the energy balance is off by {}", per_cent(facts.energy_drift)));
@@ -47,6 +48,9 @@ pub(super) fn sentences(
     doubts: &[String],
     shares: Shares,
 ) -> Vec<String> {
+    if facts.is_exact() && doubts.is_empty() {
+        return vec!["Nothing deforms: the error is zero to rounding.".to_string()];
+    }
     vec![situation(facts, rule, untested), place(facts, shares), recommendation(facts, doubts)]
 }
 

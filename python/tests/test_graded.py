@@ -1,0 +1,47 @@
+"""The verdict on histories of other programs, and histories in which nothing deforms."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import percute as pc
+import pytest
+from conftest import block
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_a_rigid_flight_has_no_error() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    material = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    problem = pc.Problem(mesh, material=material, initial_velocity=(30.0, -10.0))
+    own = pc.simulate(problem, end=5e-5, courant=0.9)
+    for kind in (np.float64, np.float32):
+        history = pc.History.from_arrays(problem, own.time, own.displacement.astype(kind))
+        estimate = pc.estimate(history)
+        assert estimate.consistency is not None
+    # In double precision; single precision makes waves of its own.
+    estimate = pc.estimate(pc.History.from_arrays(problem, own.time, own.displacement))
+    assert estimate.relative_sup < 1e-9
+    assert "zero to rounding" in estimate.verdict
+
+
+def test_the_page_on_histories_writes_one_that_is_graded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "history.md").read_text()
+    script = next(code for code in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "h5py.File" in code)
+    exec(script, {})
+    assert pc.estimate(pc.open("flight.vtkhdf")).relative_sup < 1e-9
+
+
+def test_a_history_that_is_not_consistent_is_not_trusted() -> None:
+    problem = block()
+    own = pc.simulate(problem, end=13e-6, courant=0.9)
+    late = np.concatenate([own.reaction[:1], own.reaction[:-1]])
+    history = pc.History.from_arrays(problem, own.time, own.displacement, reaction=late)
+    with pytest.raises(pc.InputError):
+        pc.estimate(history)
+    estimate = pc.estimate(history, force=True)
+    assert estimate.trust == "low" and "not consistent" in estimate.verdict
+    correct = pc.History.from_arrays(problem, own.time, own.displacement, reaction=own.reaction)
+    assert pc.estimate(correct).trust == pc.estimate(own).trust
