@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas as _pandas
     import xarray
 
 __all__ = ["Balance"]
@@ -38,7 +38,7 @@ class Balance:
     impulse_drift: NDArray[np.float64]
     """The same for momentum and impulses."""
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> _pandas.DataFrame:
         """Make a table over time (extra ``pandas``): one row for each instant; ``attrs["units"]`` has the units of the columns."""
         from percute import contents, tables
 

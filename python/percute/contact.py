@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from percute.mesh import Mesh
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas as _pandas
     import xarray
     from matplotlib.axes import Axes
 
@@ -165,7 +165,7 @@ class Contact:
 
         return contact.plot_contact(self, colour, axes, save, overwrite)
 
-    def to_pandas(self, over: Literal["time", "nodes", "both"] = "time") -> pandas.DataFrame:
+    def to_pandas(self, over: Literal["time", "nodes", "both"] = "time") -> _pandas.DataFrame:
         """Make a table of the contact results (extra ``pandas``).
 
         Parameters

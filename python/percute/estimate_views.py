@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from percute.views import File, Views
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas as _pandas
     import xarray
     from matplotlib.axes import Axes
 
@@ -73,7 +73,7 @@ class EstimateViews(Views):
 
         return error.plot_over_time(self, by, axes, save, overwrite)
 
-    def to_pandas(self: Estimate, over: Literal["time", "elements", "both"] = "time") -> pandas.DataFrame:  # type: ignore[misc]
+    def to_pandas(self: Estimate, over: Literal["time", "elements", "both"] = "time") -> _pandas.DataFrame:  # type: ignore[misc]
         """Make a table (extra ``pandas``).
 
         Parameters

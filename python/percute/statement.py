@@ -94,13 +94,13 @@ class Plane:
 
     point: Vector | ArrayLike
     normal: Vector | ArrayLike
-    friction: float = cast("float", None)
+    friction: float | None = None
     group: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", _vector("point", self.point))
         object.__setattr__(self, "normal", _vector("normal", self.normal))
-        friction: float | None = self.friction
+        friction = self.friction
         if friction is None and len(cast("Vector", self.point)) > 1:
             raise InputError("`friction` is missing: give the coefficient of friction, 0 without friction")
         object.__setattr__(self, "friction", 0.0 if friction is None else number("friction", friction))

@@ -15,7 +15,7 @@ from percute.element_fields import NODAL, OF_ELEMENTS
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas as _pandas
     import xarray
 
     from percute.history import History
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 VECTORS = ("component", "component2")
 
 
-def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]]) -> pandas.DataFrame:
+def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]]) -> _pandas.DataFrame:
     """Make a table of the quantities with some dimensions, one row for each place, one column for each component.
 
     ``known`` has the dimensions by the names that ``over`` may have.
@@ -75,7 +75,7 @@ def _columns(name: str, quantity: Quantity, dims: tuple[str, ...], contents: Con
     return [(f"{name}_{AXES[i]}{AXES[j]}", flat[:, i, j]) for i in range(flat.shape[1]) for j in range(i, flat.shape[2])]
 
 
-def of_history(history: History, over: object, step: int | None) -> pandas.DataFrame:
+def of_history(history: History, over: object, step: int | None) -> _pandas.DataFrame:
     """Make a table of a history: over time, or over nodes at one instant or at all."""
     if text("over", over) == "time":
         return to_pandas(of_fields(history, ()), over, {"time": ("time",)})

@@ -14,7 +14,7 @@ from percute.immutable import Immutable
 from percute.progress import ProgressOption
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas as _pandas
     import xarray
     from matplotlib.axes import Axes
 
@@ -245,7 +245,7 @@ class HistoryViews(HistoryFields, Views):
 
         return exports.export(self, path, steps, every, times, fields, estimate, overwrite, progress)
 
-    def to_pandas(self: History, over: Literal["time", "nodes", "elements"] = "time", *, step: int | None = -1) -> pandas.DataFrame:  # type: ignore[misc]
+    def to_pandas(self: History, over: Literal["time", "nodes", "elements"] = "time", *, step: int | None = -1) -> _pandas.DataFrame:  # type: ignore[misc]
         """Make a table (extra ``pandas``).
 
         Parameters
