@@ -102,6 +102,8 @@ class ForeignArrays:
         for order in itertools.permutations(range(array.ndim)):
             if array.ndim == len(needed) and tuple(array.shape[i] for i in order) == needed:
                 raise InputError(f"{shape}. It is transposed: give np.transpose({name}, {order})")
+        if axes.endswith("d") and array.ndim == len(needed) and array.shape[:-1] == needed[:-1] and array.shape[-1] == 3:
+            raise InputError(f"{shape}. Files of VTK have three components: give {name}[..., :{needed[-1]}]")
         raise InputError(shape)
 
     def _check_nodes(self, listed: NDArray[np.int64]) -> None:

@@ -69,6 +69,8 @@ def of_estimate(estimate: Estimate) -> str:
         ("steps", f"{estimate.steps} to {_time(estimate.end)}"),
         ("reconstruction", str(estimate.options["reconstruction"])),
     ]
+    if estimate.trust is not None:
+        rows += [("trust", estimate.trust), ("verdict", str(estimate.verdict))]
     rows += [("worst element", f"{each.element} at {_vector(each.centroid)} m, {each.error:.3g} J½") for each in estimate.worst_elements(1)]
     return _page("Estimate", rows + _mesh_rows(estimate.mesh)[:2], _map(estimate.mesh, estimate.by_element))
 

@@ -45,3 +45,9 @@ def test_a_history_that_is_not_consistent_is_not_trusted() -> None:
     assert estimate.trust == "low" and "not consistent" in estimate.verdict
     correct = pc.History.from_arrays(problem, own.time, own.displacement, reaction=own.reaction)
     assert pc.estimate(correct).trust == pc.estimate(own).trust
+
+
+def test_three_components_are_told(block_history: pc.History) -> None:
+    padded = np.pad(block_history.displacement, ((0, 0), (0, 0), (0, 1)))
+    with pytest.raises(pc.InputError, match=r"three components: give displacement\[\.\.\., :2\]"):
+        pc.History.from_arrays(block_history.problem, block_history.time, padded)

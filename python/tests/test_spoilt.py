@@ -183,8 +183,17 @@ def test_an_inconsistent_history_is_estimated_on_demand(correct: pc.History, tmp
     spoilt = SPOILT["a step late"][0](parts(correct))
     estimate = pc.estimate(given(correct.problem, spoilt), force=True)
     assert estimate.consistency is not None and (estimate.consistency["balance"] or 0) > 0.1
-    done = command(stored(correct, spoilt, tmp_path / "spoilt.vtkhdf"), "--accept-inconsistent", "--json")
-    assert done.returncode == 0 and json.loads(done.stdout)["consistency"]["balance"] > 0.1
+    file = stored(correct, spoilt, tmp_path / "spoilt.vtkhdf")
+    done = command(file, "--accept-inconsistent", "--json")
+    document = json.loads(done.stdout)
+    assert done.returncode == 0 and document["consistency"]["balance"] > 0.1 and document["verdict"]["trust"] == "low"
+    # Whatever names the option has it.
+    for words in (["report", str(file), str(tmp_path / "page.html")], ["plot", str(file), "--save", str(tmp_path / "map.png")]):
+        percute = [sys.executable, "-m", "percute", *words]
+        refused = subprocess.run(percute, capture_output=True, text=True, check=False)
+        assert refused.returncode == 2 and "give --accept-inconsistent" in refused.stderr, refused.stderr
+        subprocess.run([*percute, "--accept-inconsistent"], capture_output=True, check=True)
+    assert (tmp_path / "page.html").exists() and (tmp_path / "map.png").exists()
 
 
 def test_single_precision_passes(correct: pc.History) -> None:

@@ -158,6 +158,9 @@ pub struct ReportArguments {
     pub file: PathBuf,
     /// The page (.html) [default: named after the file, in the working directory]
     pub page: Option<PathBuf>,
+    /// Estimate a history of another program although it contradicts itself or its problem
+    #[arg(long)]
+    pub accept_inconsistent: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub work: WorkArguments,

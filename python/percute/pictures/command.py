@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from percute.errors import ExistingFileError, InputError, MissingFileError, PercuteError, StorageError
+from percute.errors import ExistingFileError, FileFormatError, InputError, MissingFileError, PercuteError, StorageError
 from percute.estimation import Estimate, estimate
 from percute.files import open as open_file
 from percute.files import run
@@ -34,7 +34,7 @@ KINDS = {
 OPTIONS = {"quantity": ("field", "animation"), "step": ("field",), "scale": ("map", "field", "animation"), "plane": ("pressure",), "frames": ("animation",)}
 """Options that belong to some kinds only."""
 OF_THE_ERROR = ("map", "over-time", "sources")
-WORDS = {"`save`": "--save", "`path`": "--save", "overwrite=True": "--force", "`case`: ": ""} | {f"`{name}`": f"--{name}" for name in OPTIONS}
+WORDS = {"`save`": "--save", "`path`": "--save", "overwrite=True": "--force", "force=True": "--accept-inconsistent", "`case`: ": ""} | {f"`{name}`": f"--{name}" for name in OPTIONS}
 """Words of Python, and those of the command."""
 
 
@@ -53,13 +53,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--scale", type=float, metavar="X", help="by how much the displacement is exaggerated [default: 1; of a map 0, undeformed]")
     parser.add_argument("--plane", type=int, metavar="K", help="the plane of a pressure [default: the one with the largest force]")
     parser.add_argument("--frames", type=int, metavar="N", help="number of frames of an animation [default: 60]")
+    parser.add_argument("--accept-inconsistent", action="store_true", help="estimate a history of another program although it contradicts itself or its problem")
     parser.add_argument("--force", "--overwrite", action="store_true", help="replace files that are there")
     parser.add_argument("--quiet", action="store_true", help="no progress and no warnings on standard error")
     return parser
 
 
-def _subject(file: Path, error: bool, force: bool, tell: Any) -> History | Estimate:
+def _subject(given: argparse.Namespace, tell: Any) -> History | Estimate:
     """Read or compute the subject of a picture."""
+    file: Path = given.file
     try:
         with file.open("rb") as stream:
             binary = stream.read(8) == b"\x89HDF\r\n\x1a\n"
@@ -67,9 +69,9 @@ def _subject(file: Path, error: bool, force: bool, tell: Any) -> History | Estim
         raise MissingFileError(f"there is no file {str(file)!r}") from None
     except OSError as reason:
         raise StorageError(f"cannot read {str(file)!r}: {reason.strerror}") from None
-    found = open_file(file) if binary else run(file, overwrite=force, progress=tell)
+    found = open_file(file) if binary else run(file, overwrite=given.force, progress=tell)
     if isinstance(found, History):
-        return estimate(found, progress=tell) if error else found
+        return estimate(found, force=given.accept_inconsistent, progress=tell) if given.kind in OF_THE_ERROR else found
     return found
 
 
@@ -127,12 +129,12 @@ def main(arguments: Sequence[str]) -> int:
         with warnings.catch_warnings(), shown(not given.quiet) as tell:
             warnings.simplefilter("ignore" if given.quiet else "always")
             warnings.showwarning = lambda message, *_, **__: print(f"warning: {message}", file=sys.stderr)
-            draw(_subject(given.file, given.kind in OF_THE_ERROR, given.force, tell), given, save, tell)
+            draw(_subject(given, tell), given, save, tell)
     except KeyboardInterrupt:
         print("interrupted: no picture", file=sys.stderr)
         return INTERRUPTED
     except PercuteError as error:
         print(f"error: {_said(error)}", file=sys.stderr)
-        return BAD_INPUT if isinstance(error, ExistingFileError | InputError | MissingFileError) else FAILED
+        return BAD_INPUT if isinstance(error, ExistingFileError | FileFormatError | InputError | MissingFileError) else FAILED
     print(save)
     return DONE

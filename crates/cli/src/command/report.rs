@@ -12,7 +12,7 @@ use percute_workflow::Failure;
 use std::path::{Path, PathBuf};
 
 pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    let ReportArguments { file, page, work } = arguments;
+    let ReportArguments { file, page, accept_inconsistent, work } = arguments;
     let page = page.clone().unwrap_or_else(|| named_after(file));
     let (print, work) = (PrintArguments { report: Some(page), ..PrintArguments::default() }, work.clone());
     // A file that cannot be read is refused by the reader of cases, which says what it can of it.
@@ -23,8 +23,9 @@ pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) ->
     if kind(file)? == Kind::Estimate {
         return stored(file, &print, &work, console);
     }
-    let history = file.clone();
-    estimate::command(&EstimateArguments { history, print, work, ..EstimateArguments::default() }, console)
+    let (history, accept_inconsistent) = (file.clone(), *accept_inconsistent);
+    let arguments = EstimateArguments { history, print, work, accept_inconsistent, ..EstimateArguments::default() };
+    estimate::command(&arguments, console)
 }
 
 /// The page of an estimate file, which holds all that it needs.
