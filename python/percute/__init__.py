@@ -31,16 +31,18 @@ from percute.errors import (
     SimulationError,
     StorageError,
 )
-from percute.estimation import Estimate, estimate
+from percute.estimating import estimate
+from percute.estimation import Estimate
 from percute.evidence import reproduce
 from percute.exact import Effectivity, TrueError
 from percute.files import open, run
-from percute.history import History, simulate, true_errors
+from percute.history import History
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
+from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 from percute.verifying import Verification, verify
 

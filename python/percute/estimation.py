@@ -10,10 +10,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from percute import _percute
-from percute.checks import flag, instance, numbers, text, vtkhdf, warn, whole, wrong
+from percute.checks import flag, instance, vtkhdf, whole
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
@@ -21,7 +21,6 @@ from percute.estimate_views import EstimateViews
 from percute.history import History
 from percute.mesh import Mesh
 from percute.problem import Problem
-from percute.progress import ProgressOption, shown
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
@@ -29,7 +28,7 @@ from percute.stored import StoredEstimate
 if TYPE_CHECKING:
     from percute.exact import Effectivity, TrueError
 
-__all__ = ["Estimate", "estimate"]
+__all__ = ["Estimate"]
 
 
 def _measure(name: str, meaning: str) -> cached_property[float]:
@@ -330,119 +329,3 @@ def _restore(problem: Problem, state: bytes, name: str) -> Estimate:
     restored = Estimate._of(_percute.EstimateData.restore(problem._data, state), None, name)
     restored.__dict__["problem"] = problem
     return restored
-
-
-def estimate(
-    history: History,
-    *,
-    reconstruction: Literal["corrected", "consistent", "published"] | None = None,
-    acceleration: Literal["closest", "rigid", "weak", "mixed"] | None = None,
-    every: int | Literal["auto"] | None = None,
-    threads: int | None = None,
-    window: int | None = None,
-    instants: int | ArrayLike | None = None,
-    fields: bool = False,
-    force: bool = False,
-    progress: ProgressOption = None,
-    _ablation: str = "none",
-) -> Estimate:
-    """Estimate the constitutive relation error of a history.
-
-    Parameters
-    ----------
-    history : History
-        The steps; at least two instants.
-    reconstruction : {"corrected", "consistent", "published"}, optional
-        How reactions become admissible contact forces: all of them, those before contact included; on the edges that touch
-        throughout a step, statically equivalent; or by the paper's construction, eq. [45] to [50]. By default what the
-        history's file or case states, else "corrected".
-    acceleration : {"closest", "rigid", "weak", "mixed"}, optional
-        The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion,
-        the linear one that does the lumped work, or the closest one for tractions that balance less of the lumped mass,
-        which needs the reconstruction "corrected". By default as stated, else "mixed" for plane bodies with "corrected"
-        and "closest" for all others.
-    every : int or "auto", optional
-        The error is sampled at every so many steps, and at the end; or, with "auto", around onset, release and peaks of the contact
-        force, at the ``instants`` of maps, and between them as sparsely as keeps the mean: at every step on small meshes. By default
-        as stated, else "auto".
-    threads : int, optional
-        How many threads to use, at most 1024; one for each core by default. The result does not depend on it.
-    window : int, optional
-        How many sampled steps are worked on at once, at most 8 (the default). The result does not depend on it.
-    instants : int or (n,) floats, optional
-        Number of evenly spaced instants, or times (s), at which ``maps`` are kept: at the nearest steps. None by default.
-    fields : bool, default: False
-        Whether these hold the admissible fields too; it needs ``instants``.
-    force : bool, default: False
-        Whether a history of another program is estimated even if it contradicts itself or its problem.
-    progress : bool or callable, optional
-        As for `simulate`.
-
-    Returns
-    -------
-    Estimate
-
-    Warns
-    -----
-    InputWarning
-        The last instant of a history of another program is left out, because its contact forces are not known. Or it has samples
-        that are farther apart than the steps of a solver.
-
-    Raises
-    ------
-    InputError
-        An argument is wrong. Or a history of another program is not consistent; the message has the likely cause.
-    EstimateError
-        The history cannot be estimated: fewer than two instants, or steps that do not fit the problem.
-    StorageError
-        The temporary file of a long flight cannot be written: no space in the folder ``TMPDIR`` or in ``/var/tmp``.
-    """
-    stated = instance("history", history, History)._data.options()
-    options = (
-        stated[0] if reconstruction is None else text("reconstruction", reconstruction),
-        stated[1] if acceleration is None else text("acceleration", acceleration),
-        # The default without one of its parts, for the evidence on each part.
-        text("_ablation", _ablation),
-        stated[2] if every is None else _sampling(every),
-    )
-    work = pace(threads, window)
-    wanted = _wanted(instants, history)
-    if flag("fields", fields) and wanted is None:
-        raise InputError("`fields` needs `instants`: give the number of instants, or their times (s)")
-    accept = flag("force", force)
-    with shown(progress) as tell:
-        data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
-    warn(data.notices())
-    return Estimate._of(data, history, history._name)
-
-
-def _sampling(every: object) -> int | str:
-    """Check at which steps the error is sampled."""
-    if isinstance(every, str):
-        if every != "auto":
-            raise wrong("every", every, '"auto" or a whole number')
-        return every
-    return whole("every", every)
-
-
-def pace(threads: int | None, window: int | None) -> tuple[int | None, int | None]:
-    """Check threads and window."""
-    return (
-        None if threads is None else whole("threads", threads, most=_percute.MOST_THREADS),
-        None if window is None else whole("window", window),
-    )
-
-
-def _wanted(instants: int | ArrayLike | None, history: History) -> int | list[float] | None:
-    """Give the number of instants, or their times (s). A time may exceed the end by the digits lost in printing only."""
-    if instants is None:
-        return None
-    if isinstance(instants, int | np.integer):
-        return whole("instants", instants)
-    times = np.atleast_1d(numbers("instants", instants, most=1))
-    if len(times) == 0 or not np.all(np.isfinite(times) & (times >= 0)):
-        raise wrong("instants", instants, "a number of instants, or at least one time (s), finite and not negative")
-    end = float(history._data.times[-1])
-    if np.max(times) > end * (1 + 1e-3):
-        raise InputError(f"`instants` holds {np.max(times):g} s, but the run ends at {end:g} s; give instants before that, in seconds")
-    return cast("list[float]", times.tolist())

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from percute.checks import flag, text, wrong
 from percute.checks import path as file_name
-from percute.estimation import pace
+from percute.estimating import pace
 from percute.progress import ProgressOption, shown
 
 __all__ = ["reproduce"]

@@ -10,10 +10,12 @@ from percute import _percute
 from percute.checks import encodable, flag, text, warn, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError, MissingFileError, StorageError
-from percute.estimation import Estimate, pace
-from percute.history import History, absolute, history_of_the_exception
+from percute.estimating import pace
+from percute.estimation import Estimate
+from percute.history import History
 from percute.mesh_files import tell_of_mesh
 from percute.progress import ProgressOption, shown
+from percute.simulation import absolute, history_of_the_exception
 from percute.stored import StoredEstimate
 from percute.termination import file_closed_at_signals
 

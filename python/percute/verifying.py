@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.checks import flag, instance, text, whole
 from percute.errors import InputError
-from percute.estimation import pace
-from percute.history import _times
+from percute.estimating import pace
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
+from percute.simulation import times_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -165,7 +165,7 @@ def verify(
         A run failed.
     """
     instance("problem", problem, Problem)
-    times = _times(end, courant, step, steps)
+    times = times_of(end, courant, step, steps)
     count = whole("levels", levels)
     if count > _percute.MOST_LEVELS:
         raise InputError(f"`levels` is {count}; give 1 to {_percute.MOST_LEVELS} refinements")

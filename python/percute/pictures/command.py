@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from percute.errors import ExistingFileError, FileFormatError, InputError, MissingFileError, PercuteError, StorageError
-from percute.estimation import Estimate, estimate
+from percute.estimating import estimate
+from percute.estimation import Estimate
 from percute.files import open as open_file
 from percute.files import run
 from percute.history import History

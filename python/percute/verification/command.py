@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from percute.errors import ExistingFileError, InputError, PercuteError
-from percute.estimation import pace
+from percute.estimating import pace
 from percute.progress import shown
 from percute.verification.parallel import Resolution
 from percute.verification.studies import STUDIES, Study, chosen, run

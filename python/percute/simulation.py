@@ -1,0 +1,208 @@
+"""Simulations, and the true errors of histories against one on a finer mesh."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from percute import _percute
+from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn
+from percute.errors import InputError, PercuteError
+from percute.history import History, true_errors_of
+from percute.kept import kept
+from percute.problem import Problem
+from percute.progress import ProgressOption, shown
+from percute.termination import file_closed_at_signals
+
+if TYPE_CHECKING:
+    from percute.exact import TrueError
+
+__all__ = ["simulate", "true_errors"]
+
+
+def times_of(end: object, courant: float | None, step: float | None, steps: ArrayLike | None) -> _percute._Times:
+    """Check the end and the steps of a run."""
+    lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
+    return optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths
+
+
+def simulate(
+    problem: Problem,
+    *,
+    end: float | Literal["rebound"] | None = None,
+    courant: float | None = None,
+    step: float | None = None,
+    steps: ArrayLike | None = None,
+    longest: float | None = None,
+    after: float | None = None,
+    store: str | os.PathLike[str] | None = None,
+    every: int | None = None,
+    times: ArrayLike | None = None,
+    fields: Iterable[str] | None = None,
+    overwrite: bool = False,
+    long: bool = False,
+    progress: ProgressOption = None,
+) -> History:
+    """Simulate by central differences with a lumped mass and contact multipliers, eq. [28] to [38].
+
+    Parameters
+    ----------
+    problem : Problem
+        What to simulate.
+    end : float or "rebound"
+        End T of the run (s); it may be left out with ``steps``. With "rebound" the run ends some time after the body has left its planes;
+        a first pass of the integrator looks for this end and takes as long as a simulation without its estimate.
+    courant : float
+        Time step over the critical one, above 0 and at most 1. Give exactly one of ``courant``, ``step`` and ``steps``.
+    step : float
+        Time step (s). The run has equal steps of at most about this length and ends at T exactly.
+    steps : (n,) floats
+        Time steps (s), one by one.
+    longest : float
+        The latest end (s); required with ``end="rebound"``, and for this only.
+    after : float, optional
+        With ``end="rebound"``, how long the run goes on after the last contact (s); by default twice the time of a wave along the
+        diagonal of the body.
+    store : str or path, optional
+        A file, such as ``"block.vtkhdf"``, to which the steps are written during the run; they are then not kept in memory.
+        See ``docs/history.md``. Disk space for the complete file is allocated at the start.
+    every : int, optional
+        With ``store``: the file keeps every k-th step, and the last. Estimate, balance and contact results need all steps.
+    times : (n,) floats, optional
+        Instead of ``every``: the file keeps the steps nearest to these times (s), the first and the last.
+    fields : list of str, optional
+        With ``store``: the fields in the file, out of ``"displacement"`` (always kept), ``"velocity"``, ``"acceleration"`` and
+        ``"reaction"``. By default all four if steps are left out, else displacement and reaction.
+    overwrite : bool, default: False
+        Whether a file that exists already is replaced.
+    long : bool, default: False
+        Whether a run of more than 1e10 elements times steps is allowed, which takes minutes to hours.
+    progress : bool or callable, optional
+        With True, progress is shown on a terminal or in a notebook. A function is called with a `Progress` about twenty
+        times a second; an exception that it raises stops the run.
+
+    Returns
+    -------
+    History
+
+    Warns
+    -----
+    InputWarning
+        The input is possible but probably a mistake: mixed units, a body that never touches, a run that needs more memory
+        than is free; or contact does not end before ``longest``.
+
+    Raises
+    ------
+    InputError
+        An argument is wrong; the start is too near to a plane, or the run is long without ``long``.
+    SimulationError
+        The run became unstable.
+    ExistingFileError, StorageError
+        The file exists already or cannot be written; the steps before that are in it.
+    KeyboardInterrupt
+        After Ctrl-C, and with ``store`` after the file is closed and complete. Like any exception that stops the run, it has the
+        steps done as its ``history``; None before the first.
+    """
+    instance("problem", problem, Problem)
+    file = None if store is None else vtkhdf("store", store)
+    keep = kept(every, times, fields, file)
+    replace = flag("overwrite", overwrite)
+    if end == "rebound":
+        if longest is not None and steps is None:
+            _percute.check_run(problem._data, times_of(longest, courant, step, steps), flag("long", long))
+        end = _rebound_end(problem, times_of(None, courant, step, steps), longest, after, progress)
+    elif longest is not None or after is not None:
+        raise InputError('`longest` and `after` need end="rebound"; leave them out')
+    grid = times_of(end, courant, step, steps)
+    _percute.check_run(problem._data, grid, flag("long", long))
+    warn(_percute.plausibility_warnings(problem._data, grid, file is None))
+    with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
+        data = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
+    return History._of(data, problem, "" if file is None else encodable(file))
+
+
+def _rebound_end(problem: Problem, times: _percute._Times, longest: float | None, after: float | None, progress: ProgressOption) -> float:
+    """Find the end of a run that ends with the rebound (s)."""
+    _, courant, step, steps = times
+    if steps is not None or (courant is None) == (step is None):
+        raise InputError('end="rebound" needs exactly one of `courant` (0 to 1) and `step` (s)')
+    if longest is None:
+        raise InputError('end="rebound" needs `longest`: the latest end (s)')
+    latest, later = optional_number("longest", longest), optional_number("after", after)
+    if later is not None and later <= 0.0:
+        raise InputError(f"`after` is {later:g} s; it must be positive")
+    assert latest is not None
+    with shown(progress) as tell:
+        end, warning = _percute.rebound_end(problem._data, (courant, step), latest, later, tell)
+    warn([] if warning is None else [warning])
+    return end
+
+
+def true_errors(
+    histories: Iterable[History],
+    problem: Problem,
+    *,
+    end: float | None = None,
+    courant: float | None = None,
+    step: float | None = None,
+    steps: ArrayLike | None = None,
+    progress: ProgressOption = None,
+) -> list[TrueError]:
+    """Simulate a problem on a fine mesh and give the true errors of histories of coarser ones against it.
+
+    It gives what `History.error` gives for each, without keeping the steps of the reference.
+
+    Parameters
+    ----------
+    histories : iterable of History
+        Simulations of the same problem on meshes that are nested in that of ``problem``.
+    problem : Problem
+        The reference.
+    end, courant, step, steps, progress
+        As for `simulate`.
+
+    Returns
+    -------
+    list of percute.TrueError
+
+    Raises
+    ------
+    InputError
+        An argument is wrong, the meshes are not nested, or the reference ends too early.
+    SimulationError
+        The reference is unstable.
+    """
+    coarse = [history._data for history in items("histories", histories, History)]
+    times = times_of(end, courant, step, steps)
+    with shown(progress) as tell:
+        found = _percute.errors_against_simulation(coarse, instance("problem", problem, Problem)._data, times, tell)
+    return true_errors_of(found)
+
+
+def absolute(file: str | os.PathLike[str] | None) -> str | None:
+    """Give a name that stays valid when the working directory changes."""
+    return None if file is None else os.path.abspath(file)
+
+
+@contextmanager
+def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
+    """Make a `History` of the data attached to an exception; None before the first step."""
+    try:
+        yield
+    except BaseException as error:
+        done = getattr(error, "history", None)
+        if isinstance(done, _percute.HistoryData):
+            done = History._of(done, problem)
+        elif isinstance(done, Path):
+            done = History._at(str(done), problem, encodable(str(done)))
+        if done is not None or not isinstance(error, PercuteError):
+            # An exception without room for attributes is raised unchanged.
+            with suppress(AttributeError):
+                error.history = done  # type: ignore[attr-defined]
+        raise
