@@ -12,6 +12,8 @@ pub mod dynamics;
 pub mod element_state;
 pub mod history;
 pub mod ids;
+#[cfg(debug_assertions)]
+mod instances;
 pub mod load;
 pub mod material;
 pub mod mesh;
@@ -23,4 +25,6 @@ mod simd;
 pub mod simplex;
 pub mod time;
 
+#[cfg(debug_assertions)]
+pub use instances::instances;
 pub use ratio::ratio;

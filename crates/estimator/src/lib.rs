@@ -18,6 +18,8 @@ mod estimate;
 mod field_lanes;
 mod increment;
 mod inertia;
+#[cfg(debug_assertions)]
+mod instances;
 mod kinematic;
 mod lanes;
 mod loaded;
@@ -44,6 +46,8 @@ mod wide;
 
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
+#[cfg(debug_assertions)]
+pub use instances::instances;
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};
 pub use pipeline::{Estimator, memory};
