@@ -251,6 +251,7 @@ def verification(
     levels: int,
     reconstruction: str,
     threads: int | None,
+    long: bool,
     tell: Callable[[str], object] | None,
     progress: _Tell,
 ) -> tuple[str, str]: ...

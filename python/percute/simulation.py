@@ -113,18 +113,33 @@ def simulate(
     file = None if store is None else vtkhdf("store", store)
     keep = kept(every, times, fields, file)
     replace = flag("overwrite", overwrite)
+    grid = instants_of(problem, end, courant, step, steps, longest, after, long, progress)
+    _percute.check_run(problem._data, grid, flag("long", long))
+    warn(_percute.plausibility_warnings(problem._data, grid, file is None))
+    with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
+        data = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
+    return History._of(data, problem, "" if file is None else encodable(file))
+
+
+def instants_of(
+    problem: Problem,
+    end: object,
+    courant: float | None,
+    step: float | None,
+    steps: ArrayLike | None,
+    longest: float | None,
+    after: float | None,
+    long: bool,
+    progress: ProgressOption,
+) -> _percute._Times:
+    """Check the end and the steps of a run; the end of one that ends with the rebound is looked for."""
     if end == "rebound":
         if longest is not None and steps is None:
             _percute.check_run(problem._data, times_of(longest, courant, step, steps), flag("long", long))
         end = _rebound_end(problem, times_of(None, courant, step, steps), longest, after, progress)
     elif longest is not None or after is not None:
         raise InputError('`longest` and `after` need end="rebound"; leave them out')
-    grid = times_of(end, courant, step, steps)
-    _percute.check_run(problem._data, grid, flag("long", long))
-    warn(_percute.plausibility_warnings(problem._data, grid, file is None))
-    with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
-        data = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
-    return History._of(data, problem, "" if file is None else encodable(file))
+    return times_of(end, courant, step, steps)
 
 
 def _rebound_end(problem: Problem, times: _percute._Times, longest: float | None, after: float | None, progress: ProgressOption) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,12 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, instance, text, whole
+from percute.checks import flag, instance, text, warn, whole
 from percute.errors import InputError
 from percute.estimating import pace
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
-from percute.simulation import times_of
+from percute.simulation import instants_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,13 +73,16 @@ class Verification:
     def __repr__(self) -> str:
         return f"<percute.Verification: {len(self.elements)} levels of {self.elements[0]} to {self.elements[-1]} elements>"
 
-    def plot(self, *, axes: Axes | None = None, save: str | os.PathLike[str] | None = None, overwrite: bool = False) -> Axes:
-        """Draw estimate and true error over the element size, both logarithmic.
+    def plot(self, *, axes: Sequence[Axes] | None = None, save: str | os.PathLike[str] | None = None, overwrite: bool = False) -> list[Axes]:
+        """Draw errors, effectivity index and contact over the element size.
+
+        Above are estimate and true error, in the middle their quotient, the effectivity index, with the range that the verdict expects for
+        the first mesh, and below peak force, impulse and rebound velocity over their values on the finest mesh.
 
         Parameters
         ----------
-        axes : matplotlib.axes.Axes, optional
-            Axes of the plot; new ones by default.
+        axes : sequence of three matplotlib.axes.Axes, optional
+            Axes of the plots; new ones by default.
         save : str or path, optional
             A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
         overwrite : bool, default: False
@@ -85,8 +90,8 @@ class Verification:
 
         Returns
         -------
-        matplotlib.axes.Axes
-            The axes of the plot.
+        list of matplotlib.axes.Axes
+            The axes of the three plots.
         """
         from percute.pictures import convergence
 
@@ -123,33 +128,37 @@ class Verification:
 def verify(
     problem: Problem,
     *,
-    end: float | None = None,
+    end: float | Literal["rebound"] | None = None,
     courant: float | None = None,
     step: float | None = None,
     steps: ArrayLike | None = None,
+    longest: float | None = None,
+    after: float | None = None,
     levels: int = 2,
     reconstruction: Literal["corrected", "consistent", "published"] = "corrected",
     threads: int | None = None,
+    long: bool = False,
     progress: ProgressOption = None,
 ) -> Verification:
     """Run a problem on its mesh and on nested refinements, and compare estimates with true errors against the finest.
 
     All meshes have the Courant number of the first. A level of a plane body has about eight times the work of the one before, of a bar
-    four times; the finest is simulated once more for the comparison, without storing its steps. With ``progress=True`` the cost is
-    printed before the work starts.
+    four times. With ``progress=True`` the cost is printed before the work starts.
 
     Parameters
     ----------
     problem : Problem
         The problem.
-    end, courant, step, steps
-        As for `simulate`.
+    end, courant, step, steps, longest, after
+        As for `simulate`; the rebound is that of the first mesh.
     levels : int, default: 2
         Number of refinements, 1 to 5.
     reconstruction : {"corrected", "consistent", "published"}, default: "corrected"
         As for `estimate`.
     threads : int, optional
         How many threads to use; one for each core by default.
+    long : bool, default: False
+        Whether more than 1e10 elements times steps in all are allowed, which take minutes to hours.
     progress : bool or callable, optional
         As for `simulate`.
 
@@ -165,12 +174,27 @@ def verify(
         A run failed.
     """
     instance("problem", problem, Problem)
-    times = times_of(end, courant, step, steps)
     count = whole("levels", levels)
     if count > _percute.MOST_LEVELS:
         raise InputError(f"`levels` is {count}; give 1 to {_percute.MOST_LEVELS} refinements")
-    named, (workers, _) = text("reconstruction", reconstruction), pace(threads, None)
+    named, (workers, _), allowed = text("reconstruction", reconstruction), pace(threads, None), flag("long", long)
+    times = instants_of(problem, end, courant, step, steps, longest, after, allowed, progress)
+    _percute.check_run(problem._data, times, allowed)
+    warn(_percute.plausibility_warnings(problem._data, times, False))
     tell = print if progress is True else None
-    with shown(progress) as seen:
-        document, table = _percute.verification(problem._data, times, count, named, workers, tell, seen)
+    with shown(progress) as seen, _verification_of_the_exception():
+        document, table = _percute.verification(problem._data, times, count, named, workers, allowed, tell, seen)
     return Verification._of(json.loads(document), table)
+
+
+@contextmanager
+def _verification_of_the_exception() -> Iterator[None]:
+    """Make a `Verification` of the levels attached to an exception; None before the first."""
+    try:
+        yield
+    except BaseException as error:
+        done = getattr(error, "verification", None)
+        # An exception without room for attributes is raised unchanged.
+        with suppress(AttributeError):
+            error.verification = None if done is None else Verification._of(json.loads(done[0]), done[1])  # type: ignore[attr-defined]
+        raise

@@ -41,8 +41,72 @@ def test_the_levels_are_those_of_separate_runs(tmp_path: Path) -> None:
     assert str(found).count("\n") >= 6 and found.moved is not None and found.fine_enough == (found.moved <= 0.1)
     (middle,) = pc.true_errors([history], refined(1), end=60e-6, courant=history_courant(history))
     assert found.moved == pytest.approx(abs(error.mean / middle.mean - 1.0), rel=1e-6)
-    found.plot(save=tmp_path / "convergence.svg")
+    errors, indices, contact = found.plot(save=tmp_path / "convergence.svg")
     assert (tmp_path / "convergence.svg").stat().st_size > 1000
+    assert [line.get_ydata()[0] for line in errors.lines] == [found.estimate_mean[0], found.error_mean[0], found.estimate_sup[0], found.error_sup[0]]
+    assert indices.lines[0].get_ydata()[0] == found.effectivity_mean[0]
+    shown = [found.peak_force, found.impulse, found.rebound]
+    assert [line.get_ydata()[0] for line in contact.lines[:3]] == pytest.approx([each[0] / each[-1] for each in shown], rel=1e-15)
+    with pytest.raises(pc.InputError, match="three axes"):
+        found.plot(axes=[errors, indices])
+
+
+def test_an_interrupt_keeps_the_levels_done() -> None:
+    """Stopped in the third run, it has what two levels give."""
+
+    class Stop(Exception):
+        verification: pc.Verification | None
+
+    runs = []
+
+    def tell(seen: pc.Progress) -> None:
+        if not runs or seen.done < runs[-1][1]:
+            runs.append((seen.total, 0))
+        runs[-1] = (seen.total, seen.done)
+        if seen.total > 3000:
+            raise Stop
+
+    problem = bar(16)
+    step = 0.02 * problem.critical_time_step
+    with pytest.raises(Stop) as stopped:
+        pc.verify(problem, end=60e-6, step=step, levels=2, progress=tell)
+    partial = stopped.value.verification
+    assert partial is not None and partial.elements.tolist() == [16, 32]
+    whole = pc.verify(problem, end=60e-6, step=step, levels=1)
+    assert partial.error_mean[0] == whole.error_mean[0] and partial.effectivity_sup[0] == whole.effectivity_sup[0]
+    assert "Interrupted: the finest level done is the reference." in str(partial)
+
+
+def test_the_rebound() -> None:
+    """All meshes have the end that the first needs."""
+    problem = bar(16)
+    end = pc.simulate(problem, end="rebound", courant=0.9, longest=1e-3).time[-1]
+    found, same = pc.verify(problem, end="rebound", courant=0.9, longest=1e-3, levels=1), pc.verify(problem, end=end, courant=0.9, levels=1)
+    assert found.estimate_mean.tolist() == same.estimate_mean.tolist() and np.isfinite(found.rebound).all()
+    with pytest.raises(pc.InputError, match="longest"):
+        pc.verify(problem, end="rebound", courant=0.9)
+    with pytest.raises(pc.InputError, match="leave them out"):
+        pc.verify(problem, end=1e-5, courant=0.9, longest=1.0)
+
+
+def test_no_error_has_no_index() -> None:
+    """A rigid flight: estimate and true error are roundings, and their quotient says nothing."""
+    mesh = pc.Mesh.bar(0.1, elements=4)
+    problem = pc.Problem(mesh, material=MATERIAL, initial_velocity=3.0)
+    found = pc.verify(problem, end=1e-5, courant=0.9, levels=2)
+    assert np.isnan(found.effectivity_mean).all() and "zero to rounding" in str(found)
+
+
+def test_much_work_must_be_asked_for() -> None:
+    """The fifth refinement of 16 bars has 4⁵ times the work of the first: 1365 times in all."""
+    with pytest.raises(pc.InputError, match="elements times steps in all.*`long=True`"):
+        pc.verify(bar(16), end=0.1, courant=0.9, levels=5)
+
+
+def test_a_single_refinement_does_not_judge() -> None:
+    """The true error lacks that of the reference, so the index is too large: no range is missed."""
+    told = str(pc.verify(bar(16), end=60e-6, courant=0.9, levels=1))
+    assert "outside" not in told and "with one, the index is too large" in told
 
 
 def refined(times: int) -> pc.Problem:
@@ -82,5 +146,18 @@ def test_the_command(tmp_path: Path) -> None:
     json_done = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--json", "--quiet", "--levels", "1"], capture_output=True, text=True, check=True)
     document = json.loads(json_done.stdout)
     assert json_done.stderr == "" and [level["elements"] for level in document["levels"]] == [100, 200]
+    picture = tmp_path / "convergence.svg"
+    subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--quiet", "--picture", str(picture)], check=True, capture_output=True)
+    for text in ("error (J", "effectivity index", "peak force", "rebound velocity", "1/4"):
+        assert text in picture.read_text(), text
+    again = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--quiet", "--picture", str(picture)], capture_output=True, text=True)
+    assert again.returncode == 2 and "--force" in again.stderr
+    document_file = tmp_path / "verification.json"
+    document_file.write_text(json_done.stdout)
+    plot = [sys.executable, "-m", "percute", "plot", "--kind", "convergence"]
+    subprocess.run([*plot, str(document_file), "--save", str(tmp_path / "plot.svg")], check=True, capture_output=True)
+    assert (tmp_path / "plot.svg").stat().st_size > 1000
+    wrong = subprocess.run([*plot, str(EXAMPLES / "bar.toml"), "--save", str(tmp_path / "other.svg")], capture_output=True, text=True)
+    assert wrong.returncode == 2 and "percute verify CASE --picture" in wrong.stderr
     refused = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--levels", "9"], capture_output=True, text=True)
     assert refused.returncode == 2 and "give 1 to 5 refinements" in refused.stderr

@@ -177,6 +177,15 @@ pub struct VerifyArguments {
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub json: bool,
+    /// Draw errors, effectivity index, force, impulse and rebound over the size of the elements (.svg, .png)
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// Replace an existing picture
+    #[arg(long)]
+    pub force: bool,
+    /// Allow more than 1e10 elements times steps in all, which take minutes to hours
+    #[arg(long)]
+    pub long: bool,
     /// Number of threads [default: one for each core]; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,

@@ -69,6 +69,14 @@ pub struct ErrorMeasures {
     pub reference_mean: f64,
 }
 
+impl ErrorMeasures {
+    /// Whether the error is zero to rounding, as in the flight of a rigid body: below 1e-9 of the fields.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        self.sup <= 1e-9 * self.reference_sup
+    }
+}
+
 /// Which fields of the motion the history brought of its own; the others follow by the scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Given {

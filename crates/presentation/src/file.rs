@@ -1,8 +1,7 @@
 //! The files of pictures and pages: checked before the work, written completely or not at all.
 
-use crate::body::Body;
-use crate::document::Document;
 use crate::page::Contents;
+use crate::png::rendered;
 use percute_io::{Overwrite, write_bytes};
 use percute_workflow::Failure;
 use percute_workflow::outputs::OutputFile;
@@ -48,22 +47,20 @@ pub fn page(output: &OutputFile<'_>) -> Result<(), Failure> {
     Err(Failure::Argument(format!("{what} {file}: the report is an HTML page; give a name that ends in .html")))
 }
 
-/// Draws the error of each element and writes the picture.
+/// Writes a picture that was drawn as an SVG document.
 ///
 /// # Errors
 /// A name of no known format; a file that exists and may not be replaced, or that cannot be written.
-pub fn write_picture(
-    output: &OutputFile<'_>,
-    overwrite: Overwrite,
-    body: &Body,
-    document: &Document,
-) -> Result<(), Failure> {
+pub fn write_picture(output: &OutputFile<'_>, overwrite: Overwrite, svg: &str) -> Result<(), Failure> {
     let failed = |cause: String| Failure::Unwritable { what: output.what, file: output.file.to_path_buf(), cause };
-    let bytes = match picture(output)? {
-        Format::Svg => crate::picture::svg(body, document).into_bytes(),
-        Format::Png => crate::picture::png(body, document).map_err(|error| failed(error.to_string()))?,
-    };
-    Ok(write_bytes(output.file, overwrite, &bytes)?)
+    match picture(output)? {
+        Format::Svg => write_bytes(output.file, overwrite, svg.as_bytes())?,
+        Format::Png => {
+            let pixels = rendered(svg).map_err(|error| failed(error.to_string()))?;
+            write_bytes(output.file, overwrite, &pixels)?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes the page of an estimate and gives its size (bytes).

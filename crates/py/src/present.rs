@@ -8,6 +8,7 @@ use percute_core::contact::ContactResults;
 use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_io::{Case, Overwrite, estimate_file};
+use percute_presentation::picture::svg;
 use percute_presentation::{Body, Contents, Document, Surface, file};
 use percute_workflow::Failure;
 use percute_workflow::case::statement;
@@ -52,7 +53,7 @@ impl Form {
         let Shown { body, document, statement, case, surface } = shown;
         let (output, overwrite) = (named(path), Overwrite::allowed(overwrite));
         if self == Self::Picture {
-            return file::write_picture(&output, overwrite, body, document);
+            return file::write_picture(&output, overwrite, &svg(body, document));
         }
         let contents = Contents { document, body, statement, case: case.as_ref(), surface: surface.as_ref() };
         file::write_page(&output, overwrite, &contents).map(drop)

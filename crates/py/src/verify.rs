@@ -7,10 +7,16 @@ use crate::{bridge, errors, time};
 use percute_core::each_dimension;
 use percute_estimator::Options;
 use percute_workflow::Failure;
+use percute_workflow::effort::Long;
 use percute_workflow::verify::{Verification, announced, cost, prepare, table, verify};
 use pyo3::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The JSON document and the table.
+type Told = (String, String);
 
 /// Runs a problem on its mesh and on refinements. Returns the JSON document and the table; with `tell` this is called with the cost first.
+/// What is raised on the way has those of the levels that are done as its `verification`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn verification(
@@ -20,23 +26,43 @@ pub(crate) fn verification(
     levels: usize,
     reconstruction: &str,
     threads: Option<usize>,
+    long: bool,
     tell: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(String, String)> {
+) -> PyResult<Told> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let options =
         Options { threads, ..options(py, reconstruction, None, &crate::options::Every::Name("auto".into()))? };
-    let verification: Verification = each_dimension!(&problem.problem, problem => {
-        let problem = problem.clone();
-        let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, levels))?;
+    let so_far: Arc<Mutex<Option<Verification>>> = Arc::default();
+    let verified = each_dimension!(&problem.problem, problem => {
+        let (problem, long) = (problem.clone(), Long::asked(long, "`long=True`"));
+        let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, levels, long))?;
         let prepared = prepared.map_err(|error| errors::failure(py, &error))?;
         if let Some(tell) = tell {
             tell.call1((announced(&cost(&prepared, &options)),))?;
         }
-        let work = move |mut watch: bridge::Watch| verify(&prepared, options, &mut watch);
-        bridge::blocking(py, progress, work)?.map_err(|error: Failure| errors::run(py, &error))?
+        let keep = so_far.clone();
+        let work = move |mut watch: bridge::Watch| {
+            let mut keep = |done: &Verification| *keep.lock().unwrap_or_else(PoisonError::into_inner) = Some(done.clone());
+            verify(&prepared, options, &mut watch, &mut keep)
+        };
+        let done = bridge::blocking(py, progress, work);
+        done.and_then(|done| done.map_err(|error: Failure| errors::run(py, &error)))
     });
+    match verified {
+        Ok(verification) => told(py, &verification),
+        Err(error) => {
+            if let Some(done) = so_far.lock().unwrap_or_else(PoisonError::into_inner).take() {
+                // One that takes no attributes is raised all the same.
+                let _ = error.value(py).setattr("verification", told(py, &done)?);
+            }
+            Err(error)
+        }
+    }
+}
+
+fn told(py: Python<'_>, verification: &Verification) -> PyResult<Told> {
     let document = verification.to_json().map_err(|error| errors::percute_error(py, &error.to_string()))?;
-    Ok((document, table(&verification)))
+    Ok((document, table(verification)))
 }

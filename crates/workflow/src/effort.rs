@@ -32,6 +32,14 @@ impl Long {
     pub fn asked(given: bool, way: &'static str) -> Self {
         if given { Self::Allowed } else { Self::Refused { way } }
     }
+
+    /// How it must be asked for; none if it was.
+    fn way(self) -> Option<&'static str> {
+        match self {
+            Self::Allowed => None,
+            Self::Refused { way } => Some(way),
+        }
+    }
 }
 
 /// The work of a run.
@@ -58,6 +66,31 @@ impl Effort {
         Self { elements, element_steps, simulation_seconds: seconds(SIMULATION), run_seconds: seconds(run) }
     }
 
+    /// That of the same run on its mesh and on `levels` refinements of it, with steps half as long each time.
+    #[must_use]
+    pub(crate) fn refined(&self, dimension: usize, levels: usize) -> Self {
+        let factor = (0..=levels).map(|k| 1 << ((dimension + 1) * k)).sum::<u64>();
+        let seconds = |of_one: f64| factor as f64 * of_one;
+        let [simulation_seconds, run_seconds] = [self.simulation_seconds, self.run_seconds].map(seconds);
+        Self {
+            elements: self.elements << (dimension * levels),
+            element_steps: self.element_steps.saturating_mul(factor),
+            simulation_seconds,
+            run_seconds,
+        }
+    }
+
+    /// What to say about a number of refinements that was not asked for.
+    #[must_use]
+    pub(crate) fn refusal_of_levels(&self, levels: usize, long: Long) -> Option<String> {
+        let way = long.way().filter(|_| self.is_long())?;
+        let (work, took, most) =
+            (short(self.element_steps as f64, 2), duration(self.run_seconds), short(MOST as f64, 1));
+        Some(format!(
+            "`levels` is {levels}, which makes {work} elements times steps in all, {took}; {way} allows more than {most}, or give fewer levels"
+        ))
+    }
+
     /// Whether the run must be asked for.
     #[must_use]
     pub fn is_long(&self) -> bool {
@@ -67,13 +100,7 @@ impl Effort {
     /// What to say about the end of a run that was not asked for; `estimated` if its error is estimated beside it.
     #[must_use]
     pub fn refusal(&self, times: &TimeGrid, estimated: bool, long: Long) -> Option<String> {
-        let way = match long {
-            Long::Allowed => return None,
-            Long::Refused { way } => way,
-        };
-        if !self.is_long() {
-            return None;
-        }
+        let way = long.way().filter(|_| self.is_long())?;
         let (steps, elements, end) = (times.step_count(), self.elements, trimmed(times.end(), 4));
         let (seconds, what) = match estimated {
             true => (self.run_seconds, "simulation and estimate"),

@@ -43,6 +43,7 @@ pub struct Results<const D: usize> {
 }
 
 /// The places of the history of a run; each is optional.
+#[derive(Default)]
 pub struct Storage<'s, const D: usize> {
     /// A file.
     pub file: Option<Writer<D>>,
@@ -124,13 +125,24 @@ pub fn run<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
 ) -> Result<Results<D>, Failure> {
-    let ordered = Ordered::new(problem);
+    beside(&Ordered::new(problem), times, analysis, storage, &mut Discard, observer)
+}
+
+/// Does the same for a problem in its order, and hands each state to `sink`, too.
+pub(crate) fn beside<const D: usize, const N: usize>(
+    ordered: &Ordered<'_, D, N>,
+    times: &TimeGrid,
+    analysis: &Analysis,
+    storage: Storage<'_, D>,
+    sink: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Results<D>, Failure> {
     let mut contact = analysis.recorder(ordered.problem(), times)?;
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?;
-    let simulation =
-        drive(&ordered, times, analysis.options.threads, storage, &mut (&mut estimator, &mut contact), observer)?;
+    let mut sinks = ((&mut estimator, &mut contact), sink);
+    let simulation = drive(ordered, times, analysis.options.threads, storage, &mut sinks, observer)?;
     let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
     Ok(Results { simulation, estimate, contact: ordered.contact(contact.finish()) })
 }

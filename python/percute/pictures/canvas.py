@@ -96,6 +96,17 @@ def writable(name: str, file: object, overwrite: object, endings: tuple[str, ...
 
 
 @contextmanager
+def reading(file: str) -> Iterator[None]:
+    """Name the file of an error of the system."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise MissingFileError(f"there is no file {file!r}") from None
+    except OSError as error:
+        raise StorageError(f"cannot read {file!r}: {error.strerror}") from error
+
+
+@contextmanager
 def writing(path: str) -> Iterator[None]:
     """Name the file of an error of the system."""
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import signal
 import sys
 import warnings
@@ -19,6 +20,7 @@ from percute.history import History
 from percute.pictures import animation, canvas
 from percute.pictures.fields import MOTION, SCALARS, STRESSES
 from percute.progress import shown
+from percute.verifying import Verification
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -31,6 +33,7 @@ KINDS = {
     "pressure": "the contact pressure along the surface over time",
     "field": "a field on the deformed body",
     "animation": "a field on the moving body (.gif or .mp4)",
+    "convergence": "the document of `percute verify --json`: errors and contact over the element size",
 }
 OPTIONS = {"quantity": ("field", "animation"), "step": ("field",), "scale": ("map", "field", "animation"), "plane": ("pressure",), "frames": ("animation",)}
 """Options that belong to some kinds only."""
@@ -41,11 +44,11 @@ WORDS = {"`save`": "--save", "`path`": "--save", "overwrite=True": "--force", "f
 
 def _parser() -> argparse.ArgumentParser:
     text = "Draw a picture: the same as from Python. A history is estimated first if the picture shows the error; a case is run."
-    kinds = "\n".join(f"  {name:10} {told}" for name, told in KINDS.items())
+    kinds = "\n".join(f"  {name:11} {told}" for name, told in KINDS.items())
     parser = argparse.ArgumentParser(
         "percute plot", description=text, epilog=f"kinds:\n{kinds}", allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("file", type=Path, metavar="FILE", help="a history, an estimate file or a case")
+    parser.add_argument("file", type=Path, metavar="FILE", help="a history, an estimate file or a case; for --kind convergence a document of `percute verify --json`")
     parser.add_argument("--kind", choices=list(KINDS), default="map", metavar="KIND", help="what is drawn, see below [default: map]")
     parser.add_argument("--save", type=Path, metavar="FILE", help="the picture (.svg, .png or .pdf) [default: FILE-KIND.png in this folder]")
     quantities = [*MOTION, *SCALARS, "stress", *STRESSES]
@@ -63,17 +66,25 @@ def _parser() -> argparse.ArgumentParser:
 def _subject(given: argparse.Namespace, tell: Any) -> History | Estimate:
     """Read or compute the subject of a picture."""
     file: Path = given.file
-    try:
-        with file.open("rb") as stream:
-            binary = stream.read(8) == b"\x89HDF\r\n\x1a\n"
-    except FileNotFoundError:
-        raise MissingFileError(f"there is no file {str(file)!r}") from None
-    except OSError as reason:
-        raise StorageError(f"cannot read {str(file)!r}: {reason.strerror}") from None
+    with canvas.reading(str(file)), file.open("rb") as stream:
+        binary = stream.read(8) == b"\x89HDF\r\n\x1a\n"
     found = open_file(file) if binary else run(file, overwrite=given.force, progress=tell)
     if isinstance(found, History):
         return estimate(found, force=given.accept_inconsistent, progress=tell) if given.kind in OF_THE_ERROR else found
     return found
+
+
+def _verification(file: Path) -> Verification:
+    """Read the document of `percute verify --json`."""
+    with canvas.reading(str(file)):
+        content = file.read_bytes()
+    try:
+        return Verification._of(json.loads(content), "")
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+        raise InputError(
+            f"{str(file)!r} is not the document of `percute verify CASE --json`, which this picture shows; "
+            "`percute verify CASE --picture FILE` runs a case and draws it"
+        ) from None
 
 
 def _history(subject: History | Estimate) -> History:
@@ -130,7 +141,10 @@ def main(arguments: Sequence[str]) -> int:
         with warnings.catch_warnings(), shown(not given.quiet) as tell:
             warnings.simplefilter("ignore" if given.quiet else "always")
             warnings.showwarning = lambda message, *_, **__: print(f"warning: {message}", file=sys.stderr)
-            draw(_subject(given, tell), given, save, tell)
+            if given.kind == "convergence":
+                _verification(given.file).plot(save=save, overwrite=given.force)
+            else:
+                draw(_subject(given, tell), given, save, tell)
     except KeyboardInterrupt:
         print("interrupted: no picture", file=sys.stderr)
         return INTERRUPTED

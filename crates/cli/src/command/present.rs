@@ -4,6 +4,7 @@ use super::Console;
 use super::outputs::{page, picture, taken};
 use crate::args::{PrintArguments, WorkArguments};
 use percute_io::{Case, Overwrite};
+use percute_presentation::picture::svg;
 use percute_presentation::{Body, Contents, Document, Surface, file};
 use percute_workflow::Failure;
 use percute_workflow::message::bytes;
@@ -27,7 +28,7 @@ pub(super) fn present(
     let Shown { body, document, statement, case, surface } = shown;
     let overwrite = Overwrite::allowed(work.force);
     if let Some(output) = picture(print) {
-        file::write_picture(&output, overwrite, body, document).map_err(refused)?;
+        file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused)?;
     }
     if let Some(output) = page(print) {
         let contents = Contents { document, body, statement, case: *case, surface: surface.as_ref() };
@@ -40,7 +41,7 @@ pub(super) fn present(
 }
 
 /// A file that appeared since it was checked.
-fn refused(failure: Failure) -> Failure {
+pub(super) fn refused(failure: Failure) -> Failure {
     match failure {
         Failure::File(error) => taken(error),
         other => other,

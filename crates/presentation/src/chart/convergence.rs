@@ -1,84 +1,140 @@
-//! Errors over the size of the elements.
+//! A verification over the size of the elements.
 
 use super::{ROOM, SIZE, legend};
 use crate::axes::{Look, Plot};
-use crate::scale::{Scale, prefixed};
-use crate::svg::Svg;
+use crate::scale::Scale;
+use crate::svg::{Anchor, Svg};
+use percute_workflow::verify::{Level, Verification};
 
-/// A run of a series on finer and finer meshes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
-    /// Size of the elements (m).
-    pub size: f64,
-    /// Estimated error (J^½).
-    pub estimate: f64,
-    /// True error (J^½), if it is known.
-    pub error: Option<f64>,
-}
+/// Height of a plot, and distance of two (pixels).
+const HEIGHT: f64 = 190.0;
+const DISTANCE: f64 = 100.0;
 
-/// Estimated and true error over the size of the elements, and below them their quotient, the effectivity index, on
-/// logarithmic axes, as an SVG document. None without two sizes or without a positive error.
+/// A quantity of a level, with its name.
+type Quantity = (&'static str, fn(&Level) -> Option<f64>);
+
+const ERRORS: [Quantity; 4] = [
+    ("estimate, mean", |level| Some(level.estimate.mean)),
+    ("true error, mean", |level| level.error.map(|error| error.mean)),
+    ("estimate, sup", |level| Some(level.estimate.sup)),
+    ("true error, sup", |level| level.error.map(|error| error.sup)),
+];
+const INDICES: [Quantity; 2] = [
+    ("effectivity index of the mean", |level| level.effectivity.map(|index| index.mean)),
+    ("of the sup", |level| level.effectivity.map(|index| index.sup)),
+];
+const CONTACT: [Quantity; 3] = [
+    ("peak force", |level| level.peak_force),
+    ("impulse", |level| level.impulse),
+    ("rebound velocity", |level| level.rebound),
+];
+
+/// Estimate and true error, effectivity index, and peak force, impulse and rebound velocity over their values on the finest mesh, all
+/// over the size of the elements, as an SVG document. The range of the index that the verdict expects is shaded. None with fewer
+/// than two meshes or without an error.
 #[must_use]
-pub fn convergence(levels: &[Level]) -> Option<String> {
-    let sizes = || levels.iter().map(|level| level.size).filter(|size| *size > 0.0);
-    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-    let errors: Vec<f64> = levels.iter().flat_map(|l| [Some(l.estimate), l.error]).flatten().collect();
-    let y = around(&errors, 1.25)?;
-    if least >= most {
-        return None;
+pub fn convergence(verification: &Verification) -> Option<String> {
+    let levels = &verification.levels;
+    let errors = lines(levels, &ERRORS, 1.0);
+    let y = around(&errors, 1.25).filter(|_| levels.len() > 1)?;
+    let mut charts = vec![Chart { lines: errors, label: "error (J^½)", y, band: None, one: false }];
+    let (indices, band) = (lines(levels, &INDICES, 1.0), levels[0].expected);
+    let shown: Vec<f64> = indices.iter().flat_map(|line| &line.points).map(|point| point.1).chain(band).collect();
+    if indices.iter().any(|line| !line.points.is_empty()) {
+        let y = padded(&shown);
+        charts.push(Chart { lines: indices, label: "effectivity index", y, band: Some(band), one: true });
     }
-    let (factor, unit) = prefixed("m", most);
-    let x = Scale::logarithmic(least * factor / 1.15, most * factor * 1.15);
-    let mut svg = Svg::new([SIZE[0], SIZE[1] + 210.0]);
-    let label = format!("h ({unit})");
-    let upper = Plot { corner: [ROOM[0], ROOM[1]], size: [SIZE[0] - ROOM[0] - ROOM[2], 216.0], x, y };
-    upper.axes(&mut svg, &Look { x: &label, y: "error (J^½)", marks: [8, 6], grid: [true; 2] });
-    let points = |value: fn(&Level) -> Option<f64>| {
-        let all = levels.iter().filter_map(move |level| Some((level.size * factor, value(level)?)));
-        all.filter(|(size, value)| *size > 0.0 && *value > 0.0).collect::<Vec<_>>()
-    };
-    draw(&mut svg, &upper, "s0", &points(|level| Some(level.estimate)));
-    draw(&mut svg, &upper, "s1", &points(|level| level.error));
-    legend(&mut svg, &["estimate", "true error"]);
-    let indices = points(|level| Some(level.estimate / level.error?));
-    let values: Vec<f64> = indices.iter().map(|(_, index)| *index).chain([1.0]).collect();
-    if let Some(y) = around(&values, 1.2).filter(|_| !indices.is_empty()) {
-        let lower = Plot { corner: [ROOM[0], SIZE[1] + 14.0], size: [upper.size[0], 146.0], x, y };
-        lower.axes(&mut svg, &Look { x: &label, y: "effectivity index", marks: [8, 5], grid: [true; 2] });
-        svg.line("now", lower.at(x.low, 1.0), lower.at(x.high, 1.0));
-        draw(&mut svg, &lower, "s5", &indices);
+    let contact = over_the_finest(levels);
+    let shown: Vec<f64> = contact.iter().flat_map(|line| &line.points).map(|point| point.1).collect();
+    if !shown.is_empty() {
+        charts.push(Chart { lines: contact, label: "over the finest", y: padded(&shown), band: None, one: true });
+    }
+    let count = charts.len() as f64;
+    let mut svg = Svg::new([SIZE[0], ROOM[1] + ROOM[3] + count * HEIGHT + (count - 1.0) * DISTANCE]);
+    for (k, chart) in charts.iter().enumerate() {
+        chart.draw(&mut svg, ROOM[1] + k as f64 * (HEIGHT + DISTANCE), levels.len());
     }
     Some(svg.alone())
 }
 
-/// A logarithmic scale with room on both sides of positive values.
-fn around(values: &[f64], room: f64) -> Option<Scale> {
-    let positive = || values.iter().copied().filter(|v| *v > 0.0 && v.is_finite());
-    let (low, high) = (positive().reduce(f64::min)?, positive().reduce(f64::max)?);
-    Some(Scale::logarithmic(low / room, high * room))
+/// A quantity at the levels that have it: element size over that of the first mesh, and value.
+struct Line {
+    name: &'static str,
+    points: Vec<(f64, f64)>,
 }
 
-fn draw(svg: &mut Svg, plot: &Plot, class: &str, points: &[(f64, f64)]) {
-    let places: Vec<_> = points.iter().map(|&(x, y)| plot.at(x, y)).collect();
-    places.iter().for_each(|&at| svg.circle(class, at, 3.5));
-    svg.polyline(class, places);
+/// One of the plots, with its scale and a range that is shaded.
+struct Chart {
+    lines: Vec<Line>,
+    label: &'static str,
+    y: Scale,
+    band: Option<[f64; 2]>,
+    /// Whether a line marks the value 1.
+    one: bool,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_and_their_quotient_are_drawn() {
-        let level = |size: f64, error| Level { size, estimate: 30.0 * size.sqrt(), error };
-        let levels = [level(4e-3, Some(1.5)), level(2e-3, Some(1.1)), level(1e-3, None)];
-        let svg = convergence(&levels).unwrap();
-        // Three estimates, two true errors, two quotients.
-        assert_eq!(svg.matches("<circle").count(), 7);
-        for word in ["h (mm)", "effectivity index", "true error"] {
-            assert!(svg.contains(word), "{word}");
+impl Chart {
+    fn draw(&self, svg: &mut Svg, top: f64, levels: usize) {
+        let x = Scale::logarithmic(size(levels - 1) / 1.1, 1.1);
+        let plot = Plot { corner: [ROOM[0], top], size: [SIZE[0] - ROOM[0] - ROOM[2], HEIGHT], x, y: self.y };
+        if let Some([low, high]) = self.band {
+            svg.rectangle("class=\"area\"", plot.at(x.low, low), plot.at(x.high, high));
         }
-        assert_eq!(convergence(&levels[..1]), None);
-        assert_eq!(convergence(&[level(1e-3, None), level(2e-3, None)].map(|l| Level { estimate: 0.0, ..l })), None);
+        let label = "element size over that of the first mesh";
+        plot.axes(svg, &Look { x: label, y: self.label, marks: [0, 5], grid: [true; 2] });
+        for k in 0..levels {
+            let ([at, bottom], name) = (plot.at(size(k), self.y.low), fraction(k));
+            svg.line("axis", [at, bottom], [at, bottom + 5.0]);
+            svg.text("label", [at, bottom + 18.0], Anchor::Middle, false, &name);
+        }
+        if self.one {
+            svg.line("now", plot.at(x.low, 1.0), plot.at(x.high, 1.0));
+        }
+        for (k, line) in self.lines.iter().enumerate() {
+            let (class, places) = (format!("s{k}"), line.points.iter().map(|&(x, y)| plot.at(x, y)));
+            let places: Vec<_> = places.collect();
+            places.iter().for_each(|&at| svg.circle(&class, at, 3.5));
+            svg.polyline(&class, places);
+        }
+        let names: Vec<_> = self.lines.iter().map(|line| line.name).collect();
+        legend(svg, top - ROOM[1], &names);
     }
+}
+
+/// Element size of a level over that of the first mesh.
+fn size(level: usize) -> f64 {
+    0.5_f64.powi(level as i32)
+}
+
+fn fraction(level: usize) -> String {
+    if level == 0 { "1".to_string() } else { format!("1/{}", 1 << level) }
+}
+
+/// The lines of quantities; values that are not positive have no place on a logarithmic scale.
+fn lines(levels: &[Level], quantities: &[Quantity], scale: f64) -> Vec<Line> {
+    let points = |of: fn(&Level) -> Option<f64>| {
+        let all = levels.iter().enumerate().filter_map(move |(k, level)| Some((size(k), of(level)? / scale)));
+        all.filter(|(_, value)| *value > 0.0 && value.is_finite()).collect()
+    };
+    quantities.iter().map(|&(name, of)| Line { name, points: points(of) }).collect()
+}
+
+/// The lines of contact, each over its value on the finest mesh; those without one are left out.
+fn over_the_finest(levels: &[Level]) -> Vec<Line> {
+    let finest = |of: fn(&Level) -> Option<f64>| levels.last().and_then(of).filter(|value| *value != 0.0);
+    let line = |quantity: &Quantity| Some(lines(levels, &[*quantity], finest(quantity.1)?).remove(0));
+    CONTACT.iter().filter_map(line).collect()
+}
+
+/// A logarithmic scale with room on both sides of the values; none without values.
+fn around(lines: &[Line], room: f64) -> Option<Scale> {
+    let values = || lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+    Some(Scale::logarithmic(values().reduce(f64::min)? / room, values().reduce(f64::max)? * room))
+}
+
+/// A linear scale around values and 1.
+fn padded(values: &[f64]) -> Scale {
+    let (low, high) = values.iter().fold((1.0_f64, 1.0_f64), |(low, high), &v| (low.min(v), high.max(v)));
+    let room = 0.1 * (high - low).max(0.05);
+    Scale::linear(low - room, high + room)
 }

@@ -5,7 +5,7 @@ mod over_time;
 mod space_time;
 mod surface;
 
-pub use convergence::{Level, convergence};
+pub use convergence::convergence;
 pub(crate) use over_time::{Line, OverTime};
 pub(crate) use space_time::space_time;
 pub use surface::Surface;
@@ -24,15 +24,15 @@ fn plot(x: Scale, y: Scale) -> Plot {
     Plot { corner: [left, top], size: [SIZE[0] - left - right, SIZE[1] - top - below], x, y }
 }
 
-/// Draws names beside samples of their lines, in a row above the plot.
-fn legend(svg: &mut Svg, names: &[&str]) {
+/// Draws names beside samples of their lines, in a row above the plot; `top` is that of its room.
+fn legend(svg: &mut Svg, top: f64, names: &[&str]) {
     /// Mean width of a letter, length of a sample, gaps (pixels).
     const LETTER: f64 = 6.9;
     const SAMPLE: f64 = 26.0;
     let mut x = ROOM[0];
     for (k, name) in names.iter().enumerate() {
-        svg.line(&format!("s{k}"), [x, 12.0], [x + SAMPLE, 12.0]);
-        svg.text("label", [x + SAMPLE + 6.0, 16.5], Anchor::Start, false, name);
+        svg.line(&format!("s{k}"), [x, top + 12.0], [x + SAMPLE, top + 12.0]);
+        svg.text("label", [x + SAMPLE + 6.0, top + 16.5], Anchor::Start, false, name);
         x += SAMPLE + 6.0 + LETTER * name.chars().count() as f64 + 18.0;
     }
 }

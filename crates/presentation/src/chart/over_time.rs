@@ -61,7 +61,7 @@ impl OverTime<'_> {
             svg.polyline(&format!("s{k}"), points);
         }
         if self.lines.len() > 1 {
-            legend(&mut svg, &self.lines.iter().take(LINES).map(|line| line.name).collect::<Vec<_>>());
+            legend(&mut svg, 0.0, &self.lines.iter().take(LINES).map(|line| line.name).collect::<Vec<_>>());
         }
         Some(svg)
     }

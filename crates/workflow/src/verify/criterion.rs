@@ -19,10 +19,11 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// From the mean true errors (J^½) of the first mesh against the finest mesh but one, and the finest.
-    pub(super) fn new(before: f64, now: f64) -> Self {
+    /// From the mean true errors (J^½) of the first mesh against finer and finer ones; none with fewer than two, or without an error.
+    pub(super) fn last(errors: &[f64]) -> Option<Self> {
+        let [.., before, now] = errors else { return None };
         let moved = (now / before - 1.0).abs();
-        Self { moved, fine_enough: moved <= LARGEST_MOVE }
+        (*before > 0.0 && *now > 0.0).then_some(Self { moved, fine_enough: moved <= LARGEST_MOVE })
     }
 }
 
@@ -38,8 +39,12 @@ mod tests {
 
     #[test]
     fn a_reference_settles_within_a_tenth() {
-        assert!(Settled::new(1.0, 1.09).fine_enough && Settled::new(1.0, 0.91).fine_enough);
-        assert!(!Settled::new(1.0, 1.11).fine_enough && !Settled::new(0.0, 1.0).fine_enough);
+        let fine_enough = |errors: &[f64]| Settled::last(errors).map(|settled| settled.fine_enough);
+        assert_eq!([[9.0, 1.0, 1.09], [9.0, 1.0, 0.91]].map(|errors| fine_enough(&errors)), [Some(true); 2]);
+        assert_eq!(fine_enough(&[9.0, 1.0, 1.11]), Some(false));
+        for none in [&[][..], &[1.0], &[0.0, 1.0], &[0.0, 0.0]] {
+            assert_eq!(fine_enough(none), None);
+        }
     }
 
     #[test]

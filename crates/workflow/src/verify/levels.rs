@@ -22,7 +22,7 @@ pub struct Level {
     pub relative: Measures,
     /// True error against the finest mesh (J^½); none for that itself.
     pub error: Option<Measures>,
-    /// Estimate over true error.
+    /// Estimate over true error; none where that is zero.
     pub effectivity: Option<Measures>,
     /// Range of this index that the verdict states.
     pub expected: [f64; 2],
@@ -32,6 +32,9 @@ pub struct Level {
     pub impulse: Option<f64>,
     /// Normal velocity of the centre of mass after contact (m/s); none if contact has not ended.
     pub rebound: Option<f64>,
+    /// Whether the estimate is zero to rounding.
+    #[serde(skip)]
+    pub(super) exact: bool,
 }
 
 /// The largest error and the mean.
@@ -59,11 +62,11 @@ pub struct Orders {
 /// A problem on nested meshes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Verification {
-    /// From the mesh of the problem to the finest.
+    /// From the mesh of the problem to the finest that was done.
     pub levels: Vec<Level>,
     /// Orders of convergence.
     pub orders: Orders,
-    /// Whether the finest mesh is fine enough; none with fewer than two refinements.
+    /// Whether the finest mesh is fine enough; none with fewer than two refinements, or without an error.
     pub settled: Option<Settled>,
     /// Whether the work was stopped before all levels were done.
     pub interrupted: bool,
@@ -74,7 +77,7 @@ pub struct Verification {
 pub struct Cost {
     /// One for each level.
     pub levels: Vec<Work>,
-    /// Memory of the steps that are kept, and of the largest run (bytes).
+    /// Memory of the motions that are kept, and of the largest run (bytes).
     pub bytes: u64,
     /// About how many times the work of the first level.
     pub times_the_first: f64,
@@ -113,8 +116,8 @@ impl Work {
 
 impl Cost {
     pub(super) fn new(levels: Vec<Work>) -> Self {
-        // The motions that are compared: displacement and velocity of each step, beside the steps themselves.
-        let kept: u64 = levels.iter().rev().skip(1).map(|level| 3 * level.history).sum();
+        // Displacement and velocity of each step, of all but the finest.
+        let kept: u64 = levels.iter().rev().skip(1).map(|level| 2 * level.history).sum();
         let bytes = kept + levels.iter().map(|level| level.run).max().unwrap_or(0);
         let work: f64 = levels.iter().map(Work::element_steps).sum();
         let times_the_first = levels.first().map_or(0.0, |first| work / first.element_steps());
@@ -139,14 +142,16 @@ impl Level {
             peak_force: contact.map(|contact| contact.peak_normal_force),
             impulse: contact.map(|contact| contact.obstacles.iter().zip(&report.problem.obstacles).map(impulse).sum()),
             rebound: report.rebound.as_ref().and_then(|rebound| rebound.normal_after),
+            exact: e.is_zero(),
         }
     }
 
     pub(super) fn compare(&mut self, error: &TrueError) {
-        let over = |estimate: f64, error: f64| if error > 0.0 { estimate / error } else { f64::NAN };
         let Measures { sup, mean } = self.estimate;
         self.error = Some(Measures { sup: error.sup, mean: error.mean });
-        self.effectivity = Some(Measures { sup: over(sup, error.sup), mean: over(mean, error.mean) });
+        // The quotient of two roundings says nothing.
+        let quotient = Measures { sup: sup / error.sup, mean: mean / error.mean };
+        self.effectivity = (!self.exact && error.mean > 0.0).then_some(quotient);
     }
 }
 

@@ -1,7 +1,7 @@
 //! A problem on its mesh and on nested refinements of it: estimates beside true errors against the finest.
 //!
-//! All meshes have the Courant number of the first. The finest is simulated twice: with its estimate, and beside the comparison, which
-//! does not store its steps.
+//! All meshes have the Courant number of the first. Each run is compared with all coarser ones as it goes, so that each is simulated
+//! once and a verification is complete after each mesh.
 
 mod criterion;
 mod levels;
@@ -12,16 +12,18 @@ pub use levels::{Cost, Level, Orders, Verification};
 pub use table::{announced, table};
 
 use crate::case::{Source, problem_from, statement};
+use crate::effort::{Effort, Long};
 use crate::failure::Failure;
+use crate::numbering::Ordered;
 use crate::report::{Report, Subject};
-use crate::run::{Analysis, Results, Storage, TakeStep, run, true_errors};
+use crate::run::{Analysis, Results, Storage, beside};
 use percute_core::dynamics::critical_time_step;
-use percute_core::history::{History, Step};
+use percute_core::history::StateSink;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::Options;
-use std::ops::ControlFlow;
+use percute_estimator::reference::{Comparison, Motion};
+use percute_estimator::{EstimateError, Options, RunError, Sampling};
 
 /// The most refinements: each has eight times the work of the one before.
 pub const MOST_LEVELS: usize = 5;
@@ -37,14 +39,18 @@ pub struct Prepared<const D: usize, const N: usize> {
 /// The problem on its mesh and on `levels` refinements.
 ///
 /// # Errors
-/// A number of refinements out of range, a problem that the case language cannot say, a mesh that cannot be refined.
+/// A number of refinements out of range or with much work that was not asked for, a problem that the case language cannot say, a mesh that cannot be refined.
 pub fn prepare<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     levels: usize,
+    long: Long,
 ) -> Result<Vec<Prepared<D, N>>, Failure> {
     if !(1..=MOST_LEVELS).contains(&levels) {
         return Err(Failure::Argument(format!("`levels` is {levels}; give 1 to {MOST_LEVELS} refinements")));
+    }
+    if let Some(told) = Effort::of(problem, times, Sampling::Auto).refined(D, levels).refusal_of_levels(levels, long) {
+        return Err(Failure::Argument(told));
     }
     let stated = Source::new("the refined problem", statement(problem, None)?);
     let critical_step = critical_time_step(problem);
@@ -71,85 +77,62 @@ pub fn cost<const D: usize, const N: usize>(prepared: &[Prepared<D, N>], options
     Cost::new(prepared.iter().map(|each| levels::Work::new(&each.problem, &each.times, options)).collect())
 }
 
-/// Runs all meshes and compares them with the finest. If the observer breaks, the levels done remain, and the finest of them is the
-/// reference.
+/// Runs all meshes and compares each with all coarser ones. After each, `done` gets the verification so far, in which the mesh is the
+/// reference. If the observer breaks, the levels done remain.
 ///
 /// # Errors
-/// As [`run`] and [`true_errors`].
+/// As [`run`](crate::run::run) and [`true_errors`](crate::run::true_errors).
 pub fn verify<const D: usize, const N: usize>(
     prepared: &[Prepared<D, N>],
     options: Options,
     observer: &mut dyn Observer,
+    done: &mut dyn FnMut(&Verification),
 ) -> Result<Verification, Failure> {
-    let (mut levels, mut histories) = (Vec::new(), Vec::new());
-    let mut stopped = false;
-    for (k, each) in prepared.iter().enumerate() {
-        let Prepared { problem, times, .. } = each;
-        // The steps of the finest are not kept.
-        let mut history = (k + 1 < prepared.len()).then(|| History::new(times));
-        let mut keep = history.as_mut().map(|history| |step: &Step<'_, D>| history.push(step));
-        let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
-        let analysis = Analysis { options, ..Analysis::default() };
-        let results = run(problem, times, &analysis, Storage { file: None, memory, open: None }, observer);
-        let results = match results {
-            Err(_) if stopped_now(observer) && !levels.is_empty() => {
-                stopped = true;
-                break;
-            }
-            other => other?,
-        };
-        if results.simulation.interrupted || results.estimate.steps < times.step_count() {
-            stopped = true;
-            break;
+    let ordered: Vec<_> = prepared.iter().map(|each| Ordered::new(&each.problem)).collect();
+    let (mut levels, mut motions, mut first_errors) = (Vec::<Level>::new(), Vec::new(), Vec::new());
+    let so_far = |levels: &[Level], first_errors: &[f64]| {
+        Verification::new(levels.to_vec(), Settled::last(first_errors), levels.len() < prepared.len())
+    };
+    for (each, problem) in prepared.iter().zip(&ordered) {
+        let mut comparison = Comparison::new(problem.problem());
+        for (coarse, motion) in ordered.iter().zip(&motions) {
+            comparison.add(coarse.problem(), motion).map_err(|error| problem.failure(error.into()))?;
         }
+        // Nothing is compared with the motion of the finest.
+        let mut motion = (motions.len() + 1 < prepared.len()).then(Motion::default);
+        let Some(results) = each.run(problem, options, &mut (&mut comparison, &mut motion), observer)? else { break };
+        let errors = comparison.finish()?;
+        levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
         levels.push(each.level(options, &results));
-        histories.extend(history);
+        first_errors.extend(errors.first().map(|error| error.mean));
+        motions.extend(motion);
+        done(&so_far(&levels, &first_errors));
     }
-    let finest = levels.len().saturating_sub(1);
-    let mut compared = compare(prepared, &mut levels, &histories, finest, observer);
-    if compared.is_err() && stopped_now(observer) {
-        stopped = true;
-        compared = compare(prepared, &mut levels, &histories, finest.saturating_sub(1), observer);
-    }
-    Ok(Verification::new(levels, compared?, stopped))
+    Ok(so_far(&levels, &first_errors))
 }
 
 impl<const D: usize, const N: usize> Prepared<D, N> {
+    /// The results; none if the observer broke.
+    fn run(
+        &self,
+        ordered: &Ordered<'_, D, N>,
+        options: Options,
+        sink: &mut dyn StateSink<D>,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Results<D>>, Failure> {
+        let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
+        match beside(ordered, &self.times, &analysis, nowhere, sink, observer) {
+            Ok(results) => Ok(Some(results).filter(|results| !results.simulation.interrupted)),
+            // Nothing can be estimated of a run that was stopped at its start.
+            Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. }))) => Ok(None),
+            Err(other) => Err(other),
+        }
+    }
+
     fn level(&self, options: Options, results: &Results<D>) -> Level {
         let Self { problem, times, critical_step } = self;
         let subject = Subject { name: "", problem, times, critical_step: *critical_step, held: None, checked: None };
         let Results { simulation, estimate, contact } = results;
         Level::new(&Report::new(&subject, options, simulation, estimate, contact, 0.0))
     }
-}
-
-/// Sets the true errors of all levels but the finest. Returns whether this is fine enough, if there are two refinements.
-fn compare<const D: usize, const N: usize>(
-    prepared: &[Prepared<D, N>],
-    levels: &mut [Level],
-    histories: &[History<D>],
-    finest: usize,
-    observer: &mut dyn Observer,
-) -> Result<Option<Settled>, Failure> {
-    if finest == 0 {
-        return Ok(None);
-    }
-    let runs: Vec<_> = prepared.iter().zip(histories).take(finest).map(|(p, h)| (&p.problem, h as _)).collect();
-    let Prepared { problem, times, .. } = &prepared[finest];
-    // A finest level whose steps are there, after a stop, is not simulated again.
-    let kept = histories.get(finest).map(|history| history as _);
-    let errors = true_errors(&runs, (problem, times), kept, observer)?;
-    levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
-    if finest == 1 {
-        return Ok(None);
-    }
-    let Prepared { problem, times, .. } = &prepared[finest - 1];
-    let before = true_errors(&runs[..1], (problem, times), Some(&histories[finest - 1]), observer)?;
-    Ok(before.first().zip(errors.first()).map(|(before, now)| Settled::new(before.mean, now.mean)))
-}
-
-/// Whether the observer still asks for a stop.
-fn stopped_now(observer: &mut dyn Observer) -> bool {
-    let progress = percute_core::observer::Progress { stage: "stopping", done: 0, total: 1 };
-    observer.observe(progress) == ControlFlow::Break(())
 }

@@ -1,5 +1,6 @@
 //! A verification in lines of 80 columns.
 
+use super::criterion::Settled;
 use super::levels::{Cost, Level, Orders, Verification};
 use crate::message::{bytes, counted, short, trimmed};
 
@@ -12,14 +13,15 @@ pub fn announced(cost: &Cost) -> String {
     };
     let levels: String = cost.levels.iter().enumerate().map(level).collect();
     let (times, memory) = (short(cost.times_the_first, 2), bytes(cost.bytes));
-    format!(
-        "{levels}about {times} times the time of level 0 and {memory} of memory; the finest is simulated once more to compare"
-    )
+    format!("{levels}about {times} times the time of level 0, and {memory} of memory")
 }
 
 /// The table and the conclusions.
 #[must_use]
 pub fn table(verification: &Verification) -> String {
+    if verification.levels.is_empty() {
+        return "Interrupted before the first mesh was done: there is nothing to compare.\n".to_string();
+    }
     let head = ["elements", "steps", "est. mean", "true mean", "index sup", "mean", "peak N", "impulse", "rebound"];
     let mut lines = vec![row(&head.map(str::to_string))];
     lines.extend(verification.levels.iter().map(|level| row(&cells(level))));
@@ -68,19 +70,29 @@ fn row(cells: &[String; 9]) -> String {
     line.trim_end().to_string()
 }
 
-/// The index of the first mesh beside the range that its verdict states.
+/// The index of the first mesh beside the range that its verdict states. A reference that is not fine enough has an error of its own that the
+/// true error lacks: the index is too large.
 fn expected(verification: &Verification) -> Option<String> {
     let first = verification.levels.first()?;
     let (index, [low, high]) = (first.effectivity?, first.expected);
     let inside = [index.sup, index.mean].iter().all(|index| (low..=high).contains(index));
-    let found = if inside { "inside" } else { "outside" };
-    Some(format!("The verdict expects an index of {low} to {high} on the first mesh: it is {found} this range."))
+    let found = match (inside, verification.settled) {
+        (true, _) => "it is inside this range",
+        (false, Some(Settled { fine_enough: true, .. })) => "it is outside this range",
+        (false, _) => "the reference is not fine enough to tell",
+    };
+    Some(format!("The verdict expects an index of {low} to {high} on the first mesh: {found}."))
 }
 
 fn conclusion(verification: &Verification) -> String {
     let stopped = if verification.interrupted { "Interrupted: the finest level done is the reference. " } else { "" };
+    if verification.levels.iter().all(|level| level.exact) {
+        return format!("{stopped}The error is zero to rounding on all meshes.");
+    }
     let Some(settled) = verification.settled else {
-        return format!("{stopped}Whether the finest mesh is fine enough shows from two refinements on.");
+        return format!(
+            "{stopped}From two refinements on, it shows whether the finest mesh is fine enough; with one, the index is too large."
+        );
     };
     let moved = format!("With the finest mesh the true error of the first moves by {:.1} %", 100.0 * settled.moved);
     let verdict = if settled.fine_enough {

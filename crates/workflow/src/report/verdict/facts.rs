@@ -14,9 +14,6 @@ use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstr
 /// 64 mm with waves of 5.3 km/s.
 const APART: f64 = 1.25;
 
-/// Relative errors below this are rounding.
-const ROUNDING: f64 = 1e-9;
-
 /// What a verdict follows from. More may be added: rules name the facts that they read.
 #[derive(Clone, Debug)]
 pub(in crate::report) struct Facts {
@@ -113,7 +110,7 @@ impl Facts {
 impl Facts {
     /// Whether the error is zero to rounding, as in the flight of a rigid body.
     pub(super) fn is_exact(&self) -> bool {
-        self.error.sup <= ROUNDING * self.error.reference_sup
+        self.error.is_zero()
     }
 }
 
