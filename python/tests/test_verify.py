@@ -57,13 +57,9 @@ def test_an_interrupt_keeps_the_levels_done() -> None:
     class Stop(Exception):
         verification: pc.Verification | None
 
-    runs = []
-
     def tell(seen: pc.Progress) -> None:
-        if not runs or seen.done < runs[-1][1]:
-            runs.append((seen.total, 0))
-        runs[-1] = (seen.total, seen.done)
-        if seen.total > 3000:
+        # 2 500, 5 000 and 10 000 steps.
+        if seen.total > 7000:
             raise Stop
 
     problem = bar(16)
@@ -98,9 +94,9 @@ def test_no_error_has_no_index() -> None:
 
 
 def test_much_work_must_be_asked_for() -> None:
-    """The fifth refinement of 16 bars has 4⁵ times the work of the first: 1365 times in all."""
+    """1.4e7 elements times steps on the first mesh make 1365 times as many with five refinements."""
     with pytest.raises(pc.InputError, match="elements times steps in all.*`long=True`"):
-        pc.verify(bar(16), end=0.1, courant=0.9, levels=5)
+        pc.verify(bar(16), end=1.0, courant=0.9, levels=5)
 
 
 def test_a_single_refinement_does_not_judge() -> None:

@@ -38,7 +38,7 @@ pub(crate) fn verification(
     let verified = each_dimension!(&problem.problem, problem => {
         let (problem, long) = (problem.clone(), Long::asked(long, "`long=True`"));
         let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, levels, long))?;
-        let prepared = prepared.map_err(|error| errors::failure(py, &error))?;
+        let prepared = prepared.map_err(|error| errors::run(py, &error))?;
         if let Some(tell) = tell {
             tell.call1((announced(&cost(&prepared, &options)),))?;
         }
