@@ -83,12 +83,16 @@ impl Scale {
         (value - self.low) / (self.high - self.low)
     }
 
-    /// Round values for about `count` marks.
+    /// Round values for about `count` marks; none for 0.
     pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
-        if self.logarithmic {
+        if count == 0 {
+            return Vec::new();
+        }
+        // Less than a factor of eight has two powers or parts of them at most.
+        if self.logarithmic && self.high > 8.0 * self.low {
             return self.powers(count);
         }
-        let rough = (self.high - self.low) / count.max(1) as f64;
+        let rough = (self.high - self.low) / count as f64;
         let power = 10.0_f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough * 0.999);
         let step = step.unwrap_or(rough);
@@ -101,7 +105,7 @@ impl Scale {
         let decades = (self.high / self.low).log10();
         let (from, to) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
         let parts: &[f64] = if decades <= 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let every = (decades / count.max(1) as f64).ceil().max(1.0) as i32;
+        let every = (decades / count as f64).ceil().max(1.0) as i32;
         let powers = (from..=to).filter(|k| k % every == 0);
         let all = powers.flat_map(|k| parts.iter().map(move |part| part * 10.0_f64.powi(k)));
         all.filter(|v| (self.low * 0.999..=self.high * 1.001).contains(v)).collect()
@@ -181,6 +185,8 @@ mod tests {
         assert_eq!(Scale::linear(-2e-4, 2e-4).ticks(4), [-2e-4, -1e-4, 0.0, 1e-4, 2e-4]);
         assert_eq!(Scale::logarithmic(0.5, 30.0).ticks(6), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]);
         assert_eq!(Scale::logarithmic(1e-3, 1e3).ticks(6).len(), 7);
+        assert_eq!(Scale::logarithmic(35.0, 85.0).ticks(5), [40.0, 50.0, 60.0, 70.0, 80.0]);
+        assert!(Scale::linear(0.0, 1.0).ticks(0).is_empty());
         let shown: Vec<_> = [0.0, 0.01, -2.0, 5e-5, 1e-9, 250_000.0].map(tick).to_vec();
         assert_eq!(shown, ["0", "0.01", "−2", "5·10^-5", "10^-9", "250000"]);
     }
