@@ -114,3 +114,14 @@ def test_contact_that_does_not_end_in_time_is_warned_about() -> None:
     assert history.time[-1] == 3e-5 and history.complete
     with pytest.warns(pc.InputWarning, match="not left its plane by 3e-5 s"):
         pc.run(RUBBER.format(time='end = "rebound"\nlongest = 3e-5'))
+
+
+def test_a_rebound_needs_a_plane_that_is_struck() -> None:
+    problem = hits()
+    free = pc.Problem(problem.mesh, material=problem.material, initial_velocity=1.0)
+    with pytest.raises(pc.InputError, match="needs a plane"):
+        pc.simulate(free, end="rebound", longest=1e-4, courant=0.9)
+    away = pc.Problem(problem.mesh, material=problem.material, obstacles=problem.obstacles, initial_velocity=-problem.initial_velocity)
+    with pytest.warns(pc.InputWarning) as told:
+        pc.simulate(away, end="rebound", longest=3e-5, courant=0.9)
+    assert any("has not touched a plane by 3e-5 s" in str(each.message) for each in told)

@@ -107,7 +107,7 @@ pub struct SimulateArguments {
     /// The case file (TOML)
     pub case: PathBuf,
     /// The file of the history (.vtkhdf) [default: as in the case, or named after it in the working directory]
-    #[arg(long, value_name = "FILE")]
+    #[arg(short = 'o', long, value_name = "FILE")]
     pub history: Option<PathBuf>,
     /// Replace an existing history
     #[arg(long)]
@@ -126,7 +126,7 @@ pub struct EstimateArguments {
     /// The history (.vtkhdf)
     pub history: PathBuf,
     /// Store the estimate, element by element, in this file (.vtkhdf)
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Reconstruction of the admissible contact force [default: as stored in the history]
     #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>, help = named("Reconstruction of the admissible contact force", Reconstruction::ALL))]
@@ -158,6 +158,9 @@ pub struct ReportArguments {
     pub file: PathBuf,
     /// The page (.html) [default: named after the file, in the working directory]
     pub page: Option<PathBuf>,
+    /// The page, as an option
+    #[arg(short, long, value_name = "PAGE", conflicts_with = "page")]
+    pub output: Option<PathBuf>,
     /// Estimate a history of another program although it contradicts itself or its problem
     #[arg(long)]
     pub accept_inconsistent: bool,

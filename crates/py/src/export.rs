@@ -20,7 +20,7 @@ pub(crate) fn export(
     py: Python<'_>,
     history: &HistoryData,
     path: PathBuf,
-    choice: (Option<Vec<usize>>, Option<usize>, Option<Vec<f64>>),
+    choice: (Option<Vec<i64>>, Option<usize>, Option<Vec<f64>>),
     fields: Option<Vec<String>>,
     error: Option<Vec<f64>>,
     inputs: Vec<PathBuf>,
@@ -50,7 +50,7 @@ pub(crate) fn export(
     })
 }
 
-fn chosen(choice: (Option<Vec<usize>>, Option<usize>, Option<Vec<f64>>)) -> StepChoice {
+fn chosen(choice: (Option<Vec<i64>>, Option<usize>, Option<Vec<f64>>)) -> StepChoice {
     match choice {
         (Some(steps), ..) => StepChoice::Steps(steps),
         (_, Some(every), _) => StepChoice::Every(every),

@@ -24,7 +24,7 @@ use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::plan;
 use percute_workflow::info::memory;
 use percute_workflow::run::{self, Analysis, Storage, TakeStep};
-use percute_workflow::until::Until;
+use percute_workflow::until::{NO_PLANE, Until};
 use pyo3::prelude::*;
 use std::any::Any;
 use std::path::{Path, PathBuf};
@@ -168,11 +168,14 @@ pub(crate) fn rebound_end(
     time::grid(py, Some(longest), courant, step, None, critical)?;
     let step = step.or_else(|| courant.map(|courant| courant * critical)).unwrap_or(critical);
     each_dimension!(&problem.problem, problem => {
+        if problem.obstacles().is_empty() {
+            return Err(errors::input(py, format!("`end`: {NO_PLANE}")));
+        }
         let (problem, until) = (problem.clone(), Until::new(problem, longest, after, step));
         let work = move |mut watch: Watch| run::rebound(&problem, &until, &mut watch);
         let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
         let found = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
-        Ok((found.times.end(), (!found.ended).then(|| until.not_ended().message)))
+        Ok((found.times.end(), found.warning.map(|warning| warning.message)))
     })
 }
 

@@ -8,8 +8,8 @@ pub enum StepChoice {
     /// All steps.
     #[default]
     All,
-    /// These steps, counted from 0.
-    Steps(Vec<usize>),
+    /// These steps, counted from 0; negative ones from the end, -1 is the last.
+    Steps(Vec<i64>),
     /// Every k-th step, and the last.
     Every(usize),
     /// The steps nearest to these times (s).
@@ -27,10 +27,17 @@ impl StepChoice {
             Self::All => return Ok((0..=last).collect()),
             Self::Every(k) => (0..last).step_by((*k).max(1)).chain([last]).collect(),
             Self::Steps(steps) => {
-                if let Some(step) = steps.iter().find(|step| **step > last) {
-                    return Err(format!("step {step} is not there: the last is step {last}; count steps from 0"));
-                }
-                steps.clone()
+                let place = |step: &i64| {
+                    let from_the_start = if *step < 0 { *step + instants.len() as i64 } else { *step };
+                    let found = usize::try_from(from_the_start).ok().filter(|found| *found <= last);
+                    let told = || {
+                        format!(
+                            "step {step} is not there: the last is step {last}; count from 0, or from the end with -1"
+                        )
+                    };
+                    found.ok_or_else(told)
+                };
+                steps.iter().map(place).collect::<Result<_, _>>()?
             }
             Self::Times(times) => {
                 let end = instants.last().copied().unwrap_or(0.0);
@@ -77,6 +84,8 @@ mod tests {
         assert_eq!(of(StepChoice::Every(3)), Ok(vec![0, 3, 4]));
         assert_eq!(of(StepChoice::Every(9)), Ok(vec![0, 4]));
         assert_eq!(of(StepChoice::Steps(vec![4, 1, 4])), Ok(vec![1, 4]));
+        assert_eq!(of(StepChoice::Steps(vec![-1, 0, -5])), Ok(vec![0, 4]));
+        assert!(of(StepChoice::Steps(vec![-6])).is_err_and(|told| told.contains("step -6 is not there")));
         assert_eq!(of(StepChoice::Times(vec![2.0, 1.7, 4.001])), Ok(vec![1, 2, 4]));
         assert!(of(StepChoice::Steps(vec![5])).is_err_and(|told| told.contains("last is step 4")));
         assert!(of(StepChoice::Times(vec![5.0])).is_err_and(|told| told.contains("ends at 4 s")));

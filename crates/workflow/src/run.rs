@@ -93,8 +93,8 @@ pub fn rebound<const D: usize, const N: usize>(
     let mut stop = Stop { inner: observer, left: &seen, asked: false };
     let done = simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop);
     done.map_err(|error| ordered.failure(error.into()))?;
-    let (left, asked) = (leaving.left, stop.asked);
-    if asked && left.is_none() { Ok(None) } else { until.found(left).map(Some).map_err(refused) }
+    let (left, touched, asked) = (leaving.left, leaving.last.is_some(), stop.asked);
+    if asked && left.is_none() { Ok(None) } else { until.found(left, touched).map(Some).map_err(refused) }
 }
 
 /// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact does not end
@@ -108,10 +108,7 @@ pub fn resolved<const D: usize, const N: usize>(
 ) -> Result<Option<(CaseOf<D, N>, Option<Warning>)>, Failure> {
     let Some(until) = &case.until else { return Ok(Some((case.clone(), None))) };
     let found = rebound(&case.problem, until, observer)?;
-    let with = |Found { times, ended }: Found| {
-        (CaseOf { times, until: None, ..case.clone() }, (!ended).then(|| until.not_ended()))
-    };
-    Ok(found.map(with))
+    Ok(found.map(|Found { times, warning }| (CaseOf { times, until: None, ..case.clone() }, warning)))
 }
 
 /// Simulates a problem and analyses the steps beside the run.

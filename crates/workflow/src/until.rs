@@ -29,8 +29,8 @@ pub struct Until {
 pub struct Found {
     /// The instants, to an end of four digits, which as a number gives the same run.
     pub times: TimeGrid,
-    /// Whether contact ended before `longest`.
-    pub ended: bool,
+    /// The warning, if contact did not end before `longest`.
+    pub warning: Option<Warning>,
 }
 
 impl Until {
@@ -54,25 +54,26 @@ impl Until {
         TimeGrid::with_step(self.longest, self.step)
     }
 
-    /// The warning that contact did not end.
-    #[must_use]
-    pub fn not_ended(&self) -> Warning {
-        let longest = trimmed(self.longest, 4);
-        Warning {
-            name: "no_rebound",
-            brief: format!("the body has not left its plane by {longest} s"),
-            message: format!(
-                "the body has not left its plane by {longest} s, the latest end: the run ends there; give a larger `longest`"
-            ),
-        }
+    /// The instants of the run, from the time (s) at which the first pass ended, if it did, and whether a plane was touched.
+    pub(crate) fn found(&self, left: Option<f64>, touched: bool) -> Result<Found, TimeError> {
+        let end = left.map_or(self.longest, |time| rounded_up(time).min(self.longest));
+        let warning = left.is_none().then(|| self.not_ended(touched));
+        Ok(Found { times: TimeGrid::with_step(end, self.step)?, warning })
     }
 
-    /// The instants of the run, from the time (s) at which the first pass ended, if it did.
-    pub(crate) fn found(&self, left: Option<f64>) -> Result<Found, TimeError> {
-        let end = left.map_or(self.longest, |time| rounded_up(time).min(self.longest));
-        Ok(Found { times: TimeGrid::with_step(end, self.step)?, ended: left.is_some() })
+    fn not_ended(&self, touched: bool) -> Warning {
+        let brief = match touched {
+            true => format!("the body has not left its plane by {} s", trimmed(self.longest, 4)),
+            false => format!("the body has not touched a plane by {} s", trimmed(self.longest, 4)),
+        };
+        let advice = if touched { "give" } else { "does it move towards its plane? If it does, give" };
+        let message = format!("{brief}, the latest end: the run ends there; {advice} a larger `longest`");
+        Warning { name: "no_rebound", brief, message }
     }
 }
+
+/// Why a problem without planes cannot end with a rebound.
+pub const NO_PLANE: &str = "\"rebound\" needs a plane that the body strikes: give one, or an end in s";
 
 /// A positive number, rounded up to four digits, so that a summary shows all of it.
 fn rounded_up(time: f64) -> f64 {
@@ -89,7 +90,7 @@ pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
     problem: &'a Problem<D, N>,
     after: f64,
     /// Last instant with a contact force (s).
-    last: Option<f64>,
+    pub(crate) last: Option<f64>,
     /// When the body had left (s).
     pub(crate) left: Option<f64>,
     seen: &'a AtomicBool,

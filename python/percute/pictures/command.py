@@ -50,7 +50,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("file", type=Path, metavar="FILE", help="a history, an estimate file or a case; for --kind convergence a document of `percute verify --json`")
     parser.add_argument("--kind", choices=list(KINDS), default="map", metavar="KIND", help="what is drawn, see below [default: map]")
-    parser.add_argument("--save", type=Path, metavar="FILE", help="the picture (.svg, .png or .pdf) [default: FILE-KIND.png in this folder]")
+    parser.add_argument("--save", "-o", "--output", type=Path, metavar="FILE", help="the picture (.svg, .png or .pdf) [default: FILE-KIND.png in this folder]")
     quantities = [*MOTION, *SCALARS, "stress", *STRESSES]
     parser.add_argument("--quantity", choices=quantities, metavar="NAME", help=f"the field: {', '.join(quantities)} [default: von_mises, of a bar stress]")
     parser.add_argument("--step", type=int, metavar="N", help="the instant of a field; negative ones count from the end [default: -1]")

@@ -12,9 +12,9 @@ pub struct ExportArguments {
     /// The file to write: .vtkhdf (all instants in one file), .vtu or .pvd (a file for each instant, and an index)
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Steps to write, counted from 0 and separated by commas [default: all]
-    #[arg(long, value_name = "STEPS", value_delimiter = ',', conflicts_with_all = ["every", "times"])]
-    pub steps: Option<Vec<usize>>,
+    /// Steps to write, counted from 0 and separated by commas; negative ones count from the end [default: all]
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_negative_numbers = true, conflicts_with_all = ["every", "times"])]
+    pub steps: Option<Vec<i64>>,
     /// Write every k-th step, and the last
     #[arg(long, value_name = "K", value_parser = steps, conflicts_with = "times")]
     pub every: Option<usize>,

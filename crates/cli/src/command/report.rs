@@ -12,8 +12,8 @@ use percute_workflow::Failure;
 use std::path::{Path, PathBuf};
 
 pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    let ReportArguments { file, page, accept_inconsistent, work } = arguments;
-    let page = page.clone().unwrap_or_else(|| named_after(file));
+    let ReportArguments { file, page, output, accept_inconsistent, work } = arguments;
+    let page = page.clone().or_else(|| output.clone()).unwrap_or_else(|| named_after(file));
     let (print, work) = (PrintArguments { report: Some(page), ..PrintArguments::default() }, work.clone());
     // A file that cannot be read is refused by the reader of cases, which says what it can of it.
     if !is_hdf5(file).unwrap_or(false) {

@@ -123,6 +123,11 @@ fn mistakes_around_a_file_are_named() {
             assert!(said.contains(phrase), "{from} -> {to}: {said}");
         }
     }
+    // In metres, the plane cuts through the body: the unit comes first.
+    let metres = CASE.replace("scale = 1e-3\n", "").replace("point = [0.0, -1e-4]", "point = [0.0, 0.02]");
+    let said = refused(&metres);
+    assert!(said.starts_with("error: case.toml:2: [mesh], file: the mesh in the file is 64.031 m large"), "{said}");
+    assert!(said.contains("`scale` = 1e-3. As it is, the plane cuts through the body"), "{said}");
 }
 
 /// An error of the mesh itself has both places: the key in the case, the line in the file.

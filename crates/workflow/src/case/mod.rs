@@ -127,7 +127,7 @@ fn read<const D: usize, const N: usize>(
     let wanted = time::read(root)?;
     let problem = problem::read(root, mesh)?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
-    let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step));
+    let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
     Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_file })
 }

@@ -6,7 +6,7 @@ use super::value::Value;
 use super::{load, material, obstacle, place, support};
 use crate::message::hint;
 use percute_core::mesh::{ImportWarning, Mesh};
-use percute_core::problem::{Builder, Cause, Initial, InputError, Problem};
+use percute_core::problem::{Builder, Cause, Initial, InputError, Place, Problem};
 
 /// Reads all that makes the problem on a mesh.
 pub(super) fn read<const D: usize, const N: usize>(
@@ -81,15 +81,17 @@ fn located(root: &Table<'_>, error: &InputError, import_warnings: &[ImportWarnin
         let of_group = import_warnings.iter().filter(|import_warning| import_warning.groups.contains(name));
         of_group.for_each(|import_warning| message += &format!("; {}", import_warning.message));
     }
-    if error.place.table == "obstacle" && !matches!(error.cause, Cause::UnknownGroup { .. } | Cause::EmptyGroup { .. })
-    {
-        // Planes are stated in metres: a body read in millimetres reaches far beyond them.
-        let large = import_warnings.iter().filter(|import_warning| import_warning.name == "large_mesh");
-        large.for_each(|import_warning| message += &format!("; {}", import_warning.message));
-    }
     if let (Cause::UnknownGroup { name, .. }, true) = (&error.cause, in_file(root)) {
         let what = if matches!(error.place.table, "material" | "body_force") { "Surface" } else { "Curve" };
         message += &format!("; in Gmsh, `Physical {what}(\"{name}\") = {{…}};` names one, before the mesh is saved");
+    }
+    // Planes are stated in metres: a body read in millimetres reaches far beyond them.
+    let large = import_warnings.iter().find(|import_warning| import_warning.name == "large_mesh");
+    let of_plane = error.place.table == "obstacle"
+        && !matches!(error.cause, Cause::UnknownGroup { .. } | Cause::EmptyGroup { .. });
+    if let (Some(large), true) = (large, of_plane) {
+        let place = Place { table: "mesh", index: None, key: "file" };
+        return root.source.error(&place::find(root, place), format!("{}. As it is, {message}", large.message));
     }
     root.source.error(&place::find(root, error.place), message)
 }

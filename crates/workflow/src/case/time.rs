@@ -4,7 +4,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use crate::message::trimmed;
-use crate::until::Until;
+use crate::until::{NO_PLANE, Until};
 use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
 
@@ -18,12 +18,13 @@ enum Steps<'a> {
 /// The table, read but not yet compared with the critical step.
 pub(super) struct Wanted<'a> {
     end: Option<(f64, Value<'a>)>,
-    rebound: Option<Rebound>,
+    rebound: Option<Rebound<'a>>,
     steps: Steps<'a>,
 }
 
-/// `end = "rebound"`: the latest end, and how long the run goes on after contact (s).
-struct Rebound {
+/// `end = "rebound"`: its place, the latest end, and how long the run goes on after contact (s).
+struct Rebound<'a> {
+    end: Value<'a>,
     longest: f64,
     after: Option<f64>,
 }
@@ -64,7 +65,7 @@ pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
 }
 
 /// Reads `end = "rebound"`, and the keys that need it.
-fn rebound(table: &Table<'_>, steps: &Steps<'_>) -> Result<Option<Rebound>, CaseError> {
+fn rebound<'a>(table: &Table<'a>, steps: &Steps<'_>) -> Result<Option<Rebound<'a>>, CaseError> {
     let Some(end) = table.get("end").filter(|end| end.text("").is_ok()) else {
         let surplus = ["longest", "after"].iter().find_map(|key| table.get(key));
         let refuse = |value: Value<'_>| Err(value.error("needs end = \"rebound\": give this, or leave the key out"));
@@ -78,7 +79,7 @@ fn rebound(table: &Table<'_>, steps: &Steps<'_>) -> Result<Option<Rebound>, Case
     }
     let at = table.get("longest").ok_or_else(|| end.error("needs `longest`: the latest end in s"))?;
     let after = table.get("after").map(|after| positive(&after)).transpose()?;
-    Ok(Some(Rebound { longest: positive(&at)?, after }))
+    Ok(Some(Rebound { longest: positive(&at)?, end, after }))
 }
 
 fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
@@ -87,19 +88,22 @@ fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
 }
 
 impl Wanted<'_> {
-    /// The end with the rebound, if the run ends so.
+    /// The end with the rebound, if the run ends so; it needs a plane.
     pub(super) fn until<const D: usize, const N: usize>(
         &self,
         problem: &Problem<D, N>,
         critical: f64,
-    ) -> Option<Until> {
-        let Rebound { longest, after, .. } = self.rebound.as_ref()?;
+    ) -> Result<Option<Until>, CaseError> {
+        let Some(Rebound { end, longest, after }) = &self.rebound else { return Ok(None) };
+        if problem.obstacles().is_empty() {
+            return Err(end.error(format!("= {NO_PLANE}")));
+        }
         let step = match self.steps {
             Steps::Courant(courant, _) => courant * critical,
             Steps::Step(step, _) => step,
-            Steps::Each(..) => return None,
+            Steps::Each(..) => return Ok(None),
         };
-        Some(Until::new(problem, *longest, *after, step))
+        Ok(Some(Until::new(problem, *longest, *after, step)))
     }
 
     /// The instants, with no step above the critical one; to the latest end, if the run ends with the rebound.
