@@ -1,6 +1,7 @@
 """The Python of the README and of the package runs as it stands."""
 
 import re
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -24,6 +25,27 @@ def test_the_examples_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
         exec(example, names)
     plt.close("all")
     assert isinstance(names["estimate"], pc.Estimate) and names["estimate"].relative_sup < 0.1
+
+
+@pytest.mark.parametrize("page", ["docs/export.md", "docs/fields.md", "docs/report.md"])
+def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
+    """In a folder with the files that the pages name; then the Python that reads what the commands wrote."""
+    text = (ROOT / page).read_text()
+    commands = re.findall(r"(?m)^    percute ([^#\n]*)", text)
+    assert commands
+    for name in ("case.toml", "block.toml"):
+        shutil.copy(ROOT / "examples" / "block.toml", tmp_path / name)
+    made = "run block.toml --quiet --history block.vtkhdf --estimate error.vtkhdf"
+    for command in (made, *commands):
+        # Pages name the same file twice: for a run, and for its history.
+        extra = ["--force"] if command.startswith(("report", "run")) else []
+        done = subprocess.run([sys.executable, "-m", "percute", *command.split(), *extra], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, f"percute {command}: {done.stderr}"
+    readers = [each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "vtkHDFReader" in each]
+    for reader in readers:
+        (tmp_path / "reader.py").write_text(reader)
+        done = subprocess.run([sys.executable, "reader.py"], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0 and done.stdout.count("(640,") >= 2, done.stderr + done.stdout
 
 
 def test_the_readme_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> None:
