@@ -76,7 +76,7 @@ def _error(done: Study) -> Figure:
     over_time.set(yscale="log", ylim=(0.02, 100.0))
     over_time.set_xlim(left=0.0)
     over_time.legend(loc="lower right", ncols=2, fontsize="x-small", handlelength=1.4, columnspacing=1.0)
-    done.estimates["corrected"].plot_map(axes=near)
+    done.estimates["corrected"].plot_map(outline=False, axes=near)
     near.set(xlim=(-1.5, 1.5), ylim=(-10.1, -8.6), title="corrected, near the contact")
     return figure
 

@@ -22,7 +22,9 @@ __all__ = [
     "__version__",
     "check_run",
     "close_files",
+    "colour_scale",
     "command",
+    "deformed_outline",
     "element_field",
     "errors_against_history",
     "errors_against_simulation",
@@ -278,6 +280,8 @@ def run_case(
     contact_steps: bool,
     progress: _Tell,
 ) -> tuple[HistoryData, EstimateData]: ...
+def colour_scale(values: _Floats, count: int) -> tuple[float, float, bool, list[tuple[float, str]]]: ...
+def deformed_outline(mesh: MeshData, report: str) -> tuple[list[list[list[float]]], str] | None: ...
 def present(estimate: EstimateData, page: bool, path: str | PathLike[str], overwrite: bool, name: str, history: HistoryData | None) -> None: ...
 def present_file(estimate: str | PathLike[str], page: bool, path: str | PathLike[str], overwrite: bool) -> None: ...
 def export(

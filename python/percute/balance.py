@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from percute.words import counted
+
 if TYPE_CHECKING:
     import pandas as _pandas
     import xarray
@@ -52,4 +54,4 @@ class Balance:
 
     def __repr__(self) -> str:
         drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"
-        return f"<percute.Balance: {len(self.kinetic)} instants, {drifts}>"
+        return f"<percute.Balance: {counted(len(self.kinetic), 'instant')}, {drifts}>"

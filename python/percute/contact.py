@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute.mesh import Mesh
+from percute.words import counted
 
 if TYPE_CHECKING:
     import pandas as _pandas
@@ -56,7 +57,7 @@ class Resultants:
 
     def __repr__(self) -> str:
         peak = self.normal_force.max(initial=0.0)
-        return f"<percute.Resultants: {len(self.area)} instants, at most {peak:.4g} N on {self.in_contact.max(initial=0)} nodes>"
+        return f"<percute.Resultants: {counted(len(self.area), 'instant')}, at most {peak:.4g} N on {counted(int(self.in_contact.max(initial=0)), 'node')}>"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -192,7 +193,7 @@ class Contact:
 
     def __repr__(self) -> str:
         peak = self.resultants.normal_force.max(initial=0.0)
-        return f"<percute.Contact: {len(self.nodes)} nodes, {len(self.time)} instants, at most {peak:.4g} N>"
+        return f"<percute.Contact: {counted(len(self.nodes), 'node')}, {counted(len(self.time), 'instant')}, at most {peak:.4g} N>"
 
 
 def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.checks import LARGEST, flag, integers, numbers, text, whole, wrong
 from percute.errors import InputError
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.history import History
@@ -33,7 +34,7 @@ def instant(history: History, step: object) -> int:
     """Check the number of an instant; negative ones count from the end."""
     count = len(history)
     if not -count <= (given := whole("step", step, least=-LARGEST)) < count:
-        raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {count} instants")
+        raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {counted(count, 'instant')}")
     return given % count
 
 
@@ -48,7 +49,7 @@ def rows(history: History, step: Step) -> tuple[NDArray[np.intp], bool]:
     if isinstance(step, list | tuple | np.ndarray) and np.ndim(step) > 0:
         given = integers("step", step, None)
         if np.any((given < -count) | (given >= count)):
-            raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {count} instants")
+            raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {counted(count, 'instant')}")
         return given % count, False
     return np.array([instant(history, step)]), True
 

@@ -25,7 +25,7 @@ class EstimateViews(Views):
         return notebook.of_estimate(self)
 
     def plot_map(  # type: ignore[misc]
-        self: Estimate, *, scale: float = 0.0, axes: Axes | None = None, save: File = None, overwrite: bool = False
+        self: Estimate, *, scale: float = 0.0, outline: bool = True, axes: Axes | None = None, save: File = None, overwrite: bool = False
     ) -> Axes:
         """Draw e_E, the contribution of each element (J^½), eq. [20], with mesh lines and planes.
 
@@ -35,6 +35,9 @@ class EstimateViews(Views):
         ----------
         scale : float, default: 0.0
             By how much the displacement at the time of the sup is exaggerated; 0 draws the undeformed mesh.
+        outline : bool, default: True
+            Whether the outline of a plane body at the end is drawn over the undeformed mesh: its rigid motion as it is, its deformation
+            times a round factor that makes it visible.
         axes, save, overwrite
             As for `plot_energies`.
 
@@ -45,7 +48,7 @@ class EstimateViews(Views):
         """
         from percute.pictures import error
 
-        return error.plot_map(self, scale, axes, save, overwrite)
+        return error.plot_map(self, scale, outline, axes, save, overwrite)
 
     def plot_over_time(  # type: ignore[misc]
         self: Estimate,

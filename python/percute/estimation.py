@@ -24,6 +24,7 @@ from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.exact import Effectivity, TrueError
@@ -306,7 +307,7 @@ class Estimate(EstimateViews):
     def __repr__(self) -> str:
         return (
             f"<percute.Estimate: sup {self.sup:.4g} J^½ ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "
-            f"mean {self.mean:.4g} J^½ ({self.relative_mean:.3%}), {len(self.by_element)} elements, {self.steps} steps>"
+            f"mean {self.mean:.4g} J^½ ({self.relative_mean:.3%}), {counted(len(self.by_element), 'element')}, {counted(self.steps, 'step')}>"
         )
 
     def __str__(self) -> str:

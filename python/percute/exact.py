@@ -16,6 +16,7 @@ from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History
 from percute.statement import Elastic
+from percute.words import counted
 
 __all__ = [
     "BarImpact",
@@ -56,7 +57,7 @@ class TrueError:
     """e² (J), shape (instants,)."""
 
     def __repr__(self) -> str:
-        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {len(self.time)} instants>"
+        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}>"
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from percute.checks import flag, integers, numbers, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.progress import ProgressOption, shown
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.estimation import Estimate
@@ -53,7 +54,7 @@ def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None,
     if steps is not None:
         chosen = integers("steps", [steps] if isinstance(steps, int | np.integer) else steps, None)
         if len(chosen) == 0 or not np.all((-count <= chosen) & (chosen < count)):
-            raise wrong("steps", steps, f"one step or more, from {-count} to {count - 1}: the history holds {count} instants")
+            raise wrong("steps", steps, f"one step or more, from {-count} to {count - 1}: the history holds {counted(count, 'instant')}")
         return (chosen % count).tolist(), None, None
     if times is not None:
         wanted = np.atleast_1d(numbers("times", times, most=1))

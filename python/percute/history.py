@@ -20,6 +20,7 @@ from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.views import HistoryViews
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.exact import TrueError
@@ -292,10 +293,10 @@ class History(HistoryViews):
 
     def __repr__(self) -> str:
         kept = "" if self._data.steps() is None else "part of a run: "
-        held = f"{kept}{len(self)} instants to {self.time[-1]:.4g} s"
+        held = f"{kept}{counted(len(self), 'instant')} to {self.time[-1]:.4g} s"
         planned = "" if self.complete else f" of {len(self._data.times)} planned"
         nodes, dimension = self.displacement.shape[1:]
-        return f"<percute.History: {held}{planned}, {nodes} nodes, {dimension}D>"
+        return f"<percute.History: {held}{planned}, {counted(nodes, 'node')}, {dimension}D>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         if self.path is not None:

@@ -17,6 +17,7 @@ from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
+from percute.words import counted
 
 __all__ = ["Mesh"]
 
@@ -281,8 +282,8 @@ class Mesh(Immutable):
         return notebook.of_mesh(self)
 
     def __repr__(self) -> str:
-        kind = "bars" if self.dimension == 1 else "triangles"
-        return f"<percute.Mesh: {len(self.cells)} {kind}, {len(self.points)} nodes>"
+        kind = "bar" if self.dimension == 1 else "triangle"
+        return f"<percute.Mesh: {counted(len(self.cells), kind)}, {counted(len(self.points), 'node')}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))

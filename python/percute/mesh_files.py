@@ -24,6 +24,7 @@ from percute.errors import (
     PercuteError,
     StorageError,
 )
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.mesh import Mesh
@@ -154,8 +155,7 @@ class _Reader:
         numbers[used] = np.arange(len(used))
         if len(used) < len(points):
             count = len(points) - len(used)
-            nodes = "1 node" if count == 1 else f"{count} nodes"
-            self.import_warnings.append(f"{nodes} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
+            self.import_warnings.append(f"{counted(count, 'node')} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
         return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
 
     def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -183,7 +183,7 @@ class _Reader:
                 raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is not an edge of an element")
             inner = int(np.count_nonzero(of[chosen] > 1))
             if inner:
-                edges = "1 edge lies" if inner == 1 else f"{inner} edges lie"
+                edges = f"{counted(inner, 'edge')} {'lies' if inner == 1 else 'lie'}"
                 self.import_warnings.append(f"group {name!r}: {edges} inside the body, left out: groups name parts of its boundary")
             groups[name] = numbers[facets[chosen][of[chosen] == 1]]
         return groups

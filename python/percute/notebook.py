@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from percute.element_fields import boundary
 from percute.pictures.body import Scale, scale_of
 from percute.pictures.canvas import prefixed
+from percute.words import counted
 
 if TYPE_CHECKING:
     from percute.estimation import Estimate
@@ -84,10 +85,10 @@ def _page(kind: str, rows: Rows, picture: str) -> str:
 
 
 def _mesh_rows(mesh: Mesh) -> Rows:
-    kind = "bars" if mesh.dimension == 1 else "triangles"
+    kind = "bar" if mesh.dimension == 1 else "triangle"
     factor, prefix = prefixed(mesh.points)
     sides = " × ".join(f"{side:.4g}" for side in np.ptp(mesh.points, axis=0) / factor)
-    rows = [("mesh", f"{len(mesh.cells)} {kind}, {len(mesh.points)} nodes"), ("size", f"{sides} {prefix}m")]
+    rows = [("mesh", f"{counted(len(mesh.cells), kind)}, {counted(len(mesh.points), 'node')}"), ("size", f"{sides} {prefix}m")]
     for name, groups in (("edge groups", mesh.edge_groups), ("element groups", mesh.element_groups)):
         if groups:
             rows.append((name, ", ".join(f"{group} ({len(members)})" for group, members in groups.items())))

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from percute.words import counted
+
 NEGATIVE = 0.2
 """The part of η by which a source may be negative before no change is predicted."""
 
@@ -70,7 +72,7 @@ class SourcesOverTime:
         return self.surface + self.front + self.dispersion + self.mesh
 
     def __repr__(self) -> str:
-        return f"<percute.SourcesOverTime: {len(self.surface)} samples>"
+        return f"<percute.SourcesOverTime: {counted(len(self.surface), 'sample')}>"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -127,7 +129,7 @@ class OverTime:
     """d (J), eq. [24]."""
 
     def __repr__(self) -> str:
-        return f"<percute.OverTime: {len(self.time)} samples to {self.time[-1]:.4g} s, sup of η {self.total.max():.4g} J>"
+        return f"<percute.OverTime: {counted(len(self.time), 'sample')} to {self.time[-1]:.4g} s, sup of η {self.total.max():.4g} J>"
 
 
 @dataclass(frozen=True)
@@ -171,4 +173,4 @@ class ElementMap:
 
     def __repr__(self) -> str:
         fields = "" if self.stress is None else ", with fields"
-        return f"<percute.ElementMap: {len(self.total)} elements at {self.time:.4g} s{fields}>"
+        return f"<percute.ElementMap: {counted(len(self.total), 'element')} at {self.time:.4g} s{fields}>"

@@ -19,6 +19,7 @@ from percute.estimating import pace
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of
+from percute.words import counted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +72,7 @@ class Verification:
         return self._table.rstrip()
 
     def __repr__(self) -> str:
-        return f"<percute.Verification: {len(self.elements)} levels of {self.elements[0]} to {self.elements[-1]} elements>"
+        return f"<percute.Verification: {counted(len(self.elements), 'level')} of {self.elements[0]} to {self.elements[-1]} elements>"
 
     def plot(self, *, axes: Sequence[Axes] | None = None, save: str | os.PathLike[str] | None = None, overwrite: bool = False) -> list[Axes]:
         """Draw errors, effectivity index and contact over the element size.

@@ -89,6 +89,20 @@ def test_mistakes_are_told_before_any_work(
     assert done.returncode == 0 and (tmp_path / "there.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize(("contents", "says"), [("empty", "is empty"), ("text", "is not an HDF5 file"), ("cut", "is truncated or damaged")])
+def test_damaged_files_have_one_message(contents: str, says: str, files: tuple[Path, Path], tmp_path: Path) -> None:
+    there = files[0].read_bytes()
+    (tmp_path / "h.vtkhdf").write_bytes({"empty": b"", "text": b"[mesh]\n", "cut": there[: len(there) // 2]}[contents])
+    told = set()
+    for command in (["plot", "h.vtkhdf"], ["report", "h.vtkhdf"], ["estimate", "h.vtkhdf"], ["export", "h.vtkhdf", "-o", "f.vtkhdf"]):
+        done = subprocess.run([sys.executable, "-m", "percute", *command], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 2, command
+        told.add(done.stderr)
+    assert len(told) == 1 and says in told.pop()
+    with pytest.raises(pc.FileFormatError, match=says):
+        pc.open(tmp_path / "h.vtkhdf")
+
+
 def test_without_matplotlib_the_command_names_the_way_out(files: tuple[Path, Path], tmp_path: Path) -> None:
     program = "import sys; sys.modules['matplotlib'] = None; from percute.pictures.command import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run([sys.executable, "-c", program, str(files[1])], cwd=tmp_path, capture_output=True, text=True)

@@ -29,6 +29,49 @@ def test_a_map_shows_all_elements(block_history: pc.History) -> None:
     assert "J" in axes.child_axes[0].get_ylabel()
 
 
+def test_a_map_shows_the_outline_at_the_end(block_history: pc.History) -> None:
+    estimate = pc.estimate(block_history)
+    axes = estimate.plot_map()
+    (line,) = axes.collections[-2].get_segments()  # type: ignore[attr-defined]
+    mesh = block_history.problem.mesh
+    # The block is deformed by more than a hundredth of itself: places as they are, in mm.
+    places = 1e3 * (mesh.points + block_history.displacement[-1])
+    outer = np.unique([edge for group in mesh.edge_groups.values() for edge in group])
+    nearest = [np.linalg.norm(places[outer] - point, axis=1).min() for point in line]
+    assert len(line) == len(outer) + 1 and max(nearest) < 1e-9 and np.array_equal(line[0], line[-1])
+    assert axes.get_title().endswith("— outline at 13 µs, deformation × 1")
+    assert "outline" not in estimate.plot_map(outline=False).get_title()
+
+
+def test_symbols_and_numbers_are_typeset() -> None:
+    from percute.pictures.canvas import typeset
+
+    for text, expected in {
+        "Δt/Δt_c, e_E (J^½)": r"Δ$t$/Δ$t_{\mathrm{c}}$, $e_{\mathrm{E}}$ (J$^{1/2}$)",
+        "≤ 2.5e-05, 1e9": r"≤ $2.5 \times 10^{-5}$, $10^{9}$",
+        "-3 (-2.5e+8)": r"−3 (−$2.5 \times 10^{8}$)",
+        "bar_impact, a-2, mesh1e5": "bar_impact, a-2, mesh1e5",
+    }.items():
+        assert typeset(text) == expected
+
+
+def test_planes_are_hatched_from_end_to_end(block_history: pc.History) -> None:
+    from percute.pictures.body import draw_body
+
+    mesh = block_history.problem.mesh
+    for angle in (0.0, 0.6, 2.2):
+        normal = np.array([-np.sin(angle), np.cos(angle)])
+        axes = plt.figure().add_subplot()
+        draw_body(axes, mesh.points, mesh.cells, np.ones(len(mesh.cells)), "", planes=[(mesh.points.mean(axis=0), normal)])
+        strokes = np.array(axes.collections[-1].get_segments())  # type: ignore[attr-defined]
+        low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+        # Each stroke begins on the plane and ends behind it; they go on until the plane has left the picture.
+        depths = (strokes - 1e3 * mesh.points.mean(axis=0)) @ normal
+        assert np.allclose(depths[:, 0], 0.0, atol=1e-9) and np.all(depths[:, 1] < 0.0)
+        ends = strokes[[0, -1], 0]
+        assert np.all(((ends < low) | (ends > high)).any(axis=1))
+
+
 def test_over_time_shows_the_sup(block_history: pc.History) -> None:
     estimate = pc.estimate(block_history)
     figure, axes = plt.subplots()

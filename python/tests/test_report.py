@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import percute as pc
@@ -72,6 +74,40 @@ def test_an_estimate_has_the_same_page_from_a_file(estimate: pc.Estimate, tmp_pa
     pickle.loads(pickle.dumps(estimate)).report(tmp_path / "unpickled.html")
     page = (tmp_path / "unpickled.html").read_text(encoding="utf-8")
     assert "The pressure along the surface is not drawn" in page and "is not drawn" not in now
+
+
+def test_the_outline_has_the_last_displacements(estimate: pc.Estimate) -> None:
+    """Also where the nodes are solved in an order of their own."""
+    order = np.random.default_rng(1).permutation(len(estimate.mesh.points))
+    points, cells = np.empty_like(estimate.mesh.points), order[estimate.mesh.cells]
+    points[order] = estimate.mesh.points
+    assert estimate.problem is not None
+    law = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    problem = pc.Problem(pc.Mesh(points, cells), material=law, obstacles=estimate.problem.obstacles, initial_velocity=(400, -400))
+    for each in (estimate, pc.estimate(pc.simulate(problem, end=5e-6, courant=0.9))):
+        outline, history, mesh = json.loads(each.to_json())["outline"], each.history, each.mesh
+        assert history is not None and outline["time"] == history.time[-1]
+        on_the_boundary = ((mesh.points == mesh.points.min(axis=0)) | (mesh.points == mesh.points.max(axis=0))).any(axis=1)
+        assert outline["node"] == np.flatnonzero(on_the_boundary).tolist()
+        assert np.array_equal(outline["displacement"], history.displacement[-1][outline["node"]])
+
+
+def test_a_page_says_how_a_history_in_memory_was_made(estimate: pc.Estimate, tmp_path: Path) -> None:
+    estimate.report(tmp_path / "simulated.html")
+    page = (tmp_path / "simulated.html").read_text(encoding="utf-8")
+    assert "percute.simulate(problem, end=5e-6, step=" in page and "vtkhdf" not in page
+    history = estimate.history
+    assert history is not None and estimate.problem is not None
+    arrays = pc.History.from_arrays(estimate.problem, history.time, history.displacement, history.reaction)
+    pc.estimate(arrays).report(tmp_path / "arrays.html")
+    page = (tmp_path / "arrays.html").read_text(encoding="utf-8")
+    assert "made from arrays in Python" in page and "percute.History.from_arrays(problem" in page and "vtkhdf" not in page
+    # An estimate of a case has its text, from a file and from Python alike.
+    case = (Path(__file__).parents[2] / "tests/bases/block.toml").read_text(encoding="utf-8")
+    (tmp_path / "block.toml").write_text(case, encoding="utf-8")
+    pc.run(tmp_path / "block.toml").report(tmp_path / "case.html")
+    page = (tmp_path / "case.html").read_text(encoding="utf-8")
+    assert "percute run block.toml --report report.html" in page and "<h3>Case file block.toml</h3>" in page
 
 
 def test_pictures_are_those_of_the_command(tmp_path: Path) -> None:

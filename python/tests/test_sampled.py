@@ -30,7 +30,7 @@ def test_samples_give_nearly_the_same_estimate() -> None:
 
 def test_the_report_says_what_is_not_seen(history: pc.History) -> None:
     samples = sampled(history, 10)
-    with pytest.warns(pc.InputWarning, match="6 samples, 3.103 critical steps apart.*changes within 2.600e-6 s are not seen"):
+    with pytest.warns(pc.InputWarning, match="6 samples, 3.103 critical steps apart.*changes within 2.6e-6 s are not seen"):
         estimate = pc.estimate(samples, instants=3)
     document = json.loads(estimate.to_json())
     assert document["samples"]["count"] == 6 and document["derived"] == ["reaction", "touching"]

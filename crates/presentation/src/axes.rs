@@ -78,21 +78,9 @@ pub(crate) fn colour_bar(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], scale:
         svg.line("axis", [left + width, at], [left + width + MARK, at]);
         svg.text("label", [left + width + MARK + 4.0, at + 4.5], Anchor::Start, false, text);
     };
-    let below = scale.logarithmic && less;
-    if below {
-        mark(top + height, &format!("≤ {}", tick(rounded(scale.low))));
-    }
-    for value in scale.ticks((height / 40.0) as usize) {
-        let at = place(scale.fraction(value));
-        if !below || top + height - at > 14.0 {
-            mark(at, &tick(value));
-        }
+    for (value, label) in scale.marks((height / 40.0) as usize, less) {
+        mark(place(scale.fraction(value)), &label);
     }
     let kind = if scale.logarithmic { ", logarithmic" } else { "" };
     svg.text("label", [left + width + 80.0, top + 0.5 * height], Anchor::Middle, true, &format!("{label}{kind}"));
-}
-
-/// A value with two digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -2,6 +2,7 @@
 
 use percute_core::mesh::{AnyMesh, Mesh};
 use percute_core::{each_dimension, ids::NodeId};
+use std::collections::{BTreeMap, HashSet};
 
 /// A mesh in the plane; a bar lies on the axis x.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +57,32 @@ impl Body {
         [extreme(f64::min), extreme(f64::max)]
     }
 
+    /// The lines around the body and its holes, each with its first node at the end again; none of a bar.
+    pub(crate) fn outline(&self) -> Vec<Vec<usize>> {
+        if self.dimension == 1 {
+            return Vec::new();
+        }
+        let sides = self.cells.chunks_exact(3).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
+        let all: HashSet<[usize; 2]> = sides.collect();
+        // The two elements at an inner edge go along it in opposite directions.
+        let mut after: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        all.iter().filter(|[a, b]| !all.contains(&[*b, *a])).for_each(|&[a, b]| after.entry(a).or_default().push(b));
+        after.values_mut().for_each(|next| next.sort_unstable());
+        let mut lines = Vec::new();
+        while let Some(&start) = after.keys().next() {
+            let mut line = vec![start];
+            while let Some(next) = after.get_mut(&line[line.len() - 1]) {
+                let node = next.pop();
+                if next.is_empty() {
+                    after.remove(&line[line.len() - 1]);
+                }
+                line.extend(node);
+            }
+            lines.push(line);
+        }
+        lines
+    }
+
     /// Mean edge of a square with the area of an element (m), of a bar its mean length.
     pub(crate) fn mean_size(&self) -> f64 {
         let size = |e: usize| {
@@ -69,5 +96,23 @@ impl Body {
         };
         let mean = (0..self.elements()).map(size).sum::<f64>() / self.elements().max(1) as f64;
         if self.dimension == 1 { mean } else { mean.sqrt() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::mesh::TriangleMesh;
+
+    #[test]
+    fn the_outline_goes_around_the_body_and_its_hole() {
+        // A ring: an outer and an inner square, two triangles at each side.
+        let outer = [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]];
+        let inner = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]];
+        let cells: Vec<[usize; 3]> =
+            (0..4).flat_map(|k| [[k, (k + 1) % 4, 4 + k], [(k + 1) % 4, 4 + (k + 1) % 4, 4 + k]]).collect();
+        let mesh = TriangleMesh::new([outer, inner].concat(), &cells, &Default::default(), &Default::default());
+        assert_eq!(Body::new(&mesh.unwrap()).outline(), [vec![0, 1, 2, 3, 0], vec![4, 7, 6, 5, 4]]);
+        assert!(Body::new(&percute_core::mesh::BarMesh::uniform_bar(1.0, 3).unwrap()).outline().is_empty());
     }
 }

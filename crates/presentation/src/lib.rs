@@ -4,6 +4,7 @@
 mod axes;
 mod body;
 pub mod chart;
+mod deformed;
 mod document;
 pub mod file;
 mod page;
@@ -14,6 +15,8 @@ mod svg;
 mod typeset;
 
 pub use body::Body;
+pub use deformed::Deformed;
 pub use document::{Document, NoDocument};
 pub use page::{Contents, Surface, page};
 pub use png::DrawError;
+pub use scale::{ColourScale, colour_scale};

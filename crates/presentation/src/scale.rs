@@ -1,6 +1,6 @@
 //! Scales: colours of values, and marks at axes.
 
-use percute_workflow::message::trimmed;
+use percute_workflow::message::{trimmed, vector};
 
 /// From this ratio of the largest value to the median on, a linear scale shows all but a few elements dark.
 const OUTSHONE: f64 = 5.0;
@@ -27,6 +27,25 @@ const VIRIDIS: [[u8; 3]; 17] = [
     [216, 226, 25],
     [253, 231, 37],
 ];
+
+/// The colours of values that are not negative, for other programs that draw them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourScale {
+    /// The values at both ends.
+    pub ends: [f64; 2],
+    /// Whether colours follow the logarithm of the value.
+    pub logarithmic: bool,
+    /// Values with marks, and their labels.
+    pub marks: Vec<(f64, String)>,
+}
+
+/// The colours of values that are not negative, with about `count` marks.
+#[must_use]
+pub fn colour_scale(values: &[f64], count: usize) -> ColourScale {
+    let scale = Scale::of_colours(values);
+    let marks = scale.marks(count, values.iter().any(|&value| value < scale.low));
+    ColourScale { ends: [scale.low, scale.high], logarithmic: scale.logarithmic, marks }
+}
 
 /// The colour of a fraction from 0 to 1, from dark to light; equal steps look equal.
 pub(crate) fn viridis(fraction: f64) -> [u8; 3] {
@@ -100,6 +119,16 @@ impl Scale {
         (from..=to).map(|k| k as f64 * step).collect()
     }
 
+    /// Marks of a scale of colours; with `less`, the lowest one says that smaller values have its colour.
+    pub(crate) fn marks(&self, count: usize, less: bool) -> Vec<(f64, String)> {
+        /// Distance of the next mark from the lowest one, as a part of the scale between two marks.
+        const CLEAR: f64 = 0.35;
+        let below = (self.logarithmic && less).then(|| (self.low, format!("≤ {}", tick(rounded(self.low)))));
+        let clear = if below.is_some() { CLEAR / count.max(1) as f64 } else { f64::NEG_INFINITY };
+        let others = self.ticks(count).into_iter().filter(|&value| self.fraction(value) > clear);
+        below.into_iter().chain(others.map(|value| (value, tick(value)))).collect()
+    }
+
     /// Powers of ten, with twice and five times them where these are few.
     fn powers(&self, count: usize) -> Vec<f64> {
         let decades = (self.high / self.low).log10();
@@ -115,20 +144,28 @@ impl Scale {
 /// A number at an axis.
 pub(crate) fn tick(value: f64) -> String {
     // Left over from zero after multiples of a step.
-    if value.abs() < 1e-300 { "0".to_string() } else { hatted(&trimmed(value, 4)) }
+    if value.abs() < 1e-300 { "0".to_string() } else { trimmed(value, 4) }
 }
 
-/// A number typeset: with a minus sign, and powers of ten with a hat.
-pub(crate) fn hatted(number: &str) -> String {
-    let shown = match number.split_once('e') {
-        Some(("1", power)) => format!("10^{power}"),
-        Some((digits, power)) => format!("{digits}·10^{power}"),
-        None => number.to_string(),
-    };
-    match shown.strip_prefix('-') {
-        Some(rest) => format!("−{rest}"),
-        None => shown,
-    }
+/// A value with two digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// Units that get no prefix.
+const PLAIN: [&str; 3] = ["m/s", "kg", ""];
+
+/// A number with its unit, which gets a prefix: 306.5 MN.
+pub(crate) fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    vector_quantity(&[value], unit, digits)
+}
+
+/// The same of components in brackets.
+pub(crate) fn vector_quantity(values: &[f64], unit: &str, digits: usize) -> String {
+    let most = values.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let (factor, unit) = if PLAIN.contains(&unit) { (1.0, unit.to_string()) } else { prefixed(unit, most) };
+    let values: Vec<f64> = values.iter().map(|x| x * factor).collect();
+    format!("{} {unit}", vector(&values, digits)).trim_end().to_string()
 }
 
 /// A factor and a unit that make values up to `most` short: 1e6 and `µs` for microseconds.
@@ -180,6 +217,19 @@ mod tests {
     }
 
     #[test]
+    fn the_lowest_mark_tells_of_smaller_values() {
+        let mut values = vec![2.04; 90];
+        values.extend([30.0; 10]);
+        let scale = colour_scale(&values, 5);
+        assert_eq!((scale.ends, scale.logarithmic), ([2.04, 30.0], true));
+        assert_eq!(scale.marks.iter().map(|mark| mark.1.as_str()).collect::<Vec<_>>(), ["5", "10", "20"]);
+        values.push(1e-9);
+        values.extend([2.04; 100]);
+        assert_eq!(colour_scale(&values, 5).marks[0], (2.04, "≤ 2".to_string()));
+        assert!(!colour_scale(&[1.0, 2.0], 5).logarithmic);
+    }
+
+    #[test]
     fn marks_are_round_and_inside() {
         assert_eq!(Scale::linear(0.0, 1.3).ticks(5), [0.0, 0.5, 1.0]);
         assert_eq!(Scale::linear(-2e-4, 2e-4).ticks(4), [-2e-4, -1e-4, 0.0, 1e-4, 2e-4]);
@@ -188,7 +238,7 @@ mod tests {
         assert_eq!(Scale::logarithmic(35.0, 85.0).ticks(5), [40.0, 50.0, 60.0, 70.0, 80.0]);
         assert!(Scale::linear(0.0, 1.0).ticks(0).is_empty());
         let shown: Vec<_> = [0.0, 0.01, -2.0, 5e-5, 1e-9, 250_000.0].map(tick).to_vec();
-        assert_eq!(shown, ["0", "0.01", "−2", "5·10^-5", "10^-9", "250000"]);
+        assert_eq!(shown, ["0", "0.01", "-2", "5e-5", "1e-9", "250000"]);
     }
 
     #[test]
@@ -197,5 +247,7 @@ mod tests {
         assert_eq!([unit("s", 1.3e-5), unit("Pa", 1.2e10), unit("m", 0.05), unit("m", 4e4)], ["µs", "GPa", "mm", "m"]);
         assert_eq!([unit("J", 0.0), unit("N", 1e-12), unit("J", 1000.0)], ["J", "nN", "kJ"]);
         assert!((prefixed("s", 1.3e-5).0 - 1e6).abs() < 1.0);
+        assert_eq!([quantity(-3.0653e8, "N", 4), quantity(1e4, "m/s", 4)], ["-306.5 MN", "10000 m/s"]);
+        assert_eq!(vector_quantity(&[-684.689, 3424.4], "N s", 3), "(-0.685, 3.42) kN s");
     }
 }

@@ -1,4 +1,4 @@
-//! Symbols in running text, such as Δt_c and J^½: one reader, and a writer each for HTML and SVG.
+//! Symbols and numbers in running text, such as Δt_c, J^½ and 1.5e-6: one reader, and a writer each for HTML and SVG.
 
 /// The kind of a piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,13 +10,13 @@ enum Kind {
     Code,
 }
 
-/// Cuts a text into pieces: `code`, letters with an index (e_ref, Δt_c) and powers (J^½, 10^-3).
+/// Cuts a text into pieces: `code`, letters with an index (e_ref, Δt_c), powers (J^½, 10^-3), numbers (1.5e-6, -3).
 fn pieces(text: &str) -> Vec<(Kind, String)> {
     let letters: Vec<char> = text.chars().collect();
     let (mut all, mut plain, mut at) = (Vec::new(), String::new(), 0);
     while at < letters.len() {
-        let Some((found, next)) = code(&letters, at).or_else(|| indexed(&letters, at)).or_else(|| power(&letters, at))
-        else {
+        let readers = [code, indexed, power, exponential, minus];
+        let Some((found, next)) = readers.iter().find_map(|read| read(&letters, at)) else {
             plain.push(letters[at]);
             at += 1;
             continue;
@@ -64,6 +64,37 @@ fn power(letters: &[char], at: usize) -> Found {
     (!power.is_empty()).then(|| (vec![(Kind::Sup, power.replace('-', "−"))], next))
 }
 
+/// A number with an exponent, as a multiple of a power of ten; letters around it make it a name.
+fn exponential(letters: &[char], at: usize) -> Found {
+    let of_word = |c: &char| c.is_alphanumeric() || "._".contains(*c);
+    let digits = |from: usize| letters[from..].iter().take_while(|c| c.is_ascii_digit()).count();
+    let whole = digits(at);
+    if whole == 0 || (at > 0 && of_word(&letters[at - 1])) {
+        return None;
+    }
+    let part = if letters.get(at + whole) == Some(&'.') { 1 + digits(at + whole + 1) } else { 0 };
+    let sign = at + whole + part + 1;
+    let power = sign + usize::from(letters.get(sign) == Some(&'-'));
+    if letters.get(sign - 1) != Some(&'e') || power >= letters.len() || digits(power) == 0 {
+        return None;
+    }
+    let next = power + digits(power);
+    if letters.get(next).is_some_and(|c| c.is_alphanumeric() || *c == '_') {
+        return None;
+    }
+    let mantissa: String = letters[at..sign - 1].iter().collect();
+    let base = if mantissa == "1" { "10".to_string() } else { format!("{mantissa}×10") };
+    let power: String = letters[sign..next].iter().collect();
+    Some((vec![(Kind::Plain, base), (Kind::Sup, power.replace('-', "−"))], next))
+}
+
+/// The sign of a negative number.
+fn minus(letters: &[char], at: usize) -> Found {
+    let begins = at == 0 || " \u{a0}([≤".contains(letters[at - 1]);
+    let number = letters[at] == '-' && letters.get(at + 1).is_some_and(char::is_ascii_digit);
+    (begins && number).then(|| (vec![(Kind::Plain, "−".to_string())], at + 1))
+}
+
 /// A text without the characters that mean something in HTML and SVG. Control characters are in no document.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -82,12 +113,12 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
-/// A text as HTML.
+/// A text as HTML. A number and its `%` stay in a line.
 pub(crate) fn html(text: &str) -> String {
     let tag = |(kind, text): (Kind, String)| {
         let text = escaped(&text);
         match kind {
-            Kind::Plain => text,
+            Kind::Plain => text.replace(" %", "\u{a0}%"),
             Kind::Symbol => format!("<i>{text}</i>"),
             Kind::Sub => format!("<sub>{text}</sub>"),
             Kind::Sup => format!("<sup>{text}</sup>"),
@@ -132,6 +163,15 @@ mod tests {
         assert_eq!(html("0.9 Δt_c and e_ref"), "0.9 Δ<i>t</i><sub>c</sub> and <i>e</i><sub>ref</sub>");
         assert_eq!(html("166.8 J^½, 2·10^-3"), "166.8 J<sup>½</sup>, 2·10<sup>−3</sup>");
         assert_eq!(html("F_DA, a^b, x_"), "<i>F</i><sub>DA</sub>, a^b, x_");
+    }
+
+    #[test]
+    fn numbers_have_signs_and_powers_of_ten() {
+        assert_eq!(html("1.1e-14, 1e9 (-3, -2.5e8)"), "1.1×10<sup>−14</sup>, 10<sup>9</sup> (−3, −2.5×10<sup>8</sup>)");
+        assert_eq!(html("by -22 %."), "by −22\u{a0}%.");
+        for name in ["mesh1e5", "1e5x", "v1.2e3", "1e", "1.5e-", "a-2", "--3", "2-1", "`1e-3`"] {
+            assert!(!html(name).contains('×') && !html(name).contains('−') && !html(name).contains("<sup>"), "{name}");
+        }
     }
 
     #[test]

@@ -14,11 +14,12 @@ use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Options, UnknownName};
 use percute_io::estimate_file::EstimateContents;
-use percute_io::{Overwrite, estimate_file};
+use percute_io::{Case, Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::{Instants, statement};
 use percute_workflow::foreign::Checked;
 use percute_workflow::grade::Graded;
+use percute_workflow::outline::Outline;
 use percute_workflow::report::{PARTS, Report, SOURCES, Subject, left_out, sampled};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
@@ -40,6 +41,8 @@ pub(crate) struct Made<const D: usize, const N: usize> {
     pub(crate) report: ReportSource<D>,
     /// What was found about a history of another program.
     pub(crate) checked: Option<Checked>,
+    /// The case file that was run.
+    pub(crate) case: Option<Case>,
 }
 
 /// Where the report comes from.
@@ -50,6 +53,8 @@ pub(crate) enum ReportSource<const D: usize> {
         simulation: Simulation,
         /// What contact did.
         contact: Arc<ContactResults<D>>,
+        /// The outline of a plane body at the last step.
+        outline: Option<Box<Outline>>,
         /// Number of instants, of a stored history.
         held: Option<usize>,
         /// How long the estimate took (s).
@@ -124,6 +129,7 @@ fn estimate_one<const D: usize, const N: usize>(
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
     let mut made = Made::new(run.problem.clone(), times, options, results, held, seconds);
     made.checked = checked;
+    made.case = run.file().and_then(|file| file.case().cloned());
     Ok(Arc::new(made))
 }
 
@@ -146,6 +152,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
             estimate,
             report: ReportSource::Before(report),
             checked: None,
+            case: None,
         })
     }
 
@@ -158,9 +165,10 @@ impl<const D: usize, const N: usize> Made<D, N> {
         held: Option<usize>,
         seconds: f64,
     ) -> Self {
-        let Results { simulation, estimate, contact } = results;
-        let report = ReportSource::Now { simulation, contact: Arc::new(contact), held, seconds };
-        Self { problem, times, options: options.filled(D), estimate, report, checked: None }
+        let Results { simulation, estimate, contact, outline } = results;
+        let report =
+            ReportSource::Now { simulation, contact: Arc::new(contact), outline: outline.map(Box::new), held, seconds };
+        Self { problem, times, options: options.filled(D), estimate, report, checked: None, case: None }
     }
 
     /// The document of `percute run --json`.
@@ -170,14 +178,15 @@ impl<const D: usize, const N: usize> Made<D, N> {
 
     /// A document made from the report; if that is there as a text only, this text, which has all of it.
     fn document(&self, name: &str, text: fn(&Report) -> Result<String, std::io::Error>) -> Result<String, String> {
-        let Self { problem, times, options, estimate, report, checked } = self;
+        let Self { problem, times, options, estimate, report, checked, .. } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
-            ReportSource::Now { simulation, contact, held, seconds } => {
+            ReportSource::Now { simulation, contact, outline, held, seconds } => {
                 let critical_step = critical_time_step(problem);
                 let checked = checked.as_ref();
                 let subject = Subject { name, problem, times, critical_step, held: *held, checked };
-                let report = Report::new(&subject, *options, simulation, estimate, contact, *seconds);
+                let outline = outline.as_deref();
+                let report = Report::new(&subject, *options, simulation, estimate, contact, outline, *seconds);
                 text(&report).map_err(|error| error.to_string())
             }
         }
@@ -190,10 +199,10 @@ impl<const D: usize, const N: usize> Made<D, N> {
         name: &str,
         contact: Option<&ContactResults<D>>,
     ) -> Result<(), Failure> {
-        let Self { problem, estimate, .. } = self;
-        let report = &self.report(name).map_err(Failure::Argument)?;
+        let Self { problem, estimate, case, .. } = self;
+        let (report, case) = (&self.report(name).map_err(Failure::Argument)?, case.as_ref());
         let statement = &statement(problem, Some(&self.options))?;
-        let contents = EstimateContents { problem, estimate, contact, statement, case: None, report };
+        let contents = EstimateContents { problem, estimate, contact, statement, case, report };
         Ok(estimate_file::write(path, overwrite, &contents)?)
     }
 

@@ -17,7 +17,7 @@ use percute_io::FileError;
 use percute_io::history::HistoryFile;
 use percute_workflow::foreign::{Completed, Derived, Lacks, Origin};
 use percute_workflow::history::lacks;
-use percute_workflow::report::{Named, Rebound, rebound_to_json};
+use percute_workflow::report::{ENERGIES, Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::Range;
@@ -296,17 +296,8 @@ fn kept_balance<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D,
 
 /// An array for each quantity of the balance.
 fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyDict>> {
-    let numbers: [Named<Balance>; 8] = [
-        ("kinetic", |b| b.kinetic),
-        ("strain", |b| b.strain),
-        ("work_of_loads", |b| b.work_of_loads),
-        ("work_of_supports", |b| b.work_of_supports),
-        ("work_of_contact", |b| b.work_of_contact),
-        ("friction", |b| b.friction),
-        ("energy_drift", |b| b.energy_drift),
-        ("impulse_drift", |b| b.impulse_drift),
-    ];
-    view::columns(py, balance, &numbers)
+    let drifts: [Named<Balance>; 2] = [("energy_drift", |b| b.energy_drift), ("impulse_drift", |b| b.impulse_drift)];
+    view::columns(py, balance, &[&ENERGIES[..], &drifts].concat())
 }
 
 /// The parts with these names.

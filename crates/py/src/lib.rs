@@ -47,7 +47,7 @@ mod _percute {
     #[pymodule_export]
     use super::mesh::MeshData;
     #[pymodule_export]
-    use super::present::{present, present_file};
+    use super::present::{colour_scale, deformed_outline, present, present_file};
     #[pymodule_export]
     use super::problem::ProblemData;
     #[pymodule_export]

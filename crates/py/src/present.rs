@@ -2,14 +2,16 @@
 
 use crate::estimate::{EstimateData, Made};
 use crate::history::HistoryData;
+use crate::mesh::MeshData;
 use crate::run::Run;
 use crate::{bridge, errors};
+use numpy::PyReadonlyArray1;
 use percute_core::contact::ContactResults;
 use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_io::{Case, Overwrite, estimate_file};
 use percute_presentation::picture::svg;
-use percute_presentation::{Body, Contents, Document, Surface, file};
+use percute_presentation::{Body, ColourScale, Contents, Deformed, Document, Surface, file};
 use percute_workflow::Failure;
 use percute_workflow::case::statement;
 use percute_workflow::outputs::{self, OutputFile};
@@ -71,6 +73,27 @@ fn refused(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
+/// Values with labels.
+type Marks = Vec<(f64, String)>;
+/// Points (m) of some lines.
+type Lines = Vec<Vec<[f64; 2]>>;
+
+/// Colours of values that are not negative: both ends, whether they are logarithmic, and about so many marks with labels.
+#[pyfunction]
+pub(crate) fn colour_scale(values: PyReadonlyArray1<'_, f64>, count: usize) -> PyResult<(f64, f64, bool, Marks)> {
+    let ColourScale { ends: [low, high], logarithmic, marks } =
+        percute_presentation::colour_scale(values.as_slice()?, count);
+    Ok((low, high, logarithmic, marks))
+}
+
+/// The deformed outline that a report has: closed lines (m) and what they are. None without displacements.
+#[pyfunction]
+pub(crate) fn deformed_outline(py: Python<'_>, mesh: &MeshData, report: &str) -> PyResult<Option<(Lines, String)>> {
+    let document = Document::parse(report).map_err(|error| errors::input(py, error))?;
+    let body = each_dimension!(&mesh.mesh, mesh => Body::new(mesh));
+    Ok(Deformed::new(&body, &document).map(|Deformed { lines, label }| (lines, label)))
+}
+
 /// Writes the page of an estimate, or the picture; the page has the contact results of the history.
 #[pyfunction]
 pub(crate) fn present(
@@ -125,7 +148,7 @@ fn shown<const D: usize, const N: usize>(
         document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,
         // A problem that the language of the case files cannot say has a page without it.
         statement: statement(&made.problem, Some(&made.options)).unwrap_or_default(),
-        case: None,
+        case: made.case.clone(),
         surface: contact.and_then(Surface::new),
     })
 }

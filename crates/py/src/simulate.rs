@@ -21,7 +21,7 @@ use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants, Keep, Source, refused_start};
 use percute_workflow::choice::StepChoice;
 use percute_workflow::effort::{Effort, Long};
-use percute_workflow::history::plan;
+use percute_workflow::history::{plan, stored_case};
 use percute_workflow::info::memory;
 use percute_workflow::run::{self, Analysis, Storage, TakeStep};
 use percute_workflow::until::{NO_PLANE, Until};
@@ -150,7 +150,9 @@ fn run_one<const D: usize, const N: usize>(
     let planned = Planned { problem: problem.clone(), times: times.clone(), options: case.options, store };
     let (history, (results, seconds)) =
         planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
-    Ok((history, Arc::new(Made::new(problem, times, options, results, None, seconds))))
+    let mut made = Made::new(problem, times, options, results, None, seconds);
+    made.case = Some(stored_case(&case.source));
+    Ok((history, Arc::new(made)))
 }
 
 /// The end (s) of a run that ends with the rebound, by a pass of the integrator alone, and a warning if contact does not end in time.

@@ -1,6 +1,6 @@
 //! The work of a run and its probable duration, before it begins.
 
-use crate::message::{short, trimmed};
+use crate::message::{counted, short, trimmed};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Sampling;
@@ -101,14 +101,15 @@ impl Effort {
     #[must_use]
     pub fn refusal(&self, times: &TimeGrid, estimated: bool, long: Long) -> Option<String> {
         let way = long.way().filter(|_| self.is_long())?;
-        let (steps, elements, end) = (times.step_count(), self.elements, trimmed(times.end(), 4));
+        let (steps, elements) = (counted(times.step_count(), "step"), counted(self.elements, "element"));
+        let end = trimmed(times.end(), 4);
         let (seconds, what) = match estimated {
             true => (self.run_seconds, "simulation and estimate"),
             false => (self.simulation_seconds, "the simulation"),
         };
         let (took, most) = (duration(seconds), short(MOST as f64, 1));
         Some(format!(
-            "is {end} s, which makes {steps} steps of {elements} elements, {took} for {what}: is it correct, and in seconds? \
+            "is {end} s, which makes {steps} of {elements}, {took} for {what}: is it correct, and in seconds? \
              {way} allows more than {most} elements times steps"
         ))
     }

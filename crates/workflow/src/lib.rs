@@ -13,6 +13,7 @@ pub mod history;
 pub mod info;
 pub mod message;
 mod numbering;
+pub mod outline;
 pub mod outputs;
 pub mod report;
 pub mod run;

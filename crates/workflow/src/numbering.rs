@@ -137,7 +137,8 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
         }
     }
 
-    fn node(&self, new: usize) -> usize {
+    /// A node by the number of the user.
+    pub(crate) fn node(&self, new: usize) -> usize {
         self.numbering().map_or(new, |numbering| numbering.nodes()[new].index())
     }
 }

@@ -6,6 +6,7 @@ use crate::case::CaseOf;
 use crate::failure::Failure;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
+use crate::outline::{LastOutline, Outline};
 use crate::report::Warning;
 use crate::until::{Found, Leaving, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
@@ -40,6 +41,8 @@ pub struct Results<const D: usize> {
     pub estimate: Estimate<D>,
     /// The contact results.
     pub contact: ContactResults<D>,
+    /// The outline of a plane body at the last step.
+    pub outline: Option<Outline>,
 }
 
 /// The places of the history of a run; each is optional.
@@ -138,10 +141,12 @@ pub(crate) fn beside<const D: usize, const N: usize>(
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?;
-    let mut sinks = ((&mut estimator, &mut contact), sink);
+    let mut outline = LastOutline::new(ordered.problem().mesh());
+    let mut sinks = ((&mut estimator, (&mut contact, &mut outline)), sink);
     let simulation = drive(ordered, times, analysis.options.threads, storage, &mut sinks, observer)?;
     let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
-    Ok(Results { simulation, estimate, contact: ordered.contact(contact.finish()) })
+    let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
+    Ok(Results { simulation, estimate, contact, outline })
 }
 
 /// Analyses the steps of a history; with the same options, the results are those of its run, bit by bit.
@@ -157,13 +162,15 @@ pub fn estimate<const D: usize, const N: usize>(
     let Analysis { options, request, .. } = analysis;
     let ordered = Ordered::new(problem);
     let mut contact = analysis.recorder(ordered.problem(), source.times())?;
-    let source = ordered.source(source);
-    let done = percute_estimator::estimate(ordered.problem(), &source, *options, request, &mut contact, observer);
+    let mut outline = LastOutline::new(ordered.problem().mesh());
+    let (source, mut beside) = (ordered.source(source), (&mut contact, &mut outline));
+    let done = percute_estimator::estimate(ordered.problem(), &source, *options, request, &mut beside, observer);
     let (simulation, estimate) = done.map_err(|error| match error {
         RunError::Source(cause) => ordered.failure(Failure::from_sink(cause, RunError::Source)),
         error => ordered.failure(error.into()),
     })?;
-    Ok(Results { simulation, estimate: ordered.estimate(estimate), contact: ordered.contact(contact.finish()) })
+    let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
+    Ok(Results { simulation, estimate: ordered.estimate(estimate), contact, outline })
 }
 
 /// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the

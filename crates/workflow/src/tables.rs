@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::outputs::{self, OutputFile};
-use crate::report::{Named, PARTS};
+use crate::report::{ENERGIES, PARTS};
 use percute_core::contact::{ContactResults, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
@@ -100,15 +100,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
             }
         }
         if !self.balance.is_empty() {
-            let columns: [Named<Balance>; 6] = [
-                ("kinetic", |b| b.kinetic),
-                ("strain", |b| b.strain),
-                ("work_of_loads", |b| b.work_of_loads),
-                ("work_of_supports", |b| b.work_of_supports),
-                ("work_of_contact", |b| b.work_of_contact),
-                ("friction", |b| b.friction),
-            ];
-            columns.iter().for_each(|(name, of)| table.add(name, "J", self.balance.iter().map(of)));
+            ENERGIES.iter().for_each(|(name, of)| table.add(name, "J", self.balance.iter().map(of)));
         }
         table
     }

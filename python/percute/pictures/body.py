@@ -8,20 +8,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from percute import _percute
 from percute.element_fields import boundary
 from percute.errors import InputError
-from percute.pictures.canvas import FIELD, SIGNED, Floats, prefixed, pyplot
+from percute.pictures.canvas import FIELD, SIGNED, Floats, prefixed, pyplot, typeset
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-OUTSHONE = 5.0
-"""Colours are logarithmic if the largest value exceeds the median by this factor, as in the pictures of the command: on a linear scale all
-but a few elements would be dark."""
-SPAN = 1e4
-"""Largest ratio of the ends of a logarithmic scale; smaller values have its lowest colour."""
 LINES = 0.012
 """Mesh lines are drawn if the mean size of the elements exceeds this part of the size of the body."""
 NEAR = 0.25
@@ -29,7 +25,11 @@ NEAR = 0.25
 SLIM = 0.4
 """Below this ratio of height to width, the colours are shown below the body."""
 DEPTH = 0.03
-"""Width of the hatched strip behind a plane, as a part of the size of the picture."""
+"""Room behind a plane, as a part of the size of the body."""
+HATCH = 0.013
+"""Distance of the strokes behind a plane, as a part of the larger side of the picture."""
+MARKS = 8
+"""About so many marks at a scale of colours."""
 
 Line = tuple[ArrayLike, ArrayLike]
 """A point (m) and the outward unit normal of a plane."""
@@ -50,15 +50,9 @@ class Scale(NamedTuple):
 
 
 def scale_of(values: Floats) -> Scale:
-    """Give the scale of values that are not negative: logarithmic where a few elements outshine the rest.
-
-    It then begins at the hundredth part of the values, or at the largest over `SPAN`.
-    """
-    positive = np.sort(values[np.isfinite(values) & (values > 0.0)])
-    if len(positive) == 0 or positive[-1] <= OUTSHONE * positive[len(positive) // 2]:
-        return linear(values, FIELD)
-    most = float(positive[-1])
-    return Scale(min(max(float(positive[len(positive) // 100]), most / SPAN), 0.5 * most), most, True)
+    """Give the scale of values that are not negative, as in the pictures of the command: logarithmic where a few elements outshine the rest."""
+    low, high, logarithmic, _ = _percute.colour_scale(np.ascontiguousarray(values, dtype=np.float64), MARKS)
+    return Scale(low, high, logarithmic)
 
 
 def linear(values: Floats, colours: str) -> Scale:
@@ -78,14 +72,15 @@ def draw_body(
     scale: Scale | None = None,
     planes: Sequence[Line] = (),
     extent: Floats | None = None,
+    outline: Sequence[Floats] = (),
 ) -> None:
     """Draw values of nodes or elements on a plane body with its mesh lines and planes, coordinates in a suitable unit.
 
-    ``extent`` has points (m) that the picture must hold, by default those of the body.
+    ``extent`` has points (m) that the picture must hold, by default those of the body, and ``outline`` lines (m) over it.
     """
     if len(values) == 0:
         raise InputError("there is nothing to draw")
-    held = points if extent is None else extent
+    held = np.vstack([points if extent is None else extent, *outline])
     factor, prefix = prefixed(held)
     x, y = points.T / factor
     shown = linear(values, colours) if scale is None else scale
@@ -101,31 +96,35 @@ def draw_body(
         axes.triplot(x, y, cells, color="white", linewidth=0.35, alpha=0.5)
     if colours == SIGNED:
         # Small values are as light as the paper.
-        outline = np.column_stack([x, y])[boundary(cells)[0]]
-        axes.add_collection(pyplot().matplotlib.collections.LineCollection(outline, colors="#6e6e78", linewidths=0.6))
+        edges = np.column_stack([x, y])[boundary(cells)[0]]
+        axes.add_collection(pyplot().matplotlib.collections.LineCollection(edges, colors="#6e6e78", linewidths=0.6))
+    for colour, width in (("white", 3.0), ("#282830", 1.2)):
+        # Seen on dark and on light elements.
+        lines = pyplot().matplotlib.collections.LineCollection([line / factor for line in outline], colors=colour, linewidths=width, zorder=4)
+        axes.add_collection(lines)
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
-    _colour_bar(axes, drawn, label, shown, shown.logarithmic and bool(np.any(values < shown.low)))
+    _colour_bar(axes, drawn, label, shown, values)
 
 
-def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, smaller: bool) -> None:
-    """Draw the scale of colours: as high as the body, or below a slim one. An arrow tells of smaller values."""
+def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, values: Floats) -> None:
+    """Draw the scale of colours: as high as the body, or below a slim one."""
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     if height < SLIM * width:
         place: dict[str, Any] = {"ax": axes, "location": "bottom", "aspect": 40, "shrink": 0.8}
     else:
         place = {"cax": axes.inset_axes((1.03, 0.0, 0.04, 1.0))}
+    bar = axes.figure.colorbar(drawn, label=label + (", logarithmic" if scale.logarithmic else ""), **place)
     if scale.logarithmic:
-        place["ticks"], place["format"] = _marks(scale)
-    bar = axes.figure.colorbar(drawn, label=label, extend="min" if smaller else "neither", **place)
+        places, labels = _marks(values)
+        bar.set_ticks(places, labels=labels)
     bar.minorticks_off()
 
 
-def _marks(scale: Scale) -> tuple[Any, Any]:
-    """Give the marks of a logarithmic scale, more of them on a short one, as plain numbers."""
-    ticker = pyplot().matplotlib.ticker
-    places = (1.0, 2.0, 3.0, 5.0, 7.0) if scale.high < 30.0 * scale.low else (1.0, 2.0, 5.0)
-    return ticker.LogLocator(subs=places), ticker.FuncFormatter(lambda value, _: f"{value:.3g}")
+def _marks(values: Floats) -> tuple[list[float], list[str]]:
+    """Give the marks of a logarithmic scale and their labels."""
+    marks = _percute.colour_scale(np.ascontiguousarray(values, dtype=np.float64), MARKS)[3]
+    return [value for value, _ in marks], [typeset(label) for _, label in marks]
 
 
 def _size(points: Floats, cells: NDArray[Any]) -> float:
@@ -151,18 +150,19 @@ def _frame(axes: Axes, points: Floats, planes: Sequence[tuple[Floats, Floats]]) 
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     for at, normal in near:
-        _draw_plane(axes, at, normal, (low, high), size)
+        _draw_plane(axes, at, normal, (low, high))
 
 
-def _draw_plane(axes: Axes, at: Floats, normal: Floats, frame: tuple[Floats, Floats], size: float) -> None:
+def _draw_plane(axes: Axes, at: Floats, normal: Floats, frame: tuple[Floats, Floats]) -> None:
     """Draw a plane as a line, hatched on its far side."""
     along = np.array([normal[1], -normal[0]])
     centre, reach = 0.5 * (frame[0] + frame[1]), float(np.linalg.norm(frame[1] - frame[0]))
     foot = centre - ((centre - at) @ normal) * normal
     ends = np.array([foot - reach * along, foot + reach * along])
-    behind = ends - DEPTH * size * normal
-    strip = np.vstack([ends, behind[::-1]])
-    axes.fill(strip[:, 0], strip[:, 1], facecolor="none", edgecolor="#6e6e78", hatch="//////", linewidth=0.0, zorder=0.5)
+    apart = HATCH * float((frame[1] - frame[0]).max())
+    starts = foot + np.arange(-reach, reach, apart)[:, None] * along
+    strokes = np.stack([starts, starts - apart * (along + normal)], axis=1)
+    axes.add_collection(pyplot().matplotlib.collections.LineCollection(strokes, colors="#282830", linewidths=0.8, zorder=0.5), autolim=False)
     axes.plot(ends[:, 0], ends[:, 1], color="#282830", linewidth=1.5, zorder=3)
 
 
@@ -187,15 +187,8 @@ def draw_bar(
         order = np.argsort(x)
         axes.plot(x[order], values[order])
     if scale is not None:
-        axes.set_yscale("log" if scale.logarithmic else "linear")
         room = 0.05 * (scale.high - scale.low)
-        ends = (0.9 * scale.low, 1.1 * scale.high) if scale.logarithmic else (scale.low - room if scale.low < 0.0 else scale.low, scale.high + room)
-        axes.set_ylim(*ends)
-        if scale.logarithmic:
-            locator, form = _marks(scale)
-            axes.yaxis.set_major_locator(locator)
-            axes.yaxis.set_major_formatter(form)
-            axes.minorticks_off()
+        axes.set_ylim(scale.low - room if scale.low < 0.0 else scale.low, scale.high + room)
     axes.set(xlabel=f"x ({prefix}m)", ylabel=label)
     axes.grid(alpha=0.3)
     length = float(np.ptp(x))

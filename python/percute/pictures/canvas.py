@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -73,6 +74,26 @@ def prefixed(values: Floats) -> tuple[float, str]:
         return 1.0, ""
     power = int(np.clip(np.floor(np.log10(largest) / 3), -3, 3))
     return 1000.0**power, {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
+
+
+SYMBOL = re.compile(r"(?<!\w)(Δ?)([A-Za-z])(?:_([A-Za-z]+)|(?=(?:/| − )Δ?[A-Za-z]_))")
+"""A letter with an index, or beside one: e_E, Δt_c, and both in Δt/Δt_c."""
+POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)")
+MINUS = re.compile(r"(?<![\w.){])-(?=\$?\d)")
+
+
+def typeset(text: str) -> str:
+    """Set symbols with indices, J^½, powers of ten and signs in the language of matplotlib."""
+
+    def symbol(found: re.Match[str]) -> str:
+        index = f"_{{\\mathrm{{{found[3]}}}}}" if found[3] else ""
+        return f"{found[1]}${found[2]}{index}$"
+
+    def power(found: re.Match[str]) -> str:
+        base = "" if found[1] == "1" else f"{found[1]} \\times "
+        return f"${base}10^{{{int(found[2])}}}$"
+
+    return MINUS.sub("−", POWER.sub(power, SYMBOL.sub(symbol, text.replace("J^½", "J$^{1/2}$"))))
 
 
 def writable(name: str, file: object, overwrite: object, endings: tuple[str, ...] = ENDINGS) -> str | None:

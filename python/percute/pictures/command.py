@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import signal
 import sys
 import warnings
@@ -67,7 +68,7 @@ def _subject(given: argparse.Namespace, tell: Any) -> History | Estimate:
     """Read or compute the subject of a picture."""
     file: Path = given.file
     with canvas.reading(str(file)), file.open("rb") as stream:
-        binary = stream.read(8) == b"\x89HDF\r\n\x1a\n"
+        binary = stream.read(8) == b"\x89HDF\r\n\x1a\n" or file.suffix.lower() == ".vtkhdf"
     found = open_file(file) if binary else run(file, overwrite=given.force, progress=tell)
     if isinstance(found, History):
         return estimate(found, force=given.accept_inconsistent, progress=tell) if given.kind in OF_THE_ERROR else found
@@ -115,9 +116,9 @@ def draw(subject: History | Estimate, given: argparse.Namespace, save: Path, tel
         {"energies": subject.plot_energies, "force": subject.plot_force, "pressure": subject.plot_pressure}[given.kind](**options)
 
 
-def _said(error: PercuteError) -> str:
-    """Give the message of an error in the words of the command."""
-    message = str(error)
+def _said(error: PercuteError, file: Path) -> str:
+    """Give the message of an error in the words of the command, with the file as it was named."""
+    message = str(error).replace(os.path.abspath(file), str(file))
     for word, ours in WORDS.items():
         message = message.replace(word, ours)
     return message
@@ -149,7 +150,7 @@ def main(arguments: Sequence[str]) -> int:
         print("interrupted: no picture", file=sys.stderr)
         return INTERRUPTED
     except PercuteError as error:
-        print(f"error: {_said(error)}", file=sys.stderr)
+        print(f"error: {_said(error, given.file)}", file=sys.stderr)
         return BAD_INPUT if isinstance(error, ExistingFileError | FileFormatError | InputError | MissingFileError) else FAILED
     print(save)
     return DONE

@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from percute.checks import number, text
+from percute import _percute
+from percute.checks import flag, number, text
 from percute.errors import InputError
-from percute.pictures.body import Line, draw_bar, draw_body, scale_of
-from percute.pictures.canvas import COLOURS, Floats, legend_beside, new_axes, over_time, prefixed, root, save_figure, writable
+from percute.pictures.body import Line, draw_bar, draw_body, linear, scale_of
+from percute.pictures.canvas import (
+    COLOURS,
+    FIELD,
+    Floats,
+    legend_beside,
+    new_axes,
+    over_time,
+    prefixed,
+    root,
+    save_figure,
+    typeset,
+    writable,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,27 +57,36 @@ def _displacement(estimate: Estimate) -> tuple[Floats, float]:
     return nearest.displacement, nearest.time
 
 
-def plot_map(estimate: Estimate, scale: float, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def _outline(estimate: Estimate) -> tuple[list[Floats], str]:
+    """Give the deformed outline at the end and what it is; nothing of a bar, nor from files of earlier versions."""
+    found = _percute.deformed_outline(estimate.mesh._data, estimate.to_json())
+    return ([], "") if found is None else ([np.array(line) for line in found[0]], f"\n— {found[1]}")
+
+
+def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw e_E of each element (J^½), eq. [20]."""
     file, factor = writable("save", save, overwrite), number("scale", scale, finite=True)
-    mesh, values, label = estimate.mesh, estimate.by_element, "error of the element, $e_E$ (J$^{1/2}$)"
-    places, told = mesh.points, ""
+    mesh, values, label = estimate.mesh, estimate.by_element, typeset("e_E (J^½)")
+    lines, told = _outline(estimate) if flag("outline", outline) and factor == 0.0 else ([], "")
+    places = mesh.points
     if factor != 0.0 and mesh.dimension == 2:
         moved, time = _displacement(estimate)
         places = places + factor * moved
         seconds, prefix = prefixed(np.array([time]))
-        told = f"; displacement × {factor:.3g} at t = {time / seconds:.4g} {prefix}s"
+        told = f"\ndisplacement × {factor:.3g} at t = {time / seconds:.4g} {prefix}s"
     axes = new_axes(axes)
-    colours, planes = scale_of(values), planes_of(estimate)
+    planes = planes_of(estimate)
     if mesh.dimension == 1:
-        draw_bar(axes, places, mesh.cells, values, label, scale=colours, planes=planes)
+        draw_bar(axes, places, mesh.cells, values, label, scale=linear(values, FIELD), planes=planes)
     else:
-        draw_body(axes, places, mesh.cells, values, label, scale=colours, planes=planes)
-    axes.set_title(
-        f"sup {estimate.sup:.4g} J$^{{1/2}}$ ({100 * estimate.relative_sup:.3g} %), "
-        f"mean {estimate.mean:.4g} J$^{{1/2}}$ ({100 * estimate.relative_mean:.3g} %)\nmean² = sum of the $e_E$²{told}",
-        fontsize="medium",
+        draw_body(axes, places, mesh.cells, values, label, scale=scale_of(values), planes=planes, outline=lines)
+    seconds, prefix = prefixed(np.array([estimate.end]))
+    name = f"{Path(estimate._name).name}: " if estimate._name else ""
+    title = (
+        f"Constitutive relation error {estimate.sup:.4g} J^½ ({100 * estimate.relative_sup:.3g} %)\n"
+        f"{name}contribution of each element up to t = {estimate.end / seconds:.4g} {prefix}s; mean error {estimate.mean:.4g} J^½{told}"
     )
+    axes.set_title(typeset(title), fontsize="medium")
     save_figure(root(axes), file)
     return axes
 

@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute.errors import PercuteError
+from percute.pictures.canvas import typeset
 from percute.verification.page import short
 
 try:
     from matplotlib import colormaps, colors, rc_context
     from matplotlib.figure import Figure as Drawing
+    from matplotlib.text import Text
     from matplotlib.ticker import NullLocator
 except ImportError:
     raise PercuteError('the figures need matplotlib: pip install matplotlib')
@@ -255,6 +257,8 @@ def _bar(figure: Drawing, image: Any, axes: list[Any], colours: Colours) -> None
 
 def save(figure: Drawing, file: Path) -> None:
     """Write a figure as SVG and PNG; ``file`` has no ending."""
+    for text in figure.findobj(Text):
+        text.set_text(typeset(text.get_text()))
     with rc_context(STYLE):
         figure.savefig(file.with_name(file.name + ".svg"), metadata={"Date": None})
         figure.savefig(file.with_name(file.name + ".png"), dpi=160, metadata={"Software": None})

@@ -6,7 +6,7 @@ use super::{Console, estimate, run};
 use crate::args::{EstimateArguments, PrintArguments, ReportArguments, RunArguments, WorkArguments};
 use crate::exit::DONE;
 use percute_core::each_dimension;
-use percute_io::{Kind, estimate_file, is_hdf5, kind};
+use percute_io::{Kind, estimate_file, is_hdf5, is_vtkhdf_name, kind};
 use percute_presentation::{Body, Document, Surface};
 use percute_workflow::Failure;
 use std::path::{Path, PathBuf};
@@ -15,8 +15,8 @@ pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) ->
     let ReportArguments { file, page, output, accept_inconsistent, work } = arguments;
     let page = page.clone().or_else(|| output.clone()).unwrap_or_else(|| named_after(file));
     let (print, work) = (PrintArguments { report: Some(page), ..PrintArguments::default() }, work.clone());
-    // A file that cannot be read is refused by the reader of cases, which says what it can of it.
-    if !is_hdf5(file).unwrap_or(false) {
+    // A file that cannot be read is refused by the reader of histories or of cases, which says what it can of it.
+    if !is_hdf5(file).unwrap_or(false) && !is_vtkhdf_name(file) {
         let case = file.clone();
         return run::command(&RunArguments { case, print, work, ..RunArguments::default() }, console);
     }

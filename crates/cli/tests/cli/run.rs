@@ -112,6 +112,8 @@ fn only_what_may_be_absent_is_null() {
             // The history is of percute.
             ".consistency",
             ".samples",
+            // A bar has none.
+            ".outline",
             // Contact goes on at the end.
             ".rebound.velocity_after",
             ".rebound.normal_after",
@@ -119,6 +121,7 @@ fn only_what_may_be_absent_is_null() {
             ".rebound.release",
         ];
         assert!(found.iter().all(|path| may_be.contains(&path.as_str())), "{found:?}");
+        assert_eq!(found.contains(&".outline".to_string()), case == BAR);
     }
 }
 
@@ -153,10 +156,10 @@ fn the_summary_fits_one_screen() {
 fn warnings_go_to_standard_error_and_stay_in_the_summary() {
     let bench = Bench::new(ARRAYS);
     let loud = bench.percute(&["run", "case.toml"]);
-    assert!(stderr(&loud).contains("warning: 1 elements were given clockwise"), "{}", stderr(&loud));
+    assert!(stderr(&loud).contains("warning: 1 element was given clockwise"), "{}", stderr(&loud));
     let quiet = bench.percute(&["run", "case.toml", "--quiet"]);
     assert_eq!(stderr(&quiet), "");
-    assert!(stdout(&quiet).contains("WARNING   1 elements reoriented"), "{}", stdout(&quiet));
+    assert!(stdout(&quiet).contains("WARNING   1 element reoriented"), "{}", stdout(&quiet));
 }
 
 #[test]

@@ -49,7 +49,9 @@ impl OverTime<'_> {
         let mut svg = Svg::new(SIZE);
         let quantity = if unit.is_empty() { self.quantity.to_string() } else { format!("{} ({unit})", self.quantity) };
         let labels = (format!("t ({second})"), quantity);
-        plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], grid: [true, false] });
+        // Numbers of things have no halves.
+        let marks = if unit.is_empty() { 5.min(high as usize) } else { 5 };
+        plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, marks], grid: [true, false] });
         if let Some((at, name)) = self.mark {
             let [x, _] = plot.at(at * in_time, 0.0);
             svg.line("now", [x, ROOM[1]], [x, SIZE[1] - ROOM[3]]);

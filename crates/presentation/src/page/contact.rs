@@ -1,10 +1,12 @@
 //! Contact: force, zone and pressure over time.
 
 use super::Contents;
-use super::error::seconds;
-use super::html::{Table, figure, number, paragraph, remark, section, vector};
+use super::html::{
+    Named, Table, figure, members, number, paragraph, quantity, remark, section, share, together, vector,
+};
 use crate::chart::{Line, OverTime, space_time};
 use crate::document::Document;
+use crate::scale::vector_quantity;
 
 /// Chart names of the first planes; more are left out of the chart.
 const PLANES: [&str; 5] = ["plane 0", "plane 1", "plane 2", "plane 3", "plane 4"];
@@ -17,7 +19,13 @@ pub(super) fn section_of(contents: &Contents<'_>) -> String {
     if document.number("contact.first_touch").is_none() {
         return section("Contact", &paragraph("No node touches a plane."));
     }
-    let all = [facts(document), force(document), zone(document), pressure(contents), rebound(document)];
+    let all = [
+        facts(document),
+        force(document),
+        zone(document),
+        pressure(contents),
+        members("rebound", document.at("rebound"), &REBOUND),
+    ];
     section("Contact", &all.join(""))
 }
 
@@ -25,16 +33,17 @@ fn facts(document: &Document) -> String {
     let mut table = Table::new(&["", "#value"]);
     let value = |path: &str| document.number(path);
     let mut row = |name: &str, value: String| table.row(&[name.to_string(), value]);
-    row("first touch", seconds(value("contact.first_touch")));
-    row("peak of the normal force (N)", number(value("contact.peak_normal_force")));
-    row("time of the peak", seconds(value("contact.time_of_peak")));
-    row("largest pressure at a node (Pa)", number(value("contact.peak_pressure")));
+    row("first touch", quantity(value("contact.first_touch"), "s"));
+    row("peak of the normal force", quantity(value("contact.peak_normal_force"), "N"));
+    row("time of the peak", quantity(value("contact.time_of_peak"), "s"));
+    row("largest pressure at a node", quantity(value("contact.peak_pressure"), "Pa"));
     row("at node", number(value("contact.node_of_peak_pressure")));
     if let Some(impulse) = document.list("contact.total.impulse").last() {
-        row("impulse on the body (N s)", vector(&crate::document::numbers(impulse)));
+        row("impulse on the body", together(&vector_quantity(&crate::document::numbers(impulse), "N s", 5)));
     }
-    row("energy dissipated by friction (J)", number(document.column("contact.total.friction_energy").last().copied()));
-    row("impulse kept by the admissible force", number(value("kept_impulse")));
+    let friction = document.column("contact.total.friction_energy").last().copied();
+    row("energy dissipated by friction", quantity(friction, "J"));
+    row("impulse kept by the admissible force", share(value("kept_impulse")));
     table.html()
 }
 
@@ -83,17 +92,15 @@ fn pressure(contents: &Contents<'_>) -> String {
     figure(&svg, "pressure along the surface over time", &caption)
 }
 
-/// The rebound, where the document has it.
-fn rebound(document: &Document) -> String {
-    let Some(rebound) = document.at("rebound").as_object() else { return String::new() };
-    let mut table = Table::new(&["rebound", "#value"]);
-    for (key, value) in rebound {
-        let shown = match value {
-            serde_json::Value::Array(_) => vector(&crate::document::numbers(value)),
-            serde_json::Value::Bool(flag) => if *flag { "yes" } else { "no" }.to_string(),
-            value => number(value.as_f64()),
-        };
-        table.row(&[key.replace('_', " "), shown]);
-    }
-    table.html()
-}
+/// The rebound; V is the velocity of the centre of mass, n the normal of the plane.
+const REBOUND: [Named; 9] = [
+    ("velocity_before", "velocity V of the centre of mass before contact", "m/s"),
+    ("velocity_after", "velocity V′ after contact", "m/s"),
+    ("normal_before", "normal component V·n", "m/s"),
+    ("normal_after", "normal component V′·n", "m/s"),
+    ("restitution", "coefficient of restitution −V′·n / V·n", ""),
+    ("first_touch", "first touch", "s"),
+    ("release", "release", "s"),
+    ("time_in_contact", "time in contact", "s"),
+    ("ended", "contact has ended", ""),
+];

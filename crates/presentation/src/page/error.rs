@@ -1,12 +1,11 @@
 //! The error over elements, over time and by its sources.
 
 use super::Contents;
-use super::html::{self, Table, figure, number, paragraph, section, share};
+use super::html::{self, Table, figure, number, paragraph, section, share, vector};
 use crate::chart::{Line, OverTime};
 use crate::document::{Document, numbers};
 use crate::picture;
-use crate::scale::{hatted, prefixed};
-use percute_workflow::message::{short, trimmed};
+use percute_workflow::message::{change, trimmed};
 
 /// The map, and the worst elements.
 pub(super) fn map(contents: &Contents<'_>) -> String {
@@ -20,6 +19,10 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
         caption += " The colours are logarithmic where the largest value is more \
                     than five times the median.";
     }
+    if !document.at("outline").is_null() {
+        caption +=
+            " The line is the outline at the end: the motion as it is, and the deformation times the factor above.";
+    }
     if body.elements() > picture::MOST_POLYGONS {
         caption += &format!(" Above {} elements, the map is stored as pixels.", picture::MOST_POLYGONS);
     }
@@ -27,11 +30,10 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
     let mut table = Table::new(&["#rank", "#element", "#e_E (J^½)", "#share of e_mean^2", "centroid (m)"]);
     for (k, element) in worst.iter().enumerate() {
         let error = element["error"].as_f64();
-        let part = error.map_or("–".to_string(), |error| share((error / mean).powi(2)));
-        let centroid =
-            numbers(&element["centroid"]).iter().map(|&x| hatted(&short(x, 4))).collect::<Vec<_>>().join(", ");
+        let part = share(error.map(|error| (error / mean).powi(2)));
+        let centroid = vector(&numbers(&element["centroid"]));
         let name = element["element"].as_u64().map_or("–".to_string(), |e| e.to_string());
-        table.row(&[(k + 1).to_string(), name, number(error), part, format!("({centroid})")]);
+        table.row(&[(k + 1).to_string(), name, number(error), part, centroid]);
     }
     section("Error of the elements", &(figure(&svg, "map of the error of each element", &caption) + &table.html()))
 }
@@ -62,7 +64,7 @@ pub(super) fn over_time(document: &Document) -> String {
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();
     let mut table = Table::new(&["part of η at the sup", "#J", "#share"]);
     for (name, part) in parts {
-        let share = part.filter(|_| total > 0.0).map_or("–".to_string(), |part| html::share(part / total));
+        let share = share(part.filter(|_| total > 0.0).map(|part| part / total));
         table.row(&[name.to_string(), number(part), share]);
     }
     section("Error over time", &(figure + &table.html()))
@@ -94,9 +96,9 @@ pub(super) fn sources(document: &Document) -> String {
         let mean = value("mean", name);
         let share = mean.unwrap_or(0.0) / total;
         let bar = format!("<span class=\"bar\" style=\"width:{:.1}rem\"></span>", 6.0 * share.clamp(0.0, 1.0));
-        let cells = [name.to_string(), meaning.to_string(), number(mean), html::share(share)]
+        let cells = [name.to_string(), meaning.to_string(), number(mean), html::share(Some(share))]
             .map(|cell| crate::typeset::html(&cell));
-        let others = ["at_sup", "half_size"].map(|key| number(value(key, name)));
+        let others = ["at_sup", "half_size"].map(|key| crate::typeset::html(&number(value(key, name))));
         table.marked("", cells.into_iter().chain([bar]).chain(others).collect());
     }
     section("Sources of the error", &(table.html() + &outlook(document)))
@@ -105,21 +107,14 @@ pub(super) fn sources(document: &Document) -> String {
 /// The mean error that a finer mesh, and a shorter step, would have.
 fn outlook(document: &Document) -> String {
     let Some(mean) = document.number("error.mean").filter(|mean| *mean > 0.0) else { return String::new() };
-    let change = |key: &str| {
+    let expected = |key: &str| {
         let expected = document.number(&format!("sources.{key}"))?;
-        Some(format!("{} J^½ ({:+.0} %)", trimmed(expected, 4), 100.0 * (expected / mean - 1.0)).replace('-', "−"))
+        Some(format!("{} J^½ ({})", trimmed(expected, 4), change(expected / mean - 1.0)))
     };
-    let (Some(size), Some(step)) = (change("mean_with_half_size"), change("mean_with_half_step")) else {
+    let (Some(size), Some(step)) = (expected("mean_with_half_size"), expected("mean_with_half_step")) else {
         return String::new();
     };
     paragraph(&format!(
         "Expected mean error with elements and steps half as long: {size}; with steps half as long alone: {step}."
     ))
-}
-
-/// A duration with its prefix.
-pub(super) fn seconds(value: Option<f64>) -> String {
-    let Some(value) = value else { return "–".to_string() };
-    let (factor, unit) = prefixed("s", value);
-    format!("{} {unit}", trimmed(value * factor, 5))
 }

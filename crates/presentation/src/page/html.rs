@@ -1,9 +1,11 @@
 //! Pieces of HTML. Texts are escaped and symbols typeset here, and nowhere else.
 
-use crate::scale::hatted;
+use crate::document::numbers;
+use crate::scale;
 use crate::svg::Svg;
 use crate::typeset::{escaped, html};
-use percute_workflow::message::{percent, trimmed};
+use percute_workflow::message::{self, percent, trimmed};
+use serde_json::Value;
 
 /// A section with its title; nothing without contents.
 pub(super) fn section(title: &str, contents: &str) -> String {
@@ -38,18 +40,61 @@ pub(super) fn figure(svg: &Svg, label: &str, caption: &str) -> String {
 
 /// A number with five digits.
 pub(super) fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "–".to_string(), |value| hatted(&trimmed(value, 5)))
+    value.map_or_else(|| "–".to_string(), |value| trimmed(value, 5))
+}
+
+/// A number with its unit, which gets a prefix, in one line.
+pub(super) fn quantity(value: Option<f64>, unit: &str) -> String {
+    value.map_or_else(|| "–".to_string(), |value| together(&scale::quantity(value, unit, 5)))
+}
+
+/// A text that is not broken.
+pub(super) fn together(text: &str) -> String {
+    text.replace(' ', "\u{a0}")
 }
 
 /// A fraction in per cent.
-pub(super) fn share(fraction: f64) -> String {
-    format!("{} %", hatted(percent(fraction).trim_end_matches(" %")))
+pub(super) fn share(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_string(), percent)
 }
 
 /// Numbers of a list.
 pub(super) fn vector(values: &[f64]) -> String {
-    let all: Vec<String> = values.iter().map(|&value| number(Some(value))).collect();
-    if all.len() == 1 { all[0].clone() } else { format!("({})", all.join(", ")) }
+    message::vector(values, 5)
+}
+
+/// A key of an object of the document, its name on the page, and its unit: `%` for fractions, `#` for counts.
+pub(super) type Named = (&'static str, &'static str, &'static str);
+
+/// A table of the members of an object: those with a name in their order, then the others with the words of their keys.
+pub(super) fn members(title: &'static str, object: &Value, names: &[Named]) -> String {
+    /// Most rows of others.
+    const MOST: usize = 12;
+    let Some(object) = object.as_object() else { return String::new() };
+    let mut table = Table::new(&[title, "#value"]);
+    for (key, name, unit) in names {
+        if let Some(value) = object.get(*key) {
+            table.row(&[(*name).to_string(), member(value, unit)]);
+        }
+    }
+    let others = object.iter().filter(|(key, _)| names.iter().all(|(name, ..)| name != key));
+    for (key, value) in others.take(MOST) {
+        table.row(&[key.replace('_', " "), member(value, "")]);
+    }
+    table.html()
+}
+
+/// A member of an object, with its unit.
+fn member(value: &Value, unit: &str) -> String {
+    match (value, unit) {
+        (Value::Bool(flag), _) => if *flag { "yes" } else { "no" }.to_string(),
+        (Value::String(text), _) => text.clone(),
+        (Value::Number(count), "#") => count.to_string(),
+        (Value::Number(value), "%") => share(value.as_f64()),
+        (Value::Number(value), _) => quantity(value.as_f64(), unit),
+        (Value::Array(all), _) if all.len() <= 3 => together(&scale::vector_quantity(&numbers(value), unit, 5)),
+        _ => "–".to_string(),
+    }
 }
 
 /// A table under construction.

@@ -38,7 +38,8 @@ pub struct Contents<'a> {
 pub fn page(contents: &Contents<'_>) -> String {
     let document = contents.document;
     let (marks, light) = svg::style();
-    let title = format!("Error of {}", document.name());
+    let name = document.name();
+    let title = if name.is_empty() { "Error of a simulation".to_string() } else { format!("Error of {name}") };
     let sections = [
         verdict::section(document),
         error::map(contents),
@@ -66,19 +67,52 @@ pub fn page(contents: &Contents<'_>) -> String {
 mod tests {
     use super::*;
     use percute_core::mesh::TriangleMesh;
+    use percute_io::Case;
 
     /// The page of a document on a mesh of two triangles.
-    fn shown(document: &str) -> String {
+    fn shown(document: &str, case: Option<&Case>) -> String {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mesh =
             TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
         let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
-        page(&Contents { document: &document, body: &body, statement: "", case: None, surface: None })
+        page(&Contents { document: &document, body: &body, statement: "", case, surface: None })
+    }
+
+    #[test]
+    fn a_history_without_a_case_says_how_it_was_made() {
+        let about = |rest: &str| {
+            let options = r#""options": {"reconstruction": "corrected", "every": 2}"#;
+            shown(&format!(r#"{{"error": {{"sup": 1.5}}, "end": 1e-3, "time_step": 1e-5, {options}, {rest}}}"#), None)
+        };
+        let arrays = about(r#""case": "", "consistency": {"balance": 0}"#);
+        assert!(arrays.contains("made from arrays in Python") && arrays.contains("History.from_arrays("), "{arrays}");
+        assert!(
+            arrays.contains("percute.estimate(history, reconstruction=&quot;corrected&quot;, every=2)"),
+            "{arrays}"
+        );
+        let simulated = about(r#""case": """#);
+        assert!(simulated.contains("percute.simulate(problem, end=0.001, step=1e-5)"), "{simulated}");
+        for page in [arrays, simulated] {
+            assert!(!page.contains("vtkhdf") && page.contains("<title>Error of a simulation</title>"), "{page}");
+        }
+        let stored = about(r#""case": "runs/their.vtkhdf", "consistency": {}"#);
+        assert!(stored.contains("percute estimate their.vtkhdf --reconstruction corrected --every 2"), "{stored}");
+        assert!(stored.contains("a program other than percute wrote it"), "{stored}");
+    }
+
+    #[test]
+    fn the_mesh_file_of_a_case_is_named() {
+        let case = |text: &str| Case { name: "a/beam.toml".to_string(), text: text.to_string() };
+        let document = r#"{"error": {"sup": 1.5}, "case": "beam.toml"}"#;
+        let page = shown(document, Some(&case("[mesh]\nfile = \"beam.msh\"\n")));
+        assert!(page.contains("mesh file <code>beam.msh</code>, which gives 2 triangles and 4 nodes"), "{page}");
+        assert!(page.contains("percute run beam.toml --report report.html"), "{page}");
+        assert!(!shown(document, Some(&case("[mesh]\nbar = {}\n"))).contains("mesh file"));
     }
 
     #[test]
     fn a_document_of_an_earlier_version_has_a_page() {
-        let html = shown(r#"{"error": {"sup": 1.5}}"#);
+        let html = shown(r#"{"error": {"sup": 1.5}}"#, None);
         assert!(html.contains("<h2>Error of the elements</h2>") && html.ends_with("</html>\n"));
         for absent in ["<h2>Contact</h2>", "<h2>Sources of the error</h2>", "Trust:", "NaN"] {
             assert!(!html.contains(absent), "{absent}");
@@ -91,15 +125,16 @@ mod tests {
             r#"{"error": {"sup": 1.5}, "verdict": {"trust": "limited", "text": ["Refine <there>.", "Keep Δt_c."]},
                 "contact": {"first_touch": 1e-6}, "consistency": {"balance": 2.5e-9},
                 "rebound": {"restitution": 0.875, "velocity_before": [0.0, -4.0], "velocity_after": null, "ended": false}}"#,
+            None,
         );
         for part in [
             "<div class=\"verdict limited\"><p><b class=\"trust\">Trust: limited</b></p>",
             "<p>Refine &lt;there&gt;.</p>\n<p>Keep Δ<i>t</i><sub>c</sub>.</p>",
             "<dt>Restitution</dt><dd>0.875<",
-            "<td>velocity before</td><td class=\"n\">(0, −4)</td>",
-            "<td>velocity after</td><td class=\"n\">–</td>",
-            "<td>ended</td><td class=\"n\">no</td>",
-            "2.5·10<sup>−9</sup>",
+            "before contact</td><td class=\"n\">(0,\u{a0}−4)\u{a0}m/s</td>",
+            "<td>velocity V′ after contact</td><td class=\"n\">–</td>",
+            "<td>contact has ended</td><td class=\"n\">no</td>",
+            "over its largest term</td><td class=\"n\">2.50×10<sup>−7</sup>\u{a0}%",
         ] {
             assert!(html.contains(part), "{part}");
         }

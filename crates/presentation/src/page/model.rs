@@ -1,11 +1,9 @@
 //! Balances, residuals, and the model: mesh, materials, planes, supports and loads.
 
 use super::Contents;
-use super::error::seconds;
-use super::html::{Table, figure, heading, number, section, share, vector};
+use super::html::{Named, Table, figure, heading, members, number, quantity, section, share, vector};
 use crate::chart::{Line, OverTime};
 use crate::document::{Document, numbers};
-use crate::scale::hatted;
 use crate::typeset::html;
 use percute_workflow::message::short;
 
@@ -32,21 +30,26 @@ pub(super) fn balance(document: &Document) -> String {
     let chart = chart.draw().map_or_else(String::new, |svg| figure(&svg, "energies over time", caption));
     let mut table = Table::new(&["at the end", "#value"]);
     for (key, name) in [
-        ("initial", "energy at the start (J)"),
-        ("kinetic", "kinetic energy (J)"),
-        ("strain", "strain energy (J)"),
-        ("work_of_loads", "work of loads (J)"),
-        ("work_of_supports", "work of supports (J)"),
-        ("work_of_contact", "work of contact (J)"),
-        ("friction", "dissipated by friction (J)"),
+        ("initial", "energy at the start"),
+        ("kinetic", "kinetic energy"),
+        ("strain", "strain energy"),
+        ("work_of_loads", "work of loads"),
+        ("work_of_supports", "work of supports"),
+        ("work_of_contact", "work of contact"),
+        ("friction", "dissipated by friction"),
     ] {
-        table.row(&[name.to_string(), number(document.number(&format!("balance.{key}")))]);
+        table.row(&[name.to_string(), quantity(document.number(&format!("balance.{key}")), "J")]);
     }
     for (key, name) in [("energy_drift", "drift of the energy"), ("impulse_drift", "drift of the impulse")] {
-        let drift = document.number(&format!("balance.{key}")).map_or("–".to_string(), share);
-        table.row(&[name.to_string(), drift]);
+        table.row(&[name.to_string(), share(document.number(&format!("balance.{key}")))]);
     }
-    section("Energy and residuals", &(chart + &table.html() + &consistency(document) + &residuals(document)))
+    section(
+        "Energy and residuals",
+        &(chart
+            + &table.html()
+            + &members("consistency of the history", document.at("consistency"), &CONSISTENCY)
+            + &residuals(document)),
+    )
 }
 
 fn residuals(document: &Document) -> String {
@@ -55,27 +58,27 @@ fn residuals(document: &Document) -> String {
     for (name, value) in residuals {
         let value = value.as_f64();
         let good = value.is_some_and(|value| value <= 1e-10);
-        let shown = value.map_or("not finite".to_string(), |value| hatted(&short(value, 2)));
+        let shown = value.map_or("not finite".to_string(), |value| short(value, 2));
         table.marked(if good { "" } else { "bad" }, vec![html(&name.replace('_', " ")), html(&shown)]);
     }
-    heading("Residuals, relative to the largest term; above 10^-10 a field is not admissible") + &table.html()
+    heading("Residuals, relative to the largest term; above 1e-10 a field is not admissible") + &table.html()
 }
 
-/// The consistency of a history of another program, where the document has it.
-fn consistency(document: &Document) -> String {
-    let Some(found) = document.at("consistency").as_object() else { return String::new() };
-    let mut table = Table::new(&["consistency of the history", "~value"]);
-    for (key, value) in found {
-        let shown = match value {
-            serde_json::Value::Number(_) => number(value.as_f64()),
-            serde_json::Value::String(text) => text.clone(),
-            serde_json::Value::Null => continue,
-            other => other.to_string(),
-        };
-        table.row(&[key.replace('_', " "), shown]);
-    }
-    table.html()
-}
+/// Figures of a history of another program.
+const CONSISTENCY: [Named; 12] = [
+    ("balance", "residual M a + K u − F − R over its largest term", "%"),
+    ("node", "at node", "#"),
+    ("time", "at t", "s"),
+    ("initial_displacement", "u_0 off that of the problem, over the size of the body", "%"),
+    ("initial_velocity", "v_0 off that of the problem, over the largest", "%"),
+    ("velocity", "velocities off those of the displacements", "%"),
+    ("acceleration", "accelerations off those of the displacements", "%"),
+    ("cone", "contact force in tension or beyond Coulomb’s limit", "%"),
+    ("gap_under_force", "gap under a contact force, over the element size", "%"),
+    ("penetration", "penetration over the element size", "%"),
+    ("touching", "contact where touching status and forces disagree", "%"),
+    ("energy", "drift of the energy", "%"),
+];
 
 pub(super) fn section_of(contents: &Contents<'_>) -> String {
     let all = [mesh(contents), stated(contents.statement), planes(contents.document), time(contents.document)];
@@ -178,10 +181,10 @@ fn planes(document: &Document) -> String {
 fn time(document: &Document) -> String {
     let mut table = Table::new(&["time and estimate", "#value"]);
     let mut row = |name: &str, value: String| table.row(&[name.to_string(), value]);
-    row("longest step Δt", seconds(document.number("time_step")));
-    row("critical step Δt_c", seconds(document.number("critical_time_step")));
+    row("longest step Δt", quantity(document.number("time_step"), "s"));
+    row("critical step Δt_c", quantity(document.number("critical_time_step"), "s"));
     row("steps", number(document.number("steps")));
-    row("end of the estimate", seconds(document.number("end")));
+    row("end of the estimate", quantity(document.number("end"), "s"));
     for key in ["reconstruction", "acceleration", "every"] {
         let value = document.at(&format!("options.{key}"));
         row(key, value.as_str().map_or_else(|| number(value.as_f64()), str::to_string));
@@ -195,6 +198,6 @@ fn time(document: &Document) -> String {
     if !derived.is_empty() {
         row("derived, because the history lacks them", derived.join(", "));
     }
-    row("duration of the work (s)", number(document.number("seconds")));
+    row("duration of the work", quantity(document.number("seconds"), "s"));
     table.html()
 }

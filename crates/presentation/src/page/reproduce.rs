@@ -2,8 +2,10 @@
 
 use super::Contents;
 use super::html::{heading, paragraph, remark, section as sectioned, verbatim};
+use crate::body::Body;
 use crate::document::Document;
-use percute_workflow::message::bytes;
+use percute_io::{Case, is_vtkhdf_name};
+use percute_workflow::message::{bytes, counted};
 
 /// Longest text of a case on the page (bytes): longer ones hold their mesh as arrays.
 const LONGEST: usize = 100_000;
@@ -16,16 +18,35 @@ pub(super) fn section(contents: &Contents<'_>) -> String {
         document.text("versions.architecture"),
         document.text("versions.system")
     ));
-    html += &verbatim(&commands(contents));
     html += &match contents.case {
-        Some(case) => heading(&format!("Case file {}", file_of(&case.name))) + &text(&case.text),
+        Some(case) => {
+            verbatim(&commands(contents, case))
+                + &mesh_file(contents.body, &case.text)
+                + &heading(&format!("Case file {}", file_of(&case.name)))
+                + &text(&case.text)
+        }
         None => {
             let origin = "The problem was not stated in a case file. This is the problem in the language of the case files, without \
                           mesh, initial fields and instants.";
-            heading("Statement of the problem") + &remark(origin) + &text(contents.statement)
+            without_case(document) + &heading("Statement of the problem") + &remark(origin) + &text(contents.statement)
         }
     };
     sectioned("How to reproduce", &html)
+}
+
+/// The mesh file that a case names, which the page does not hold.
+fn mesh_file(body: &Body, case: &str) -> String {
+    let tables = case.parse::<toml::Table>().unwrap_or_default();
+    let Some(file) = tables.get("mesh").and_then(|mesh| mesh.get("file")).and_then(toml::Value::as_str) else {
+        return String::new();
+    };
+    let kind = if body.dimension == 1 { "bar element" } else { "triangle" };
+    let (elements, nodes) = (counted(body.elements(), kind), counted(body.points.len(), "node"));
+    let told = format!(
+        "The case reads the mesh file `{file}`, which gives {elements} and {nodes} and is not on this page: it must lie \
+         beside the case. A history of the run has its mesh, too, in metres, for a case without `scale`: `percute.open(\"history.vtkhdf\").problem.mesh.write(\"mesh.msh\")` in Python writes it."
+    );
+    paragraph(&told)
 }
 
 fn text(text: &str) -> String {
@@ -38,33 +59,60 @@ fn text(text: &str) -> String {
         + &verbatim(&text[..end])
 }
 
+/// The name of a case without its folder; one that was given as a text in Python gets an ending.
 fn file_of(name: &str) -> String {
-    std::path::Path::new(name).file_name().map_or_else(|| name.to_string(), |name| name.to_string_lossy().into_owned())
+    let file = std::path::Path::new(name).file_name();
+    let file = file.map_or_else(|| name.to_string(), |name| name.to_string_lossy().into_owned());
+    if file.contains('.') { file } else { file + ".toml" }
 }
 
-fn commands(contents: &Contents<'_>) -> String {
-    let document = contents.document;
-    let name = document.name();
-    let Some(case) = contents.case else {
-        // A history of another program, or of Python.
-        let file = if name.contains('.') { name } else { "history.vtkhdf".to_string() };
-        return estimate(document, &file);
-    };
+fn commands(contents: &Contents<'_>, case: &Case) -> String {
+    let (document, name) = (contents.document, contents.document.name());
     let case = quoted(&file_of(&case.name));
-    if quoted(&name) == case {
+    if quoted(&file_of(&name)) == case {
         return format!("percute run {case} --report report.html");
     }
     format!("percute simulate {case} --history {}\n{}", quoted(&name), estimate(document, &name))
 }
 
+/// The way to a page whose history was not made from a case: from its file, or else in Python.
+fn without_case(document: &Document) -> String {
+    let (name, arrays) = (document.name(), !document.at("consistency").is_null());
+    if is_vtkhdf_name(name.as_ref()) {
+        let origin = if arrays { "a program other than percute wrote it" } else { "it was simulated in Python" };
+        let told = format!("The estimate is that of the history `{name}`: {origin}, and no case file belongs to it.");
+        return paragraph(&told) + &verbatim(&estimate(document, &name));
+    }
+    let (origin, made) = if arrays {
+        ("made from arrays", "percute.History.from_arrays(problem, time, displacement, ...)".to_string())
+    } else {
+        let known = |(name, key)| document.number(key).map(|value| format!(", {name}={value:?}"));
+        let times: String = [("end", "end"), ("step", "time_step")].into_iter().filter_map(known).collect();
+        ("simulated", format!("percute.simulate(problem{times})"))
+    };
+    let told =
+        format!("The history was {origin} in Python and is in no file. With the `problem` that is stated below:");
+    paragraph(&told) + &verbatim(&format!("history = {made}\n{}", estimate_in_python(document)))
+}
+
+/// The options of the estimate: name and value.
+fn options(document: &Document) -> impl Iterator<Item = (&'static str, String)> {
+    ["reconstruction", "acceleration", "every"].into_iter().filter_map(|key| {
+        let value = document.at(&format!("options.{key}"));
+        let text = value.as_str().map(str::to_string);
+        Some((key, text.or_else(|| value.as_u64().map(|value| value.to_string()))?))
+    })
+}
+
+fn estimate_in_python(document: &Document) -> String {
+    let value = |value: String| if value.parse::<u64>().is_ok() { value } else { format!("\"{value}\"") };
+    let options: String = options(document).map(|(key, text)| format!(", {key}={}", value(text))).collect();
+    format!("percute.estimate(history{options}).report(\"report.html\")")
+}
+
 /// The command for a history, with all options.
 fn estimate(document: &Document, file: &str) -> String {
-    let option = |key: &str| {
-        let value = document.at(&format!("options.{key}"));
-        let value = value.as_str().map(str::to_string).or_else(|| value.as_u64().map(|value| value.to_string()));
-        value.map_or_else(String::new, |value| format!(" --{key} {}", quoted(&value)))
-    };
-    let options: String = ["reconstruction", "acceleration", "every"].map(option).concat();
+    let options: String = options(document).map(|(key, value)| format!(" --{key} {}", quoted(&value))).collect();
     format!("percute estimate {}{options} --report report.html", quoted(file))
 }
 

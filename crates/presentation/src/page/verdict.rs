@@ -1,10 +1,10 @@
 //! The verdict and the numbers that come first.
 
-use super::html::{number, share};
+use super::html::{number, share, together};
 use crate::document::Document;
-use crate::scale::{hatted, prefixed};
+use crate::scale::quantity;
 use crate::typeset::{escaped, html};
-use percute_workflow::message::{short, trimmed};
+use percute_workflow::message::{counted, short, trimmed};
 
 /// The title of the page.
 pub(super) fn head(document: &Document) -> String {
@@ -15,22 +15,22 @@ pub(super) fn head(document: &Document) -> String {
         text("versions.architecture"),
         text("versions.system")
     );
-    if let Some(elements) = document.number("problem.elements") {
-        let kind = if document.number("problem.dimension") == Some(1.0) { "bar elements" } else { "triangles" };
-        line += &format!(" · {elements} {kind}");
+    if let Some(elements) = document.at("problem.elements").as_u64() {
+        let kind = if document.number("problem.dimension") == Some(1.0) { "bar element" } else { "triangle" };
+        line += &format!(" · {}", counted(elements as usize, kind));
     }
     format!(
-        "<h1>Error of the simulation {}</h1>\n<p class=\"faint\">{line}</p>\n{}",
-        escaped(&document.name()),
+        "<h1>{}</h1>\n<p class=\"faint\">{line}</p>\n{}",
+        escaped(format!("Error of the simulation {}", document.name()).trim_end()),
         if document.flag("interrupted") { interrupted(document) } else { String::new() }
     )
 }
 
 fn interrupted(document: &Document) -> String {
     let [steps, planned] = ["steps", "steps_planned"].map(|path| number(document.number(path)));
-    let end = number(document.number("end"));
+    let end = document.number("end").map_or_else(String::new, |end| html(&format!(", t = {}", quantity(end, "s", 4))));
     format!(
-        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}, t = {end} s: all numbers are those of \
+        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}{end}: all numbers are those of \
          the steps until then.</p></div>\n"
     )
 }
@@ -67,14 +67,11 @@ fn meaning(document: &Document) -> String {
 
 fn tiles(document: &Document) -> String {
     let value = |path: &str| document.number(path);
-    let si = |unit: &str, value: f64| {
-        let (factor, unit) = prefixed(unit, value);
-        format!("{} {unit}", trimmed(value * factor, 4))
-    };
+    let si = |unit: &str, value: f64| together(&quantity(value, unit, 4));
     let error = |name: &str| {
-        let relative = share(value(&format!("error.relative_{name}"))?);
+        let relative = share(Some(value(&format!("error.relative_{name}"))?));
         let [error, reference] = [format!("error.{name}"), format!("error.reference_{name}")].map(|path| value(&path));
-        Some((relative, format!("{} J^½ of {}", hatted(&short(error?, 4)), hatted(&short(reference?, 4)))))
+        Some((relative, format!("{} J^½ of {}", short(error?, 4), short(reference?, 4))))
     };
     let step = || {
         let (step, critical) = (value("time_step")?, value("critical_time_step")?);
@@ -87,9 +84,9 @@ fn tiles(document: &Document) -> String {
     let residual = || {
         let at_most = value("largest_residual.value")?;
         let good = if document.flag("largest_residual.admissible") { "admissible" } else { "NOT admissible" };
-        Some((hatted(&short(at_most, 2)), format!("{good}; the limit is 10^-10")))
+        Some((short(at_most, 2), format!("{good}; the limit is 1e-10")))
     };
-    let drift = || Some((share(value("balance.energy_drift")?), "of the largest energy".to_string()));
+    let drift = || Some((share(Some(value("balance.energy_drift")?)), "of the largest energy".to_string()));
     let rebound = || {
         let restitution = value("rebound.restitution")?;
         Some((trimmed(restitution, 4), "rebound over approach velocity".to_string()))

@@ -58,9 +58,12 @@ impl Frame {
         (from < to).then_some((from, to))
     }
 
-    /// Whether a point is inside.
-    pub(super) fn holds(&self, point: [f64; 2]) -> bool {
-        (0..2).all(|c| self.low[c] <= point[c] && point[c] <= self.high[c])
+    /// The part of the line between two points inside the frame.
+    pub(super) fn within(&self, from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+        let direction = [0, 1].map(|c| to[c] - from[c]);
+        let (start, end) = self.clip(from, direction)?;
+        let (start, end) = (start.max(0.0), end.min(1.0));
+        (start < end).then(|| [start, end].map(|s| [0, 1].map(|c| from[c] + s * direction[c])))
     }
 }
 
@@ -74,7 +77,8 @@ mod tests {
             let frame = Frame::around([0.0, 0.0], high);
             let other = f64::from(frame.pixels[1]) / (frame.high[1] - frame.low[1]);
             assert!((frame.scale() / other - 1.0).abs() < 0.01, "{frame:?}");
-            assert!(frame.pixels[0] <= 761 && frame.pixels[1] <= 601 && frame.holds(high));
+            assert!(frame.pixels[0] <= 761 && frame.pixels[1] <= 601);
+            assert!((0..2).all(|c| frame.low[c] < 0.0 && high[c] < frame.high[c]));
         }
     }
 
@@ -85,5 +89,8 @@ mod tests {
         assert_eq!(frame.clip([0.0, 1.5], [1.0, 0.0]), None);
         assert_eq!(frame.clip([0.0, 0.0], [1.0, 1.0]), Some((0.0, 1.0)));
         assert_eq!(frame.clip([3.0, 0.0], [1.0, 1.0]), None);
+        assert_eq!(frame.within([1.0, 0.5], [1.5, 0.75]), Some([[1.0, 0.5], [1.5, 0.75]]));
+        assert_eq!(frame.within([-1.0, 0.5], [1.0, 0.5]), Some([[0.0, 0.5], [1.0, 0.5]]));
+        assert_eq!(frame.within([2.5, 0.5], [3.0, 0.5]), None);
     }
 }

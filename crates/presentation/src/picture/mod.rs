@@ -5,24 +5,28 @@ mod frame;
 mod plane_body;
 
 use crate::body::Body;
+use crate::deformed::Deformed;
 use crate::document::Document;
 use crate::png::{DrawError, rendered};
-use crate::scale::prefixed;
+use crate::scale::quantity;
 use crate::svg::{Anchor, Svg};
-use percute_workflow::message::{percent, short, trimmed};
+use percute_workflow::message::{percent, short};
 
 /// Room above the plot for two lines, left of and below it for axes, and at free sides (pixels).
 const HEAD: f64 = 62.0;
 const AXIS_LEFT: f64 = 78.0;
 const AXIS_BELOW: f64 = 52.0;
 const MARGIN: f64 = 16.0;
+/// Room for the meaning of the outline.
+const LEGEND: f64 = 24.0;
 
 /// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along a bar.
 #[must_use]
 pub fn svg(body: &Body, document: &Document) -> String {
-    let mut svg = sized(body, HEAD);
+    let shown = Shown::new(body, document, HEAD);
+    let mut svg = shown.sized();
     head(&mut svg, document);
-    draw(&mut svg, body, document, HEAD, Elements::Vectors, 0);
+    shown.draw(&mut svg, Elements::Vectors, 0);
     svg.alone()
 }
 
@@ -48,20 +52,38 @@ pub(crate) const MOST_POLYGONS: usize = 6000;
 
 /// The map of a page, without a head, with the places of the `marked` worst elements.
 pub(crate) fn map(body: &Body, document: &Document, marked: usize) -> Svg {
-    let mut svg = sized(body, MARGIN);
+    let shown = Shown::new(body, document, MARGIN);
+    let mut svg = shown.sized();
     let elements = if body.elements() > MOST_POLYGONS { Elements::Pixels } else { Elements::Vectors };
-    draw(&mut svg, body, document, MARGIN, elements, marked);
+    shown.draw(&mut svg, elements, marked);
     svg
 }
 
-fn sized(body: &Body, top: f64) -> Svg {
-    Svg::new(if body.dimension == 1 { bar::size(top) } else { plane_body::size(body, top) })
+/// The subject of a picture.
+struct Shown<'a> {
+    body: &'a Body,
+    document: &'a Document,
+    deformed: Option<Deformed>,
+    /// Room above the plot (pixels).
+    top: f64,
 }
 
-fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, elements: Elements, marked: usize) {
-    match body.dimension {
-        1 => bar::draw(svg, body, document, top, marked),
-        _ => plane_body::draw(svg, body, document, top, elements, marked),
+impl<'a> Shown<'a> {
+    fn new(body: &'a Body, document: &'a Document, head: f64) -> Self {
+        let deformed = Deformed::new(body, document);
+        let top = if deformed.is_some() { head + LEGEND } else { head };
+        Self { body, document, deformed, top }
+    }
+
+    fn sized(&self) -> Svg {
+        Svg::new(if self.body.dimension == 1 { bar::size(self.top) } else { plane_body::size(self) })
+    }
+
+    fn draw(&self, svg: &mut Svg, elements: Elements, marked: usize) {
+        match self.body.dimension {
+            1 => bar::draw(svg, self.body, self.document, self.top, marked),
+            _ => plane_body::draw(svg, self, elements, marked),
+        }
     }
 }
 
@@ -71,11 +93,11 @@ fn head(svg: &mut Svg, document: &Document) {
     let (error, relative) = (short(number("error.sup"), 4), percent(number("error.relative_sup")));
     let title = format!("Constitutive relation error {error} J^½ ({relative})");
     let cut = if document.flag("interrupted") { " (interrupted)" } else { "" };
-    let (factor, unit) = prefixed("s", number("end"));
+    let name = document.name();
+    let name = if name.is_empty() { name } else { name + ": " };
     let line = format!(
-        "{}: contribution of each element up to t = {} {unit}{cut}; the squares add up to that of the mean error, ({} J^½)^2",
-        document.name(),
-        trimmed(number("end") * factor, 4),
+        "{name}contribution of each element up to t = {}{cut}; mean error {} J^½",
+        quantity(number("end"), "s", 4),
         short(number("error.mean"), 4)
     );
     svg.text("title", [MARGIN, 29.0], Anchor::Start, false, &title);

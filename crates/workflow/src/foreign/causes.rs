@@ -2,7 +2,7 @@
 
 use super::limits::{BALANCE, Excess, PLACE};
 use super::measure::{Consistency, Evidence, Reordered, Trial, measure};
-use crate::message::percent;
+use crate::message::{numbered, percent, times, trimmed, vector};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
@@ -56,10 +56,11 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         } else if over("initial_velocity") {
             let [given, stated] = self.evidence.start;
             let factor = self.evidence.speed.filter(|f| f.is_finite() && (f - 1.0).abs() > BALANCE);
-            let factor = factor.map_or(String::new(), |f| format!(", {f:.4} times the stated one"));
+            let factor = factor.map_or(String::new(), |f| format!(", {} the stated one", times(f)));
             format!(
-                "`initial_velocity` is not that of the history, which starts with {given:.4?} m/s on average{factor}; the \
-                 problem has {stated:.4?} m/s"
+                "`initial_velocity` is not that of the history, which starts with {} m/s on average{factor}; the problem has {} m/s",
+                vector(&given, 4),
+                vector(&stated, 4)
             )
         } else if over("velocity") {
             "velocities are those of t_n, v_{n-1/2} + a_n dt/2, not of the middle of a step; leave them out".to_string()
@@ -111,7 +112,7 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             tried.push(self.tried(trial, self.mass(of_m))?);
         }
         if of_k > 0.0 {
-            let text = format!("`young` is not that of the history: it should be {of_k:.4} times as large");
+            let text = format!("`young` is not that of the history: it should be {} as large", times(of_k));
             tried.push(self.tried(Trial { factors: [1.0, 1.0, of_k], ..Trial::default() }, text)?);
         }
         Ok(tried)
@@ -122,13 +123,14 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let scale = factor.sqrt();
         match self.evidence.speed {
             Some(speed) if (speed * scale - 1.0).abs() <= AGREE && (scale - 1.0).abs() > 0.5 * BALANCE => {
-                format!("`time` is not that of the history: the steps should be {:.4} times as long", 1.0 / scale)
+                format!("`time` is not that of the history: the steps should be {} as long", times(1.0 / scale))
             }
-            Some(_) => format!("`density` is not that of the history: it should be {factor:.4} times as large"),
+            Some(_) => format!("`density` is not that of the history: it should be {} as large", times(factor)),
             None => format!(
-                "`density` or `time` is not that of the history: the density should be {factor:.4} times as large, or the \
-                 steps {:.4} times as long",
-                1.0 / scale
+                "`density` or `time` is not that of the history: the density should be {} as large, or the \
+                 steps {} as long",
+                times(factor),
+                times(1.0 / scale)
             ),
         }
     }
@@ -164,9 +166,9 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let (step, critical) = (self.source.times().longest_step(), critical_time_step(self.problem));
         (!is_stable(step, critical)).then(|| {
             format!(
-                "the instants are {:.3} critical steps apart: they are samples, not the steps of the solver; give velocities \
+                "the instants are {} critical steps apart: they are samples, not the steps of the solver; give velocities \
                  and accelerations too",
-                step / critical
+                trimmed(step / critical, 4)
             )
         })
     }
@@ -179,19 +181,15 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let share = |nodes: &[usize]| nodes.iter().map(|&node| self.evidence.by_node[node]).sum::<f64>() / total;
         if share(&silent) >= CONCENTRATED {
             let missing = silent.into_iter().filter(|&node| self.evidence.by_node[node] > 1e-6 * total);
-            let missing: Vec<_> = missing.map(|node| node.to_string()).collect();
-            let (some, more) = (missing[..missing.len().min(5)].join(", "), missing.len().saturating_sub(5));
-            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            return Some(format!(
-                "the contact forces of nodes {some}{more} are missing: a force acts there by the balance"
-            ));
+            let nodes = numbered("node", &missing.collect::<Vec<_>>());
+            return Some(format!("the contact forces of {nodes} are missing: a force acts there by the balance"));
         }
         let order = self.worst();
         let most = order.len() / 3;
         if share(&order[..most]) >= CONCENTRATED {
-            let some = order.iter().take(5).map(usize::to_string).collect::<Vec<_>>().join(", ");
+            let few = numbered("node", &order[..most]);
             return Some(format!(
-                "few nodes have almost all of it ({some}): their rows, supports, loads or materials differ"
+                "few nodes have almost all of it ({few}): their rows, supports, loads or materials differ"
             ));
         }
         (self.found.balance > 0.3).then(|| {
@@ -214,5 +212,5 @@ fn force(factor: f64) -> String {
     } else {
         ""
     };
-    format!("the contact forces should be {factor:.4} times as large{hint}")
+    format!("the contact forces should be {} as large{hint}", times(factor))
 }

@@ -1,7 +1,7 @@
 //! The limits of consistency.
 
 use super::measure::Consistency;
-use crate::message::percent;
+use crate::message::{percent, trimmed};
 
 /// A figure over its limit.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) const TOUCHING: f64 = 0.05;
 
 /// The figures over their limits, the most telling first.
 pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
-    let place = format!("at node {}, {:.4e} s", found.node, found.time);
+    let place = format!("at node {}, {} s", found.node, trimmed(found.time, 5));
     let of = |value: f64, limit: f64, name, what: &str| {
         // A figure that is no number must not pass.
         let over = value.is_nan() || value > limit;

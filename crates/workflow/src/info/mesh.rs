@@ -1,6 +1,6 @@
 //! What a mesh file holds.
 
-use crate::message::short;
+use crate::message::{counted, short};
 use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions, Warning, reported};
 use percute_core::each_dimension;
@@ -70,12 +70,13 @@ impl MeshInfo {
         let corner = |corner: &[f64]| corner.iter().map(|x| short(*x, 4)).collect::<Vec<_>>().join(", ");
         let (lower, upper) = (corner(&self.lower_corner), corner(&self.upper_corner));
         lines.push(("box", format!("({lower}) to ({upper}): metres, unless the case has a `scale`")));
-        for (title, groups, members) in [
-            ("edges", &self.edge_groups, if plane { "edges" } else { "ends" }),
-            ("elements", &self.element_groups, "elements"),
+        for (title, groups, member) in [
+            ("edges", &self.edge_groups, if plane { "edge" } else { "end" }),
+            ("elements", &self.element_groups, "element"),
         ] {
             let titles = std::iter::once(title).chain(std::iter::repeat(""));
-            let named = groups.iter().map(|group| format!("group \"{}\" of {} {members}", group.name, group.members));
+            let named =
+                groups.iter().map(|group| format!("group \"{}\" of {}", group.name, counted(group.members, member)));
             lines.extend(titles.zip(named));
             if groups.is_empty() {
                 lines.push((title, "no group".to_string()));

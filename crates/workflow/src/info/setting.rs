@@ -1,6 +1,6 @@
 //! What a case is about: materials, and planes with their gaps, so that a slip shows before the run.
 
-use crate::message::trimmed;
+use crate::message::{counted, trimmed};
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use serde::Serialize;
@@ -70,6 +70,6 @@ impl PlaneInfo {
         } else {
             String::new()
         };
-        ("plane", format!("gap {gap} m{when}, {} nodes may touch", self.contact_nodes))
+        ("plane", format!("gap {gap} m{when}, {} may touch", counted(self.contact_nodes, "node")))
     }
 }

@@ -3,5 +3,5 @@
 mod number;
 mod spelling;
 
-pub use number::{bytes, counted, percent, short, trimmed};
+pub use number::{bytes, change, counted, numbered, percent, short, times, trimmed, vector, whole_percent};
 pub use spelling::{hint, list};

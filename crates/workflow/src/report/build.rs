@@ -1,30 +1,19 @@
 //! From the results of a run to its report.
 
-use super::columns::{Columns, Named, PARTS};
+use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::warnings::{Facts, Warning, few_samples, reported, warnings};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report, SourceReport,
     Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
+use crate::outline::Outline;
 use percute_core::contact::ContactResults;
-use percute_core::dynamics::{Balance, Simulation};
+use percute_core::dynamics::Simulation;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
-use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options};
-
-/// Names of the energies over time.
-const ENERGIES: [Named<(f64, Balance)>; 7] = [
-    ("time", |(time, _)| *time),
-    ("kinetic", |(_, b)| b.kinetic),
-    ("strain", |(_, b)| b.strain),
-    ("work_of_loads", |(_, b)| b.work_of_loads),
-    ("work_of_supports", |(_, b)| b.work_of_supports),
-    ("work_of_contact", |(_, b)| b.work_of_contact),
-    ("friction", |(_, b)| b.friction),
-];
 
 /// How many elements the report names.
 const WORST: usize = 5;
@@ -39,6 +28,7 @@ impl Report {
         simulation: &Simulation,
         estimate: &Estimate<D>,
         contact: &ContactResults<D>,
+        outline: Option<&Outline>,
         seconds: f64,
     ) -> Self {
         let Subject { name, times, critical_step, held, checked, .. } = *subject;
@@ -84,22 +74,17 @@ impl Report {
             residuals: estimate.residuals,
             largest_residual,
             balance: simulation.balance,
-            balance_over_time: energies(times, simulation),
+            balance_over_time: EnergiesOverTime::new(times.instants(), &simulation.balance_over_time),
             kept_impulse: estimate.kept_impulse,
             own_contacts: estimate.own_contacts,
             contact: ContactReport::new(contact),
             rebound,
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
+            outline: outline.cloned(),
             seconds,
         }
     }
-}
-
-/// The energies at all instants.
-fn energies(times: &TimeGrid, simulation: &Simulation) -> Columns<(f64, Balance), 7> {
-    let balances = simulation.balance_over_time.iter().copied();
-    Columns::new(times.instants().iter().copied().zip(balances).collect(), ENERGIES)
 }
 
 /// The rebound and the verdict.

@@ -1,5 +1,6 @@
 //! Records over time as one array for each of their numbers.
 
+use percute_core::dynamics::Balance;
 use percute_estimator::{Sample, Sources};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -20,6 +21,32 @@ pub const PARTS: [Named<Sample>; 6] = [
 /// The sources of η over time.
 pub const SOURCES: [Named<Sources>; 4] =
     [("surface", |s| s.surface), ("front", |s| s.front), ("dispersion", |s| s.dispersion), ("mesh", |s| s.mesh)];
+
+/// Energies and works.
+pub const ENERGIES: [Named<Balance>; 6] = [
+    ("kinetic", |b| b.kinetic),
+    ("strain", |b| b.strain),
+    ("work_of_loads", |b| b.work_of_loads),
+    ("work_of_supports", |b| b.work_of_supports),
+    ("work_of_contact", |b| b.work_of_contact),
+    ("friction", |b| b.friction),
+];
+
+/// Energies and works at the instants (s).
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergiesOverTime {
+    time: Vec<f64>,
+    #[serde(flatten)]
+    energies: Columns<Balance, 6>,
+}
+
+impl EnergiesOverTime {
+    /// Those of the instants that were reached.
+    pub(super) fn new(instants: &[f64], balances: &[Balance]) -> Self {
+        let time = instants.iter().take(balances.len()).copied().collect();
+        Self { time, energies: Columns::new(balances.to_vec(), ENERGIES) }
+    }
+}
 
 /// Records, of which the named numbers are serialised, each as an array.
 #[derive(Clone, Debug)]

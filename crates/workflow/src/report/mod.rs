@@ -12,7 +12,7 @@ pub(crate) mod summary;
 mod verdict;
 mod warnings;
 
-pub use columns::{Columns, Named, PARTS, SOURCES};
+pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
 pub use rebound::{Rebound, rebound_to_json};
@@ -25,6 +25,7 @@ pub use warnings::reported;
 pub use warnings::{Warning, left_out, sampled};
 
 use crate::foreign::{Checked, Consistency, Derived, Samples};
+use crate::outline::Outline;
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -85,13 +86,14 @@ pub struct Report {
     pub residuals: Residuals,
     pub largest_residual: LargestResidual,
     pub balance: Balance,
-    pub balance_over_time: Columns<(f64, Balance), 7>,
+    pub balance_over_time: EnergiesOverTime,
     pub kept_impulse: Option<f64>,
     pub own_contacts: usize,
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
+    pub outline: Option<Outline>,
     pub warnings: Vec<Warning>,
     pub seconds: f64,
 }

@@ -2,7 +2,7 @@
 
 use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
-use crate::message::{counted, percent, short, trimmed};
+use crate::message::{counted, percent, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
 
 /// Nature of the error, in a line.
@@ -61,8 +61,8 @@ pub(crate) fn body(problem: &ProblemSummary) -> String {
 
 /// Elements and nodes.
 pub(crate) fn counts(dimension: usize, elements: usize, nodes: usize) -> String {
-    let kind = ["bar elements", "triangles"][dimension - 1];
-    format!("{elements} {kind}, {nodes} nodes")
+    let kind = ["bar element", "triangle"][dimension - 1];
+    format!("{}, {}", counted(elements, kind), counted(nodes, "node"))
 }
 
 /// The longest step beside the critical one (s).
@@ -107,7 +107,9 @@ fn time(report: &Report) -> String {
     let end = trimmed(report.end, 5);
     match report.held.map(|instants| instants.saturating_sub(1)) {
         _ if !report.interrupted => format!("{end} s in {};", counted(steps, "step")),
-        Some(held) if held == steps => format!("INCOMPLETE history of {steps} of {planned} steps, t = {end} s;"),
+        Some(held) if held == steps => {
+            format!("INCOMPLETE history of {steps} of {}, t = {end} s;", counted(planned, "step"))
+        }
         Some(held) if held < planned => {
             format!("INTERRUPTED at step {steps} of {held} ({planned} planned), t = {end} s;")
         }
@@ -131,7 +133,7 @@ fn error(report: &Report) -> Vec<(&'static str, String)> {
 fn sources(report: &Report) -> Option<String> {
     let mean = &report.sources.as_ref()?.mean;
     let total = mean.total();
-    let shares = SOURCES.map(|(name, source)| format!("{name} {:.0} %", 100.0 * source(mean) / total)).join(", ");
+    let shares = SOURCES.map(|(name, source)| format!("{name} {}", whole_percent(source(mean) / total))).join(", ");
     (total > 0.0).then(|| format!("{shares} of mean²"))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{LargestResidual, ProblemSummary};
 use crate::foreign::{Checked, Samples};
-use crate::message::{counted, percent, trimmed};
+use crate::message::{counted, percent, short, trimmed};
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
 use percute_estimator::{Reconstruction, Sampling};
@@ -78,7 +78,8 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
         return None;
     }
     let message = format!(
-        "the residual `{name}` is {value:.2e}: above {:.0e} a field is not admissible, and the error measure is not valid",
+        "the residual `{name}` is {}: above {:.0e} a field is not admissible, and the error measure is not valid",
+        short(*value, 2),
         super::ADMISSIBLE
     );
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
@@ -91,16 +92,22 @@ fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
 
 fn samples(facts: &Facts<'_>) -> Option<Warning> {
     let samples = facts.checked?.samples?;
-    warning("samples", format!("samples {:.3} critical steps apart", samples.critical_steps), sampled(&samples))
+    warning(
+        "samples",
+        format!("samples {} critical steps apart", trimmed(samples.critical_steps, 4)),
+        sampled(&samples),
+    )
 }
 
 /// The limits of an estimate from samples.
 #[must_use]
 pub fn sampled(samples: &Samples) -> String {
-    let Samples { count, distance, critical_steps } = samples;
+    let Samples { count, distance, critical_steps } = *samples;
+    let (samples, distance, critical_steps) =
+        (counted(count, "sample"), trimmed(distance, 4), trimmed(critical_steps, 4));
     format!(
-        "the history has {count} samples, {critical_steps:.3} critical steps apart; the motion between them is interpolated, \
-         and contact forces are derived from it: changes within {distance:.3e} s are not seen, and beyond some 4 critical \
+        "the history has {samples}, {critical_steps} critical steps apart; the motion between them is interpolated, \
+         and contact forces are derived from it: changes within {distance} s are not seen, and beyond some 4 critical \
          steps the estimate is too large"
     )
 }
@@ -178,8 +185,10 @@ fn resampled(facts: &Facts<'_>) -> Option<Warning> {
 
 fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
     let count = facts.problem.reoriented_elements;
-    let message = format!("{count} elements were given clockwise (a bar: backwards) and reoriented");
-    if count == 0 { None } else { warning("reoriented_elements", format!("{count} elements reoriented"), message) }
+    let elements = counted(count, "element");
+    let were = if count == 1 { "was" } else { "were" };
+    let message = format!("{elements} {were} given clockwise (a bar: backwards) and reoriented");
+    if count == 0 { None } else { warning("reoriented_elements", format!("{elements} reoriented"), message) }
 }
 
 /// An error that is sampled at the start and at the end only; told before the run, too.

@@ -132,7 +132,7 @@ impl<const D: usize, const N: usize> Prepared<D, N> {
     fn level(&self, options: Options, results: &Results<D>) -> Level {
         let Self { problem, times, critical_step } = self;
         let subject = Subject { name: "", problem, times, critical_step: *critical_step, held: None, checked: None };
-        let Results { simulation, estimate, contact } = results;
-        Level::new(&Report::new(&subject, options, simulation, estimate, contact, 0.0))
+        let Results { simulation, estimate, contact, outline } = results;
+        Level::new(&Report::new(&subject, options, simulation, estimate, contact, outline.as_ref(), 0.0))
     }
 }

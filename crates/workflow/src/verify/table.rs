@@ -2,7 +2,7 @@
 
 use super::criterion::Settled;
 use super::levels::{Cost, Level, Orders, Verification};
-use crate::message::{bytes, counted, short, trimmed};
+use crate::message::{bytes, counted, percent, short, trimmed};
 
 /// What will be run, before the work starts.
 #[must_use]
@@ -94,7 +94,7 @@ fn conclusion(verification: &Verification) -> String {
             "{stopped}From two refinements on, it shows whether the finest mesh is fine enough; with one, the index is too large."
         );
     };
-    let moved = format!("With the finest mesh the true error of the first moves by {:.1} %", 100.0 * settled.moved);
+    let moved = format!("With the finest mesh the true error of the first moves by {}", percent(settled.moved));
     let verdict = if settled.fine_enough {
         "the finest is fine enough"
     } else {

@@ -4,7 +4,7 @@ use super::Shares;
 use super::facts::Facts;
 use super::rules::Rule;
 use super::touches::Touches;
-use crate::message::short;
+use crate::message::{change, short, whole_percent};
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
@@ -28,13 +28,13 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     doubts.extend(facts.inconsistent.iter().map(|figure| format!("the history is not consistent: {figure}")));
     // A drift that is no number must not pass.
     if facts.energy_drift.is_nan() || facts.energy_drift > DRIFT {
-        doubts.push(format!("the energy balance is off by {}", per_cent(facts.energy_drift)));
+        doubts.push(format!("the energy balance is off by {}", whole_percent(facts.energy_drift)));
     }
     if facts.error.relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());
     }
     if !(KEPT[0]..=KEPT[1]).contains(&kept) {
-        doubts.push(format!("the admissible force has {} of the contact impulse", per_cent(kept)));
+        doubts.push(format!("the admissible force has {} of the contact impulse", whole_percent(kept)));
     }
     doubts.extend(rule.doubt.map(str::to_string));
     doubts
@@ -72,13 +72,14 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
 
 fn place(facts: &Facts, shares: Shares) -> String {
     let Shares { contact, inertia, stress } = shares;
-    let [contact, inertia, stress] = [contact, inertia, stress].map(per_cent);
+    let [contact, inertia, stress] = [contact, inertia, stress].map(whole_percent);
     if facts.contact.touches == Touches::None {
-        return format!("The peak of the error is {inertia} inertia, {stress} stress.");
+        return format!("The squared largest error is {inertia} inertia, {stress} stress.");
     }
-    let near = per_cent(facts.at_contact);
+    let near = whole_percent(facts.at_contact);
     format!(
-        "Elements that touch hold {near} of the squared error; its peak is {contact} contact, {inertia} inertia, {stress} stress."
+        "Elements that touch hold {near} of the squared mean error; the squared largest error is {contact} contact, {inertia} \
+         inertia, {stress} stress."
     )
 }
 
@@ -96,12 +97,4 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
         if expected.half_step < WORTH { "steps half as long alone" } else { "shorter steps alone do not help:" };
     let (size, step) = (change(expected.half_size), change(expected.half_step));
     format!("{place}: half the size changes the mean by {size}; {steps} {step}.")
-}
-
-fn per_cent(fraction: f64) -> String {
-    format!("{:.0} %", 100.0 * fraction)
-}
-
-fn change(fraction: f64) -> String {
-    format!("{:+.0} %", 100.0 * fraction).replace('-', "−")
 }
