@@ -3,6 +3,7 @@
 import signal
 
 import matplotlib
+import numpy as np
 import percute as pc
 import pytest
 
@@ -15,12 +16,7 @@ if hasattr(signal, "SIGHUP"):
 
 def block(nx: int = 8, ny: int = 6, friction: float = 0.2) -> pc.Problem:
     """The block of the paper, on a coarse mesh."""
-    return pc.Problem(
-        pc.Mesh.rectangle(0.05, 0.04, nx=nx, ny=ny),
-        material=pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress"),
-        obstacles=[pc.Plane(point=(0, -2e-4), normal=(0, 1), friction=friction)],
-        initial_velocity=(400, -400),
-    )
+    return falling(pc.Mesh.rectangle(0.05, 0.04, nx=nx, ny=ny), friction)
 
 
 def bar(elements: int = 40) -> pc.Problem:
@@ -30,6 +26,29 @@ def bar(elements: int = 40) -> pc.Problem:
         material=pc.Elastic(young=70e9, density=2700.0, section=0.02),
         obstacles=[pc.Plane(point=-2e-4, normal=1)],
         initial_velocity=-400,
+    )
+
+
+def tilted() -> pc.Problem:
+    """A block that strikes the plane with a corner."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=6)
+    angle = np.radians(10.0)
+    turned = mesh.points @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return falling(pc.Mesh(turned, mesh.cells))
+
+
+def disc() -> pc.Problem:
+    """A disc that strikes the plane."""
+    return falling(pc.Mesh.disc(0.025, rings=4))
+
+
+def falling(mesh: pc.Mesh, friction: float = 0.2) -> pc.Problem:
+    """A body of aluminium that flies to a plane with friction below it."""
+    return pc.Problem(
+        mesh,
+        material=pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress"),
+        obstacles=[pc.Plane(point=(0, mesh.points[:, 1].min() - 2e-4), normal=(0, 1), friction=friction)],
+        initial_velocity=(400, -400),
     )
 
 

@@ -45,6 +45,9 @@ pub enum TimeError {
         time: f64,
         before: f64,
     },
+    /// Instants that go down.
+    #[error("the instants go down from {first:e} s to {last:e} s: the order in time is reversed; turn all rows round")]
+    Reversed { first: f64, last: f64 },
     /// A step that is lost in the sum, or a sum that is infinite.
     #[error("`steps[{index}]` is {step:e} s, which cannot be added to the {time:e} s before it")]
     Lost { index: usize, step: f64, time: f64 },
@@ -117,10 +120,13 @@ impl TimeGrid {
     /// The instants given (s), from 0 on.
     ///
     /// # Errors
-    /// Fewer than two instants, a first that is not 0, one that is not after that before it.
+    /// Fewer than two instants, all in descending order, a first that is not 0, one that is not after that before it.
     pub fn from_instants(instants: Vec<f64>) -> Result<Self, TimeError> {
         if instants.len() < 2 {
             return Err(TimeError::TooFew { count: instants.len() });
+        }
+        if instants.is_sorted_by(|a, b| a > b) {
+            return Err(TimeError::Reversed { first: instants[0], last: instants[instants.len() - 1] });
         }
         if instants[0] != 0.0 {
             return Err(TimeError::Start { time: instants[0] });
@@ -220,6 +226,7 @@ mod tests {
         assert_eq!(TimeGrid::from_instants(grid.instants().to_vec()), Ok(grid));
         assert_eq!(TimeGrid::from_instants(vec![0.0]), Err(TimeError::TooFew { count: 1 }));
         assert_eq!(TimeGrid::from_instants(vec![1.0, 2.0]), Err(TimeError::Start { time: 1.0 }));
+        assert_eq!(TimeGrid::from_instants(vec![2.0, 1.0, 0.0]), Err(TimeError::Reversed { first: 2.0, last: 0.0 }));
         for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = TimeGrid::from_instants(vec![0.0, 1.0, wrong]);
             assert!(matches!(error, Err(TimeError::Order { index: 2, before: 1.0, .. })), "{error:?}");

@@ -36,12 +36,8 @@ pub fn estimate<const D: usize, const N: usize>(
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
     let critical = critical_time_step(problem);
-    let (mut consistency, samples) =
-        check(problem, &complete, critical, origin).map_err(|refusal| refused(refusal, origin))?;
-    if samples.is_none() {
-        let balance = run::balance(problem, &complete).map_err(unread)?;
-        consistency.energy = balance.last().map_or(0.0, |last| last.energy_drift);
-    }
+    let (consistency, samples) =
+        check(problem, &complete, critical, &derived, origin.accept).map_err(|refusal| refused(refusal, origin))?;
     let mut checked = Checked { derived, left_out: complete.left_out(), consistency, samples };
     let last = complete.times().step_count();
     let between = samples.map(|_| Between::new(&complete, critical)).transpose();

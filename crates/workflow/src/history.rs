@@ -1,8 +1,8 @@
 //! Histories in files: with the statement of their problem in the language of the case files.
 
-use crate::case::{Keep, NotRepresentable, Source, problem_from, statement};
+use crate::case::{CaseError, Keep, NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
-use crate::foreign::{Lacks, Origin};
+use crate::foreign::{Lacks, Origin, REVERSED, runs_backwards};
 use crate::grade::{self, Graded};
 use crate::report::Subject;
 use crate::run::{self, Analysis};
@@ -73,12 +73,28 @@ pub fn lacks<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> Option
     Some(there.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect())
 }
 
+/// Whether the end of a history of another program fits its initial velocity, backwards.
+fn backwards<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> bool {
+    let (count, nodes) = (file.count(), file.mesh().node_count());
+    if file.provenance().is_percute() || count < 2 {
+        return false;
+    }
+    let dt = file.times().step(count - 2);
+    let last = file.displacement(count - 2..count);
+    last.is_ok_and(|last| runs_backwards([&last[..nodes], &last[nodes..]], dt, file.initial_velocity()))
+}
+
+fn reversed(error: CaseError) -> CaseError {
+    CaseError { message: format!("{}. Likely cause: {REVERSED}", error.message), ..error }
+}
+
 impl<const D: usize, const N: usize> Stored<D, N> {
     fn new(file: HistoryFile<D, N>, path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let source = Source::new(format!("{name}, statement of the problem"), file.statement());
         let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());
-        let (problem, options) = problem_from(&source, file.mesh().clone(), u, v)?;
+        let read = problem_from(&source, file.mesh().clone(), u, v);
+        let (problem, options) = read.map_err(|error| if backwards(&file) { reversed(error) } else { error })?;
         Ok(Self { file, problem, options, name })
     }
 

@@ -18,6 +18,7 @@ pub mod outputs;
 pub mod report;
 pub mod run;
 pub mod tables;
+mod through;
 pub mod until;
 pub mod verify;
 pub mod writable;

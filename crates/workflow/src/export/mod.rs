@@ -6,10 +6,10 @@ use crate::choice::StepChoice;
 use crate::failure::Failure;
 use crate::outputs::{self, OutputFile};
 use crate::run;
+use crate::through::Through;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::observer::{Observer, Progress};
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
 use percute_io::export::{Contents, Format, Writer};
 use percute_io::{FileError, Overwrite};
 use quantity::{Rows, quantities};
@@ -140,7 +140,15 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
         let mut writer = Writer::new(self.path, self.format, overwrite, contents)?;
         let steps: Vec<usize> = self.instants.iter().map(|(step, _)| *step).collect();
         let last = steps.last().copied().unwrap_or(0);
-        let source = Watched { source: self.source, observer: RefCell::new(observer), last };
+        let observer = RefCell::new(observer);
+        let source = Through::new(self.source, |step, take| {
+            if step.index > last {
+                return Err(Done.into());
+            }
+            take(step)?;
+            let progress = Progress { stage: "exporting", done: step.index, total: last };
+            if observer.borrow_mut().observe(progress).is_break() { Err(Stopped.into()) } else { Ok(()) }
+        });
         let mut take = |step: &Step<'_, D>| Ok(writer.push(&rows.at(step))?);
         match run::chosen(self.problem, &source, &steps, rows.need_motion() && self.by_scheme, &mut take) {
             Ok(()) => {}
@@ -161,34 +169,6 @@ struct Stopped;
 #[derive(Debug, Error)]
 #[error("done")]
 struct Done;
-
-/// The steps of a history up to the last one that is needed, until an observer breaks.
-struct Watched<'a, const D: usize> {
-    source: &'a dyn StepSource<D>,
-    observer: RefCell<&'a mut dyn Observer>,
-    last: usize,
-}
-
-impl<const D: usize> StepSource<D> for Watched<'_, D> {
-    fn times(&self) -> &TimeGrid {
-        self.source.times()
-    }
-
-    fn count(&self) -> usize {
-        self.source.count()
-    }
-
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
-        self.source.replay(&mut |step| {
-            if step.index > self.last {
-                return Err(Done.into());
-            }
-            take(step)?;
-            let progress = Progress { stage: "exporting", done: step.index, total: self.last };
-            if self.observer.borrow_mut().observe(progress).is_break() { Err(Stopped.into()) } else { Ok(()) }
-        })
-    }
-}
 
 /// The failure of a step or of a file.
 fn unwritten(cause: SinkError) -> Failure {

@@ -16,7 +16,32 @@ pub(crate) struct Terms<const D: usize> {
     pub(crate) load: Vec<[f64; D]>,
 }
 
-/// Computes [`Terms`].
+impl<const D: usize> Terms<D> {
+    /// M a + K u − F at a node: the contact force there, if all fits.
+    pub(crate) fn rest(&self, node: usize) -> [f64; D] {
+        std::array::from_fn(|c| self.inertia[node][c] + self.stiffness[node][c] - self.load[node][c])
+    }
+}
+
+/// Velocities and acceleration that follow from displacements.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion<const D: usize> {
+    /// v_{n−½} (m/s), v₀ at the start.
+    pub(crate) back: Vec<[f64; D]>,
+    /// v_{n+½} (m/s).
+    pub(crate) forward: Vec<[f64; D]>,
+    /// a_n (m/s²).
+    pub(crate) acceleration: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Motion<D> {
+    /// The largest speed in the step after t_n (m/s).
+    pub(crate) fn speed(&self) -> f64 {
+        self.forward.iter().map(norm).fold(0.0, f64::max)
+    }
+}
+
+/// Computes [`Terms`] and [`Motion`].
 #[derive(Debug)]
 pub(crate) struct Balance<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,
@@ -37,26 +62,18 @@ impl<'p, const D: usize, const N: usize> Balance<'p, D, N> {
         self.times
     }
 
-    /// Velocities in the steps before and after t_n (m/s), before the first step v₀; none at the last instant.
-    pub(crate) fn half_steps(&self, window: Window<'_, D>) -> Option<[Vec<[f64; D]>; 2]> {
+    /// The motion around an instant, eq. \[29\], \[31\]; none at the last one.
+    pub(crate) fn motion(&self, window: Window<'_, D>) -> Option<Motion<D>> {
         let n = window.now.index;
-        let difference = |from: &Held<D>, to: &Held<D>, dt: f64| {
-            let ends = from.displacement.iter().zip(&to.displacement);
-            ends.map(|(a, b)| std::array::from_fn(|c| (b[c] - a[c]) / dt)).collect::<Vec<_>>()
-        };
         let back = match window.before {
-            Some(before) => difference(before, window.now, self.times.step(n - 1)),
+            Some(before) => rate(&before.displacement, &window.now.displacement, self.times.step(n - 1)),
             None => self.problem.initial_velocity().to_vec(),
         };
-        Some([back, difference(window.now, window.after?, self.times.step(n))])
-    }
-
-    /// a_n from the displacements (m/s²), at t_0 with v₀, eq. \[29\], \[31\]; none at the last instant.
-    pub(crate) fn acceleration(&self, window: Window<'_, D>) -> Option<Vec<[f64; D]>> {
-        let [back, forward] = self.half_steps(window)?;
-        let h = self.times.velocity_step(window.now.index);
+        let forward = rate(&window.now.displacement, &window.after?.displacement, self.times.step(n));
+        let h = self.times.velocity_step(n);
         let change = |(b, f): (&[f64; D], &[f64; D])| std::array::from_fn(|c| (f[c] - b[c]) / h);
-        Some(back.iter().zip(&forward).map(change).collect())
+        let acceleration = back.iter().zip(&forward).map(change).collect();
+        Some(Motion { back, forward, acceleration })
     }
 
     /// The terms with this acceleration (m/s²).
@@ -77,6 +94,15 @@ impl<'p, const D: usize, const N: usize> Balance<'p, D, N> {
         }
         Terms { inertia, stiffness, load }
     }
+}
+
+/// The mean velocity between two displacements dt (s) apart (m/s).
+pub(crate) fn rate<const D: usize>(from: &[[f64; D]], to: &[[f64; D]], dt: f64) -> Vec<[f64; D]> {
+    from.iter().zip(to).map(|(a, b)| std::array::from_fn(|c| (b[c] - a[c]) / dt)).collect()
+}
+
+pub(crate) fn norm<const D: usize>(a: &[f64; D]) -> f64 {
+    dot(a, a).sqrt()
 }
 
 pub(crate) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {

@@ -1,6 +1,7 @@
 //! The limits of consistency.
 
-use super::measure::Consistency;
+use super::figures::Consistency;
+use super::nearness::NEAR;
 use crate::message::{percent, trimmed};
 
 /// A figure over its limit.
@@ -22,8 +23,12 @@ pub(super) const CONE: f64 = 1e-2;
 /// Limit of `gap_under_force` and `penetration`, in elements. The softest penalty of docs/recipes.md has 0.35, which the
 /// estimate grades; more is a plane at another place, or another unit of length.
 pub(super) const GAP: f64 = 1.0;
-/// Limit of `touching`: one wrong step in a contact of twenty.
+/// Limit of `touching`: a status that is shifted by a step has 1.
 pub(super) const TOUCHING: f64 = 0.05;
+/// Limit of `slip`.
+pub(super) const SLIP: f64 = 0.05;
+/// Limit of `plane`, in elements: nodes at a larger distance are not in contact.
+pub(super) const PLANE: f64 = NEAR;
 
 /// The figures over their limits, the most telling first.
 pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
@@ -58,13 +63,20 @@ pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
             "velocity",
             "the difference of the velocities from those of the displacements, over the largest,",
         ),
+        of(found.plane, PLANE, "plane", "the gap under contact forces, the same everywhere, over the element size,"),
         of(
             found.touching,
             TOUCHING,
             "touching",
-            "the share of contact where touching status and forces one step before disagree",
+            "the number of disagreements of touching status and forces one step before, over that of their changes,",
         ),
         of(found.cone, CONE, "cone", "the contact force in tension or beyond Coulomb's limit, over the largest,"),
+        of(
+            found.slip.unwrap_or(0.0),
+            SLIP,
+            "slip",
+            "the misfit of Coulomb's law at nodes that slide, over the work of its limit,",
+        ),
         of(found.gap_under_force, GAP, "gap_under_force", "the gap under a contact force, over the element size,"),
         of(found.penetration, GAP, "penetration", "the penetration, over the element size,"),
     ]

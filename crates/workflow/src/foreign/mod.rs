@@ -3,24 +3,36 @@
 mod balance;
 mod causes;
 mod complete;
+mod contact;
+mod derive;
+mod ends;
+mod figures;
 mod limits;
 mod measure;
+mod nearness;
+mod residual;
 mod samples;
+mod units;
 mod window;
 
 pub use complete::{Completed, Derived, Lacks};
-pub use measure::Consistency;
+pub use figures::Consistency;
 pub(crate) use samples::Between;
 pub use samples::Samples;
 
 use crate::message::percent;
+use crate::through::Through;
+pub(crate) use causes::REVERSED;
 use causes::Suspect;
+pub(crate) use ends::runs_backwards;
 use limits::BALANCE;
 pub(crate) use limits::exceeded;
-use measure::{Trial, measure};
-use percute_core::history::{SinkError, StepSource};
+use measure::measure;
+use percute_core::dynamics::{Balancing, Evaluation};
+use percute_core::history::{SinkError, StateSink, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::is_stable;
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 /// What is known of the origin of a history of another program.
@@ -70,7 +82,7 @@ fn samples<const D: usize>(
     source: &dyn StepSource<D>,
     found: &Consistency,
     critical: f64,
-    origin: &Origin,
+    accept: bool,
 ) -> Result<Option<Samples>, Refusal> {
     let (count, distance) = (source.count(), source.times().longest_step());
     let differs = found.acceleration.filter(|differs| *differs > BALANCE);
@@ -80,7 +92,7 @@ fn samples<const D: usize>(
     let samples = Samples { count, distance, critical_steps: distance / critical };
     match (found.velocity, found.acceleration) {
         (Some(_), Some(_)) => Ok(Some(samples)),
-        (None, Some(differs)) if found.balance <= BALANCE && !origin.accept => Err(Refusal::Inconsistent {
+        (None, Some(differs)) if found.balance <= BALANCE && !accept => Err(Refusal::Inconsistent {
             figure: format!("its accelerations differ from those of the displacements by {}", percent(differs)),
             cause: Some("the instants are samples, not the steps of the solver; give velocities too".to_string()),
         }),
@@ -88,25 +100,45 @@ fn samples<const D: usize>(
     }
 }
 
-/// The figures of a history but for its energy; figures over their limits are an error, with the likely cause.
+/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely cause,
+/// unless they are to be accepted.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
     critical: f64,
-    origin: &Origin,
+    derived: &[Derived],
+    accept: bool,
 ) -> Result<(Consistency, Option<Samples>), Refusal> {
-    let (found, evidence) = measure(problem, source, Trial::default())?;
-    let samples = samples(source, &found, critical, origin)?;
+    let energies = RefCell::new((Evaluation::new(problem, source.times()), Balancing::new(problem, source.times())));
+    let watched = Through::new(source, |step, take| {
+        let (evaluation, balancing) = &mut *energies.borrow_mut();
+        balancing.accept(&evaluation.advance(step)?)?;
+        take(step)
+    });
+    let (mut found, evidence) = measure(problem, &watched, derived, 0)?;
+    found.energy = energies.into_inner().1.finish().last().map_or(0.0, |last| last.energy_drift);
+    let samples = samples(source, &found, critical, accept)?;
     let sampled = samples.is_some();
     let mut exceeded = exceeded(&found);
     // These compare an instant with the next step of the solver, which a sample does not have.
-    let of_steps = ["velocity", "touching", "gap_under_force"];
+    let of_steps = ["velocity", "touching", "slip", "plane", "gap_under_force"];
     exceeded.retain(|excess| !sampled || !of_steps.contains(&excess.name));
-    if let (Some(first), false) = (exceeded.first(), origin.accept) {
-        let suspect = Suspect { problem, source, found: &found, evidence: &evidence };
+    if let (Some(first), false) = (exceeded.first(), accept) {
+        let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
         let cause = suspect.cause(&exceeded)?;
         let figure = exceeded.iter().find(|excess| excess.name == "balance").unwrap_or(first).what.clone();
         return Err(Refusal::Inconsistent { figure, cause });
     }
     Ok((found, samples))
+}
+
+/// a/b, and 0 where both are.
+fn ratio(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / b }
+}
+
+/// The largest difference of two fields and the largest component of the first.
+fn widest<const D: usize>(field: &[[f64; D]], other: &[[f64; D]]) -> [f64; 2] {
+    let pairs = field.iter().flatten().zip(other.iter().flatten());
+    pairs.fold([0.0; 2], |[difference, most], (a, b): (&f64, &f64)| [(a - b).abs().max(difference), a.abs().max(most)])
 }

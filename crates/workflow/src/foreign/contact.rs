@@ -1,0 +1,230 @@
+//! Contact forces against gaps, touching status and Coulomb's law.
+
+use super::balance::{Motion, Terms, dot, norm};
+use super::figures::Consistency;
+use super::nearness::{ADDED, Nearness, unsure};
+use super::window::{Held, Window};
+use percute_core::contact::{ContactNode, Frame};
+use percute_core::problem::Problem;
+
+/// A force that changes the velocity of its node by less than this share of the largest in a step may be rounding.
+const FAINT: f64 = 1e-6;
+/// Gaps under a force are the same if their standard deviation is below the mean over this. Contact by a penalty has a
+/// deviation of 0.05 (a bar) to 6 times the mean.
+const SAME: f64 = 100.0;
+
+/// Sums over gaps under forces, weighted with the square of the normal force (N²).
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Gaps {
+    /// The weights, gap, gap², undeformed gap times path along the normal, and path² (m).
+    sums: [f64; 5],
+}
+
+impl Gaps {
+    fn add(&mut self, force: f64, gap: f64, undeformed: f64) {
+        let path = gap - undeformed;
+        let terms = [1.0, gap, gap * gap, undeformed * path, path * path];
+        self.sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += force * force * term);
+    }
+
+    /// Their mean and standard deviation (m).
+    fn spread(&self) -> Option<[f64; 2]> {
+        let [weight, gap, square, ..] = self.sums;
+        let mean = gap / weight;
+        (weight > 0.0).then(|| [mean, (square / weight - mean * mean).max(0.0).sqrt()])
+    }
+
+    /// The mean, if it is nearly the same everywhere (m).
+    fn mean(&self) -> Option<f64> {
+        self.spread().filter(|&spread| common(spread) > 0.0).map(|[mean, _]| mean)
+    }
+
+    /// The factor of the path that brings the nodes onto their plane.
+    fn path(&self) -> Option<f64> {
+        let [.., product, square] = self.sums;
+        let factor = -product / square;
+        (factor.is_finite() && factor > 0.0).then_some(factor)
+    }
+}
+
+/// The part of a gap (m) that is the same at all nodes and instants, from its mean and standard deviation.
+fn common([mean, deviation]: [f64; 2]) -> f64 {
+    mean.abs() - SAME * deviation
+}
+
+/// Sums over the nodes of a plane and all instants.
+#[derive(Clone, Copy, Debug, Default)]
+struct PlaneSums {
+    /// ∑μR_n|w_t|Δt, ∑R_n|w_t|Δt and −∑R_t·w_t Δt of sliding nodes (J).
+    slide: [f64; 3],
+    /// Gaps under contact forces, and where the balance needs a force but there is none.
+    forced: Gaps,
+    missing: Gaps,
+}
+
+impl PlaneSums {
+    /// The misfit of Coulomb's law (J).
+    fn misfit(&self) -> f64 {
+        self.slide[0] - self.slide[2]
+    }
+}
+
+/// Contact of all nodes and instants.
+#[derive(Debug)]
+pub(super) struct Contact<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    nearness: Nearness,
+    /// Of each plane.
+    planes: Vec<PlaneSums>,
+    /// Nodes of the surface on which a force acts at some instant.
+    pub(super) forced: Vec<bool>,
+    /// Largest normal force (N), cone excess (N), product of force and gap (N m), penetration (m).
+    largest: [f64; 4],
+    /// The largest rounding of displacements (m).
+    unsure: f64,
+    /// Disagreements of status and force: as given, if the status is a step early, and if it is a step late.
+    pub(super) disagree: [usize; 3],
+    /// Changes of status and of forces.
+    changes: [usize; 2],
+}
+
+impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+        Self {
+            problem,
+            nearness: Nearness::new(problem),
+            planes: vec![PlaneSums::default(); problem.obstacles().len()],
+            forced: vec![false; problem.surface().nodes().len()],
+            largest: [0.0; 4],
+            unsure: 0.0,
+            disagree: [0; 3],
+            changes: [0; 2],
+        }
+    }
+
+    /// Takes in an instant, its motion in a step of Δt (s) with h (s), and the terms of its balance.
+    pub(super) fn take(
+        &mut self,
+        window: Window<'_, D>,
+        motion: Option<&Motion<D>>,
+        terms: Option<&Terms<D>>,
+        [dt, h]: [f64; 2],
+    ) {
+        let (problem, now) = (self.problem, window.now);
+        self.unsure = self.unsure.max(unsure([Some(now)]));
+        let faint = motion.map_or(0.0, |motion| FAINT * motion.speed() / h);
+        for (at, contact) in problem.surface().nodes().iter().enumerate() {
+            let node = contact.node.index();
+            let frame = problem.surface().frame(at, &now.displacement[node]);
+            self.forced[at] |= now.reaction[at] != [0.0; D];
+            self.press(at, contact, &frame, now);
+            let (Some(after), Some(motion)) = (window.after, motion) else { continue };
+            let gap = problem.surface().gap(at, &after.displacement[node]);
+            self.gap(contact, &frame, gap, (&now.reaction[at], terms.map(|terms| terms.rest(node))));
+            if contact.free {
+                self.status(window, after, at, faint * problem.mass()[node]);
+                self.slide(contact, &frame, (&now.reaction[at], &motion.forward[node]), dt);
+            }
+        }
+    }
+
+    /// The cone, and penetration.
+    fn press(&mut self, at: usize, contact: &ContactNode, frame: &Frame<D>, now: &Held<D>) {
+        let force = &now.reaction[at];
+        let [slip, tension] = self.problem.obstacles()[contact.obstacle].law().excess(frame, force);
+        let slip = if contact.guided { 0.0 } else { slip };
+        self.largest[0] = self.largest[0].max(frame.split(force).0);
+        self.largest[1] = self.largest[1].max(slip).max(tension);
+        if contact.free && now.index > 0 {
+            let gap = self.problem.surface().gap(at, &now.displacement[contact.node.index()]);
+            self.largest[3] = self.largest[3].max(-gap);
+        }
+    }
+
+    /// The gap at t_{n+1} under a force at t_n, or where the balance needs one.
+    fn gap(
+        &mut self,
+        contact: &ContactNode,
+        frame: &Frame<D>,
+        gap: f64,
+        (force, needed): (&[f64; D], Option<[f64; D]>),
+    ) {
+        let normal = frame.split(force).0.max(0.0);
+        self.largest[2] = self.largest[2].max(normal * gap);
+        if !contact.free {
+            return;
+        }
+        let plane = &mut self.planes[contact.obstacle];
+        plane.forced.add(normal, gap, contact.undeformed_gap);
+        if *force == [0.0; D] {
+            let needed = needed.map_or(0.0, |needed| frame.split(&needed).0.max(0.0));
+            plane.missing.add(needed, gap, contact.undeformed_gap);
+        }
+    }
+
+    /// Touching status at t_{n+1} against the force at t_n; forces below `faint` (N) are none or any.
+    fn status(&mut self, window: Window<'_, D>, after: &Held<D>, at: usize, faint: f64) {
+        let force = &window.now.reaction[at];
+        let disagree = |touches: bool, force: &[f64; D]| {
+            usize::from(if touches { *force == [0.0; D] } else { norm(force) > faint })
+        };
+        self.disagree[0] += disagree(after.touching[at], force);
+        self.disagree[1] += disagree(window.now.touching[at], force);
+        self.changes[0] += usize::from(after.touching[at] != window.now.touching[at]);
+        if let Some(before) = window.before {
+            self.disagree[2] += disagree(after.touching[at], &before.reaction[at]);
+            self.changes[1] += usize::from((norm(force) > faint) != (norm(&before.reaction[at]) > faint));
+        }
+    }
+
+    /// Friction over a step of dt (s) in which the node moves.
+    fn slide(&mut self, contact: &ContactNode, frame: &Frame<D>, (force, velocity): (&[f64; D], &[f64; D]), dt: f64) {
+        let ((normal, friction), (_, sliding)) = (frame.split(force), frame.split(velocity));
+        let speed = norm(&sliding);
+        if contact.guided || normal <= 0.0 || speed * dt <= ADDED * self.unsure {
+            return;
+        }
+        let limit = self.problem.obstacles()[contact.obstacle].law().limit(normal);
+        let terms = [limit * speed, normal * speed, -dot(&friction, &sliding)];
+        let sums = &mut self.planes[contact.obstacle].slide;
+        sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * dt);
+    }
+
+    /// The first plane at another place than the contact, with the mean gap (m): under forces, or where they are missing.
+    pub(super) fn offset(&self, missing: bool) -> Option<(usize, f64)> {
+        let tolerance = self.nearness.tolerance(self.unsure);
+        let of = |plane: &PlaneSums| if missing { plane.missing.mean() } else { plane.forced.mean() };
+        let gaps = self.planes.iter().enumerate().filter_map(|(k, plane)| of(plane).map(|mean| (k, mean)));
+        gaps.into_iter().find(|(_, mean)| mean.abs() > tolerance)
+    }
+
+    /// Factors of the displacements, one for each plane with contact, that bring the contact onto it.
+    pub(super) fn paths(&self) -> Vec<f64> {
+        let all = self.planes.iter();
+        all.filter_map(|plane| plane.forced.path().or_else(|| plane.missing.path())).collect()
+    }
+
+    /// The plane with the largest misfit of friction, and the coefficient of the history there, the mean of |R_t|/R_n.
+    pub(super) fn friction(&self) -> Option<(usize, f64)> {
+        let planes = self.planes.iter().enumerate();
+        let (k, plane) = planes.max_by(|(_, a), (_, b)| a.misfit().abs().total_cmp(&b.misfit().abs()))?;
+        let [_, normal, tangential] = plane.slide;
+        (normal > 0.0).then(|| (k, tangential / normal))
+    }
+
+    /// Enters the figures.
+    pub(super) fn enter(&self, found: &mut Consistency) {
+        let ([normal, excess, product, depth], size) = (self.largest, self.nearness.element);
+        found.cone = super::ratio(excess, normal.max(excess));
+        found.gap_under_force = super::ratio(product, normal * size);
+        found.penetration = depth / size;
+        let gaps = self.planes.iter().filter_map(|plane| plane.forced.spread());
+        found.plane = gaps.map(|gap| (common(gap) - ADDED * self.unsure).max(0.0) / size).fold(0.0, f64::max);
+        let [limit, misfit] = self.planes.iter().fold([0.0; 2], |[limit, misfit], plane| {
+            [limit + plane.slide[0], misfit + if plane.slide[0] > 0.0 { plane.misfit() } else { 0.0 }]
+        });
+        found.slip = (limit > 0.0).then(|| (misfit / limit).max(0.0));
+        let changes = self.changes[0].max(self.changes[1]).max(1);
+        found.touching = self.disagree[0] as f64 / changes as f64;
+    }
+}

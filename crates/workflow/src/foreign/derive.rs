@@ -1,0 +1,140 @@
+//! Contact forces and touching status that follow from displacements.
+
+use super::balance::{Balance, Terms, norm};
+use super::nearness::{ADDED, Nearness, rounding, size, unsure};
+use super::window::{Held, Window, windows};
+use percute_core::contact::ContactNode;
+use percute_core::dynamics::critical_time_step;
+use percute_core::history::{SinkError, StepSource};
+use percute_core::problem::Problem;
+
+/// Contact forces below so many times the noise of the forces inside the body are noise.
+const ABOVE: f64 = 8.0;
+/// Noise changes the velocity of a node by at most this share of the largest in a step, unless it is rounding. Where inertia
+/// and stiffness do not fit each other, the forces inside the body are not small either.
+const LOUDEST: f64 = 1e-3;
+
+/// Derives contact forces and touching status.
+pub(super) struct Derivation<'p, const D: usize, const N: usize> {
+    balance: Balance<'p, D, N>,
+    nearness: Nearness,
+    /// 4/Δt_c² (1/s²), the largest eigenvalue of M⁻¹K.
+    stiffest: f64,
+    /// The noise of the accelerations, if it was measured, and the largest that it can be beside rounding (m/s²).
+    noise: [f64; 2],
+}
+
+impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
+    /// For the steps of this source.
+    pub(super) fn new(problem: &'p Problem<D, N>, source: &'p dyn StepSource<D>) -> Self {
+        let (critical, nearness) = (critical_time_step(problem), Nearness::new(problem));
+        let stiffest = 4.0 / (critical * critical);
+        Self { balance: Balance::new(problem, source.times()), nearness, stiffest, noise: [f64::INFINITY, 0.0] }
+    }
+
+    /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. Whether it has any
+    /// contact force.
+    pub(super) fn listen(&mut self, source: &dyn StepSource<D>) -> Result<bool, SinkError> {
+        let (mut inside, mut loudest) = (0.0_f64, 0.0_f64);
+        windows(source, &mut |window| {
+            let Some(motion) = self.balance.motion(window) else { return Ok(()) };
+            if window.now.acceleration.is_none() {
+                inside = inside.max(self.inside(&self.balance.terms(window.now, &motion.acceleration)));
+                loudest = loudest.max(LOUDEST * motion.speed() / self.balance.times().velocity_step(window.now.index));
+            }
+            Ok(())
+        })?;
+        if inside > 0.0 {
+            self.noise = [ABOVE * inside, loudest];
+        }
+        let mut any = false;
+        windows(source, &mut |window| {
+            any = any || self.reactions(window).is_some_and(|all| all.iter().any(|r| *r != [0.0; D]));
+            Ok(())
+        })?;
+        Ok(any)
+    }
+
+    /// The largest acceleration that the forces leave at a node that can touch no plane (m/s²).
+    fn inside(&self, terms: &Terms<D>) -> f64 {
+        let problem = self.balance.problem();
+        let mut left: Vec<f64> =
+            problem.mass().iter().enumerate().map(|(node, mass)| norm(&terms.rest(node)) / mass).collect();
+        problem.surface().nodes().iter().for_each(|contact| left[contact.node.index()] = 0.0);
+        left.into_iter().fold(0.0, f64::max)
+    }
+
+    /// u_0 of the problem where that of the history differs by rounding alone.
+    pub(super) fn start(&self, now: &Held<D>) -> Option<Vec<[f64; D]>> {
+        let stated = self.balance.problem().initial_displacement();
+        if now.index > 0 || stated == now.displacement {
+            return None;
+        }
+        let tolerance = 2.0 * f64::from(f32::EPSILON) * size(stated);
+        let same = |(a, b): (&[f64; D], &[f64; D])| (0..D).all(|c| (a[c] - b[c]).abs() <= tolerance);
+        stated.iter().zip(&now.displacement).all(same).then(|| stated.to_vec())
+    }
+
+    /// R_n of the surface: M a + K u − F where a plane can act, without what is noise. None if a_n is not known.
+    pub(super) fn reactions(&self, window: Window<'_, D>) -> Option<Vec<[f64; D]>> {
+        let (problem, now, n) = (self.balance.problem(), window.now, window.now.index);
+        let acceleration = match &now.acceleration {
+            Some(given) => given.clone(),
+            None => self.balance.motion(window)?.acceleration,
+        };
+        let terms = self.balance.terms(now, &acceleration);
+        let unsure = unsure([window.before, Some(now), window.after]);
+        let curvature = self.stiffest + 4.0 / (self.balance.times().step(n) * self.balance.times().velocity_step(n));
+        let [measured, loudest] = self.noise;
+        let noise = measured.min(loudest.max(ADDED * unsure * curvature));
+        let of = |(at, contact): (usize, &ContactNode)| {
+            let node = contact.node.index();
+            let force = terms.rest(node);
+            let acts = contact.free && self.near(at, window, unsure) && norm(&force) > noise * problem.mass()[node];
+            if acts { force } else { [0.0; D] }
+        };
+        Some(problem.surface().nodes().iter().enumerate().map(of).collect())
+    }
+
+    /// Whether a node is on its plane at t_n or t_{n+1}.
+    fn near(&self, at: usize, window: Window<'_, D>, unsure: f64) -> bool {
+        let surface = self.balance.problem().surface();
+        let node = surface.nodes()[at].node.index();
+        let gaps = [Some(window.now), window.after].into_iter().flatten();
+        gaps.map(|held| surface.gap(at, &held.displacement[node])).any(|gap| gap <= self.nearness.tolerance(unsure))
+    }
+
+    /// Touching status at t_{n+1}: a force acts at t_n.
+    pub(super) fn touching(&self, window: Window<'_, D>, reaction: &[[f64; D]]) -> Vec<bool> {
+        let unsure = unsure([Some(window.now), window.after]);
+        let nodes = self.balance.problem().surface().nodes();
+        let touches =
+            |(at, force): (usize, &[f64; D])| *force != [0.0; D] && nodes[at].free && self.near(at, window, unsure);
+        reaction.iter().enumerate().map(touches).collect()
+    }
+
+    /// Touching status at t_0: a node at rest on its plane on which a force acts.
+    pub(super) fn touching_at_start(&self, reaction: &[[f64; D]]) -> Vec<bool> {
+        let problem = self.balance.problem();
+        let touches = |(at, force): (usize, &[f64; D])| {
+            let (gap, speed) = problem.start_of_contact(at);
+            *force != [0.0; D] && gap <= problem.contact_tolerance() && speed.abs() <= problem.speed_tolerance()
+        };
+        reaction.iter().enumerate().map(touches).collect()
+    }
+
+    /// Whether a node goes into its plane in the step after the last, without contact forces.
+    pub(super) fn enters(&self, before: &Held<D>, now: &Held<D>) -> bool {
+        let (problem, times, n) = (self.balance.problem(), self.balance.times(), now.index);
+        let terms = self.balance.terms(now, &vec![[0.0; D]; now.displacement.len()]);
+        let (back, dt, h) = (times.step(n - 1), times.step(n), times.velocity_step(n));
+        let tolerance = problem.contact_tolerance().max(ADDED * rounding(&now.displacement));
+        problem.surface().nodes().iter().enumerate().filter(|(_, contact)| contact.free).any(|(at, contact)| {
+            let node = contact.node.index();
+            let (u, earlier, rest) = (&now.displacement[node], &before.displacement[node], terms.rest(node));
+            let speed = |c: usize| (u[c] - earlier[c]) / back - h * rest[c] / problem.mass()[node];
+            let next = std::array::from_fn(|c| u[c] + dt * speed(c));
+            problem.surface().gap(at, &next) < -tolerance
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! The start of a history against the initial state of its problem, and its end against the same.
+
+use super::balance::{Balance, Motion, dot, rate};
+use super::causes::FALL;
+use super::figures::Consistency;
+use super::window::Window;
+use super::{ratio, widest};
+use percute_core::problem::Problem;
+
+/// What start and end say.
+#[derive(Clone, Debug)]
+pub(super) struct Ends<const D: usize> {
+    /// Velocity of the first step without its forces, over v₀, at nodes without contact force: the best factor; none if none
+    /// of them moves.
+    pub(super) speed: Option<f64>,
+    /// Means of v₀ as it is given, else of that velocity, and of the stated v₀ (m/s).
+    pub(super) start: [[f64; D]; 2],
+    /// The same factor of the given velocity, if one is given.
+    pub(super) given: Option<f64>,
+    /// Difference of −v of the last step from v₀, over the norm of v₀; largest difference of u_N from u_0, over the size.
+    pub(super) reversed: [f64; 2],
+}
+
+impl<const D: usize> Ends<D> {
+    pub(super) fn new() -> Self {
+        Self { speed: None, start: [[0.0; D]; 2], given: None, reversed: [0.0; 2] }
+    }
+
+    /// Compares the state at t_0 with that of the problem; `reaction` is R_0 at all nodes (N), and
+    /// follows from the balance at those that are `open`.
+    pub(super) fn start<const N: usize>(
+        &mut self,
+        (balance, window): (&Balance<'_, D, N>, Window<'_, D>),
+        motion: &Motion<D>,
+        (reaction, open): (&[[f64; D]], &[bool]),
+        found: &mut Consistency,
+    ) {
+        let (problem, now) = (balance.problem(), window.now);
+        let moved = widest(&now.displacement, problem.initial_displacement());
+        found.initial_displacement = moved[0] / problem.mesh().size();
+        let (terms, h) = (balance.terms(now, &motion.forward), balance.times().velocity_step(0));
+        let without = |(node, v): (usize, &[f64; D])| {
+            let change = |c: usize| terms.load[node][c] - terms.stiffness[node][c] + reaction[node][c];
+            std::array::from_fn(|c| v[c] - h / problem.mass()[node] * change(c))
+        };
+        let derived = supported(problem, motion.forward.iter().enumerate().map(without).collect());
+        let given = now.velocity.clone().map(|given| supported(problem, given));
+        let stated = problem.initial_velocity();
+        let quiet = |node: usize| !open[node] && reaction[node] == [0.0; D];
+        self.speed = factor(&derived, stated, quiet);
+        self.given = given.as_ref().and_then(|given| factor(given, stated, |_| true));
+        let started = given.clone().unwrap_or(derived);
+        // At a node with a contact force, the velocity without forces depends on its mass.
+        let counts = |node: &usize| given.is_some() || quiet(*node);
+        let pairs = (0..stated.len()).filter(counts).flat_map(|node| started[node].into_iter().zip(stated[node]));
+        let [difference, most] = pairs.fold([0.0_f64; 2], |[d, m], (v, v0)| [d.max((v - v0).abs()), m.max(v.abs())]);
+        let largest = stated.iter().flatten().fold(most, |most, v| most.max(v.abs()));
+        found.initial_velocity = ratio(difference, largest);
+        self.start = [mean(&started), mean(stated)];
+    }
+
+    /// Compares the end with the start, as in a history that runs backwards.
+    pub(super) fn end<const N: usize>(&mut self, balance: &Balance<'_, D, N>, window: Window<'_, D>) {
+        let (Some(before), problem) = (window.before, balance.problem()) else { return };
+        let back = rate(&window.now.displacement, &before.displacement, balance.times().step(window.now.index - 1));
+        let speed = apart(&back, problem.initial_velocity());
+        let [place, _] = widest(&window.now.displacement, problem.initial_displacement());
+        self.reversed = [speed, place / problem.mesh().size()];
+    }
+}
+
+/// Whether the last two instants, dt (s) apart, have the initial velocity (m/s) of a history that runs backwards, but for nodes
+/// that touch in its first step.
+pub(crate) fn runs_backwards<const D: usize>(last: [&[[f64; D]]; 2], dt: f64, velocity: &[[f64; D]]) -> bool {
+    apart(&rate(last[1], last[0], dt), velocity) <= FALL
+}
+
+/// The norm of the difference of two fields over that of the second.
+fn apart<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]]) -> f64 {
+    let squares = field.iter().flatten().zip(stated.iter().flatten()).fold([0.0; 2], |[difference, own], (v, v0)| {
+        let rest: f64 = v - v0;
+        [difference + rest * rest, own + v0 * v0]
+    });
+    ratio(squares[0], squares[1]).sqrt()
+}
+
+/// The velocity with prescribed components as stated.
+fn supported<const D: usize, const N: usize>(problem: &Problem<D, N>, mut velocity: Vec<[f64; D]>) -> Vec<[f64; D]> {
+    for p in problem.prescribed() {
+        let (node, c) = (p.node.index(), p.component);
+        velocity[node][c] = problem.initial_velocity()[node][c];
+    }
+    velocity
+}
+
+/// The factor of the second field that fits the first best at some nodes; none if it is zero there.
+fn factor<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(usize) -> bool) -> Option<f64> {
+    let nodes = (0..field.len()).filter(|&node| at(node));
+    let (along, own) = nodes.fold((0.0, 0.0), |(along, own), node| {
+        let v0 = &stated[node];
+        (along + dot(&field[node], v0), own + dot(v0, v0))
+    });
+    (own > 0.0).then(|| along / own)
+}
+
+fn mean<const D: usize>(field: &[[f64; D]]) -> [f64; D] {
+    std::array::from_fn(|c| field.iter().map(|v| v[c]).sum::<f64>() / field.len() as f64)
+}

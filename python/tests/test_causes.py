@@ -1,0 +1,195 @@
+"""Causes of inconsistent histories: units, planes, friction, accelerations, and contact by a penalty."""
+
+import re
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import percute as pc
+import pytest
+from conftest import bar, block, disc, tilted
+from numpy.typing import NDArray
+from spoiling import STATED, Parts, changed, given, parts, shifted
+
+Change = Callable[[Parts], Parts]
+
+
+@pytest.fixture(scope="module", params=[bar, block, tilted, disc])
+def correct(request: pytest.FixtureRequest) -> pc.History:
+    return pc.simulate(request.param(), end=20e-6, courant=0.8)
+
+
+def times(name: str, factor: float) -> Change:
+    return changed(name, lambda value: factor * value)
+
+
+def cause(problem: pc.Problem, parts: Parts) -> str:
+    """The message of the refusal."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        with pytest.raises(pc.InputError) as refused:
+            pc.estimate(given(problem, parts))
+    return str(refused.value)
+
+
+def without(parts: Parts, *names: str) -> Parts:
+    return {name: value for name, value in parts.items() if name not in names}
+
+
+UNITS: dict[str, tuple[Change, str]] = {
+    "u in mm": (times("displacement", 1e3), r"the displacements should be 0.001 times as large \(given in mm\?\)"),
+    "u in µm": (times("displacement", 1e6), r"the displacements should be 1e-6 times as large \(given in µm\?\)"),
+    "t in ms": (times("time", 1e3), r"`time` is not.*: the steps should be 0.001 times as long \(given in ms\?\)"),
+    "t in µs": (times("time", 1e6), r"`time` is not.*: the steps should be 1e-6 times as long \(given in µs\?\)"),
+    "E in MPa": (times("young", 1e-6), r"`young` .*should be 1e6 times as large \(given in MPa\?\)"),
+    "E in GPa": (times("young", 1e-9), r"`young` .*should be 1e9 times as large \(given in GPa\?\)"),
+    "density in g/cm³": (times("density", 1e-3), r"`density` .*should be 1000 times as large \(given in g/cm³\?\)"),
+    "density in kg/mm³": (times("density", 1e-9), r"`density` .*should be 1e9 times as large \(given in kg/mm³\?\)"),
+}
+
+
+@pytest.mark.parametrize("lacks", [(), ("touching",), ("reaction", "touching")])
+@pytest.mark.parametrize("name", UNITS)
+def test_units_are_named(name: str, lacks: tuple[str, ...], correct: pc.History) -> None:
+    change, text = UNITS[name]
+    said = cause(correct.problem, without(change(parts(correct)), *lacks))
+    assert re.search(text, said), said
+
+
+def test_a_density_that_is_a_little_off_is_no_time_step(correct: pc.History) -> None:
+    whole = parts(correct)
+    # Contact forces at one node are the largest terms of the disc.
+    for factor in (0.94, 1.06) if "boundary" in correct.problem.mesh.edge_groups else (0.97, 1.02, 1.03):
+        said = cause(correct.problem, times("density", factor)(whole))
+        assert "`density` is not that of the history" in said and "`time`" not in said, said
+        said = cause(correct.problem, times("time", factor)(whole))
+        assert "`time` is not that of the history" in said and "`density`" not in said, said
+    # Both: the velocity at the start fits neither.
+    both = times("time", 1.05)(times("density", 1.2)(whole))
+    assert "`density` or `time` is not that of the history" in cause(correct.problem, both)
+
+
+def test_wrong_accelerations_are_named(correct: pc.History) -> None:
+    whole = parts(correct)
+    for factor in (0.9, 1e3):
+        for motion in ({}, {"velocity": correct.velocity}):
+            said = cause(correct.problem, {**whole, **motion, "acceleration": factor * correct.acceleration})
+            assert "the accelerations are not those of the displacements" in said, said
+
+
+@pytest.mark.parametrize("end", [13e-6, 60e-6])
+def test_a_shifted_status_is_named_however_long_the_contact(end: float) -> None:
+    history = pc.simulate(bar(), end=end, courant=0.2)
+    for steps, word in ((1, "late"), (-1, "early")):
+        spoilt = changed("touching", lambda rows, steps=steps: shifted(rows, steps))(parts(history))
+        said = cause(history.problem, spoilt)
+        assert f"`touching` is a step {word}" in said, said
+
+
+def test_forces_of_rounding_size_do_not_touch() -> None:
+    history = pc.simulate(block(), end=13e-6, courant=0.9)
+    whole = parts(history)
+    faint = 1e-8 * np.abs(whole["reaction"]).max()
+    noise = faint * np.random.default_rng(1).standard_normal(whole["reaction"].shape)
+    estimate = pc.estimate(given(history.problem, {**whole, "reaction": whole["reaction"] + noise}))
+    assert estimate.consistency is not None and estimate.consistency["touching"] == 0.0
+
+
+def test_friction_that_is_too_large_is_named(correct: pc.History) -> None:
+    if correct.problem.mesh.dimension == 1:
+        return
+    for factor in (1.2, 3.0):
+        for lacks in ((), ("reaction", "touching")):
+            said = cause(correct.problem, without(times("friction", factor)(parts(correct)), *lacks))
+            assert f"is 0.2 on average, not {0.2 * factor:.3g}" in said, said
+    said = cause(correct.problem, times("friction", 0.5)(parts(correct)))
+    assert "is 0.2 on average, not 0.1" in said, said
+    # The shares of sliding nodes: μ is too large by a fifth of what is right, a sixth of what is stated.
+    forced = pc.estimate(given(correct.problem, times("friction", 1.2)(parts(correct))), force=True)
+    assert forced.consistency is not None and forced.consistency["slip"] == pytest.approx(1 / 6, rel=1e-6)
+
+
+@pytest.mark.parametrize("lacks", [(), ("touching",), ("reaction", "touching")])
+@pytest.mark.parametrize("offset", [2e-4, 1e-6, -2e-4, -1e-6])
+def test_a_plane_at_another_place_is_named(offset: float, lacks: tuple[str, ...], correct: pc.History) -> None:
+    whole = parts(correct)
+    # The plane of the problem is below that of the history, or cuts off the end of its flight.
+    offset = min(offset, 1.9e-4)
+    said = cause(correct.problem, without({**whole, "plane": offset}, *lacks))
+    found = re.search(r"the `point` of the plane is off by (\S+) m: .* m (below|above) it on average; move it by (\S+) m", said)
+    assert found, said
+    assert float(found[1]) == abs(offset) and float(found[3]) == -offset and (found[2] == "below") == (offset > 0), said
+
+
+@pytest.mark.parametrize("lacks", [("touching",), ("reaction", "touching")])
+def test_a_gap_of_rounding_size_is_contact(lacks: tuple[str, ...], correct: pc.History) -> None:
+    ours = pc.estimate(correct)
+    for offset in (1e-12, -1e-12, -1e-9):
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+            history = given(correct.problem, without({**parts(correct), "plane": offset}, *lacks))
+        assert np.array_equal(history.touching, correct.touching[: len(history)])
+        if len(history) == len(correct):
+            assert pc.estimate(history).sup == pytest.approx(ours.sup, rel=1e-4)
+
+
+def test_noise_is_no_contact(correct: pc.History) -> None:
+    noise = 1e-13 * np.random.default_rng(1).standard_normal(correct.displacement.shape)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        theirs = pc.History.from_arrays(correct.problem, correct.time, correct.displacement + noise * (correct.time > 0)[:, None, None])
+    assert np.array_equal(theirs.touching, correct.touching[: len(theirs)])
+
+
+def penalty(stiffness: float, courant: float = 0.8) -> tuple[pc.Problem, Parts]:
+    """A block of springs and masses of percute's mesh with contact by a penalty (Pa/m), R_n from the penetration at t_n."""
+    problem = block(friction=0.0)
+    points, cells, density, young, poisson = problem.mesh.points, problem.mesh.cells, 2700.0, 70e9, 0.3
+    hooke = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+    matrix, mass = np.zeros((2 * len(points), 2 * len(points))), np.zeros(len(points))
+    for cell in cells:
+        corners = np.column_stack([np.ones(3), points[cell]])
+        gradients, area = np.linalg.inv(corners)[1:], 0.5 * abs(np.linalg.det(corners))
+        b = np.zeros((3, 6))
+        b[0, 0::2], b[1, 1::2], b[2, 0::2], b[2, 1::2] = gradients[0], gradients[1], gradients[1], gradients[0]
+        rows = np.column_stack([2 * cell, 2 * cell + 1]).ravel()
+        matrix[np.ix_(rows, rows)] += area * b.T @ hooke @ b
+        mass[cell] += density * area / 3
+    bottom = np.flatnonzero(points[:, 1] == 0.0)
+    springs = np.where((points[bottom, 0] == 0) | (points[bottom, 0] == 0.05), 0.5, 1.0) * stiffness * 0.05 / 8
+    stiff = matrix.copy()
+    stiff[2 * bottom + 1, 2 * bottom + 1] += springs
+    inverse = np.repeat(mass**-0.5, 2)
+    critical = 2 / np.sqrt(np.linalg.eigvalsh(inverse[:, None] * stiff * inverse).max())
+    steps = int(np.ceil(13e-6 / (courant * critical)))
+    dt = 13e-6 / steps
+    u, v = np.zeros_like(points), np.tile([400.0, -400.0], (len(points), 1))
+    displacement: list[NDArray[Any]] = []
+    reaction: list[NDArray[Any]] = []
+    for n in range(steps + 1):
+        r = np.zeros_like(u)
+        r[bottom, 1] = springs * np.maximum(0, -2e-4 - u[bottom, 1])
+        displacement.append(u)
+        reaction.append(r)
+        v = v + (dt / 2 if n == 0 else dt) * (r - (matrix @ u.ravel()).reshape(-1, 2)) / mass[:, None]
+        u = u + dt * v
+    arrays = {"time": dt * np.arange(steps + 1), "displacement": np.array(displacement), "reaction": np.array(reaction)}
+    return problem, {**STATED, **arrays}
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction",)])
+@pytest.mark.parametrize("stiffness", [1e14, 1e15, 1e16])
+def test_contact_by_a_penalty_is_graded(stiffness: float, lacks: tuple[str, ...]) -> None:
+    problem, whole = penalty(stiffness)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        estimate = pc.estimate(given(problem, without(whole, *lacks)))
+    # Stiff springs make energy; the verdict warns of that, too.
+    assert estimate.trust == ("limited" if (estimate.consistency or {})["energy"] < 0.1 else "low") and "penalty" in estimate.verdict
+
+
+def test_an_unstable_penalty_is_named() -> None:
+    problem, whole = penalty(1e13, courant=1.5)
+    said = cause(problem, whole)
+    assert "the contact is unstable" in said and "penalty too stiff" in said, said
