@@ -26,7 +26,7 @@ pub(crate) use causes::REVERSED;
 use causes::Suspect;
 pub(crate) use ends::runs_backwards;
 use limits::BALANCE;
-pub(crate) use limits::exceeded;
+pub(crate) use limits::{by_a_penalty, exceeded};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
 use percute_core::history::{SinkError, StateSink, StepSource};

@@ -1,7 +1,7 @@
 //! The facts that a verdict follows from.
 
 use super::touches::Contact;
-use crate::foreign::{Checked, exceeded};
+use crate::foreign::{Checked, by_a_penalty, exceeded};
 use crate::report::rebound::Rebound;
 use percute_core::contact::ContactResults;
 use percute_core::ids::ElementId;
@@ -43,8 +43,8 @@ pub(in crate::report) struct Facts {
     pub(super) expected: Option<Expected>,
     /// Of a history of another program: its first figure over a limit.
     pub(super) inconsistent: Option<String>,
-    /// Penetration and gap under a force, over the element size; 0 with multipliers.
-    pub(super) off_contact: f64,
+    /// Whether the contact of another program is by a penalty.
+    pub(super) by_a_penalty: bool,
     /// Whether the history has samples instead of steps.
     pub(super) sampled: bool,
 }
@@ -101,7 +101,7 @@ impl Facts {
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
             expected: expected(estimate),
             inconsistent: figures.and_then(|found| exceeded(found).into_iter().next()).map(|excess| excess.what),
-            off_contact: figures.map_or(0.0, |found| found.penetration.max(found.gap_under_force)),
+            by_a_penalty: figures.is_some_and(by_a_penalty),
             sampled: beside.checked.is_some_and(|checked| checked.samples.is_some()),
         }
     }

@@ -119,10 +119,6 @@ pub(super) const RULES: [Rule; 15] = [
     Rule { applies: |_| true, range: [0.4, 2.8], situation: "impacts", doubt: None },
 ];
 
-/// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less than 1e-7,
-/// also in single precision.
-const OFF_CONTACT: f64 = 1e-6;
-
 /// The properties of a run that no case of the evidence has.
 pub(super) fn untested(facts: &Facts) -> Vec<String> {
     let mut untested = Vec::new();
@@ -147,8 +143,7 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     if facts.supported {
         untested.push("supports".to_string());
     }
-    // A figure that is no number must not pass.
-    if facts.off_contact.is_nan() || facts.off_contact > OFF_CONTACT {
+    if facts.by_a_penalty {
         untested.push("contact by a penalty".to_string());
     }
     if facts.sampled {
