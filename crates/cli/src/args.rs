@@ -16,7 +16,8 @@ use std::str::FromStr;
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the completed steps is still printed).";
 
 /// The remedy for `percute reproduce` without the Python package.
-pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the source folder. Its command `percute` computes the evidence";
+pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the source folder. \
+    Its command `percute` computes the evidence";
 
 /// The remedy for `percute plot` without the Python package.
 pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \

@@ -13,7 +13,7 @@ pub struct ExportArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Steps to write, counted from 0 and separated by commas; negative ones count from the end [default: all]
-    #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_negative_numbers = true, conflicts_with_all = ["every", "times"])]
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["every", "times"])]
     pub steps: Option<Vec<i64>>,
     /// Write every k-th step, and the last
     #[arg(long, value_name = "K", value_parser = steps, conflicts_with = "times")]

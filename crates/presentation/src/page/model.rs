@@ -65,7 +65,7 @@ fn residuals(document: &Document) -> String {
 }
 
 /// Figures of a history of another program.
-const CONSISTENCY: [Named; 12] = [
+const CONSISTENCY: [Named; 14] = [
     ("balance", "residual M a + K u − F − R over its largest term", "%"),
     ("node", "at node", "#"),
     ("time", "at t", "s"),
@@ -74,9 +74,11 @@ const CONSISTENCY: [Named; 12] = [
     ("velocity", "velocities off those of the displacements", "%"),
     ("acceleration", "accelerations off those of the displacements", "%"),
     ("cone", "contact force in tension or beyond Coulomb’s limit", "%"),
+    ("slip", "misfit of Coulomb’s law at nodes that slide", "%"),
+    ("plane", "gap under contact forces, the same everywhere, over the element size", "%"),
     ("gap_under_force", "gap under a contact force, over the element size", "%"),
     ("penetration", "penetration over the element size", "%"),
-    ("touching", "contact where touching status and forces disagree", "%"),
+    ("touching", "disagreements of touching status and forces over their changes", "%"),
     ("energy", "drift of the energy", "%"),
 ];
 

@@ -44,7 +44,8 @@ fn mesh_file(body: &Body, case: &str) -> String {
     let (elements, nodes) = (counted(body.elements(), kind), counted(body.points.len(), "node"));
     let told = format!(
         "The case reads the mesh file `{file}`, which gives {elements} and {nodes} and is not on this page: it must lie \
-         beside the case. A history of the run has its mesh, too, in metres, for a case without `scale`: `percute.open(\"history.vtkhdf\").problem.mesh.write(\"mesh.msh\")` in Python writes it."
+         beside the case. A history of the run has its mesh, too, in metres, for a case without `scale`: \
+         `percute.open(\"history.vtkhdf\").problem.mesh.write(\"mesh.msh\")` in Python writes it."
     );
     paragraph(&told)
 }

@@ -9,6 +9,8 @@ use percute_core::problem::Problem;
 
 /// A force that changes the velocity of its node by less than this share of the largest in a step may be rounding.
 const FAINT: f64 = 1e-6;
+/// Nodes slide if they are faster than this share of the fastest node; noise of 1e-9 m is slower.
+const SLIDING: f64 = 1e-2;
 /// Gaps under a force are the same if their standard deviation is below the mean over this. Contact by a penalty has a
 /// deviation of 0.05 (a bar) to 6 times the mean.
 const SAME: f64 = 100.0;
@@ -112,7 +114,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     ) {
         let (problem, now) = (self.problem, window.now);
         self.unsure = self.unsure.max(unsure([Some(now)]));
-        let faint = motion.map_or(0.0, |motion| FAINT * motion.speed() / h);
+        let speed = motion.map_or(0.0, Motion::speed);
+        let (faint, least) = (FAINT * speed / h, SLIDING * speed);
         for (at, contact) in problem.surface().nodes().iter().enumerate() {
             let node = contact.node.index();
             let frame = problem.surface().frame(at, &now.displacement[node]);
@@ -123,7 +126,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             self.gap(contact, &frame, gap, (&now.reaction[at], terms.map(|terms| terms.rest(node))));
             if contact.free {
                 self.status(window, after, at, faint * problem.mass()[node]);
-                self.slide(contact, &frame, (&now.reaction[at], &motion.forward[node]), dt);
+                self.slide(contact, &frame, (&now.reaction[at], &motion.forward[node]), [dt, least]);
             }
         }
     }
@@ -177,11 +180,17 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
     }
 
-    /// Friction over a step of dt (s) in which the node moves.
-    fn slide(&mut self, contact: &ContactNode, frame: &Frame<D>, (force, velocity): (&[f64; D], &[f64; D]), dt: f64) {
+    /// Friction over a step of dt (s) in which the node moves; at less than `least` (m/s), it sticks but for noise.
+    fn slide(
+        &mut self,
+        contact: &ContactNode,
+        frame: &Frame<D>,
+        (force, velocity): (&[f64; D], &[f64; D]),
+        [dt, least]: [f64; 2],
+    ) {
         let ((normal, friction), (_, sliding)) = (frame.split(force), frame.split(velocity));
         let speed = norm(&sliding);
-        if contact.guided || normal <= 0.0 || speed * dt <= ADDED * self.unsure {
+        if contact.guided || normal <= 0.0 || speed <= least || speed * dt <= ADDED * self.unsure {
             return;
         }
         let limit = self.problem.obstacles()[contact.obstacle].law().limit(normal);
@@ -221,9 +230,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let gaps = self.planes.iter().filter_map(|plane| plane.forced.spread());
         found.plane = gaps.map(|gap| (common(gap) - ADDED * self.unsure).max(0.0) / size).fold(0.0, f64::max);
         let [limit, misfit] = self.planes.iter().fold([0.0; 2], |[limit, misfit], plane| {
-            [limit + plane.slide[0], misfit + if plane.slide[0] > 0.0 { plane.misfit() } else { 0.0 }]
+            [limit + plane.slide[0], misfit + if plane.slide[0] > 0.0 { plane.misfit().abs() } else { 0.0 }]
         });
-        found.slip = (limit > 0.0).then(|| (misfit / limit).max(0.0));
+        found.slip = (limit > 0.0).then(|| misfit / limit);
         let changes = self.changes[0].max(self.changes[1]).max(1);
         found.touching = self.disagree[0] as f64 / changes as f64;
     }

@@ -28,9 +28,9 @@ pub(super) const TOUCHING: f64 = 0.05;
 /// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less than 1e-7,
 /// also in single precision. Penalties have more.
 const OFF_CONTACT: f64 = 1e-6;
-/// Limits of `slip`, of multipliers and of penalties. A friction of penalties follows the sliding with delay: those of docs/recipes.md
-/// have up to 0.21, which the estimate grades.
-const SLIP: [f64; 2] = [0.05, 0.3];
+/// Limit of `slip` of multipliers. A friction by a penalty lets nodes move before they slide, and has no limit: 0.21 in docs/recipes.md,
+/// above 1 where nodes stick.
+const SLIP: f64 = 0.05;
 /// Limit of `plane`, in elements: nodes at a larger distance are not in contact.
 pub(super) const PLANE: f64 = NEAR;
 
@@ -84,7 +84,7 @@ pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
         of(found.cone, CONE, "cone", "the contact force in tension or beyond Coulomb's limit, over the largest,"),
         of(
             found.slip.unwrap_or(0.0),
-            SLIP[usize::from(by_a_penalty(found))],
+            if by_a_penalty(found) { f64::INFINITY } else { SLIP },
             "slip",
             "the misfit of Coulomb's law at nodes that slide, over the work of its limit,",
         ),

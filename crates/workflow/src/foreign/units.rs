@@ -53,7 +53,11 @@ impl Quantity {
 pub(super) fn scales<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>, derived: &[Derived]) -> Vec<Tried> {
     let (residual, open) = (&evidence.residual, derived.contains(&Derived::Reaction));
     let speed = evidence.ends.speed;
-    let one = |term: usize| residual.fit(&[term]).map(|factors| (factors[term], residual.norm(factors)));
+    let one = |term: usize| {
+        let factors = residual.fit(&[term])?;
+        // A factor of 1 is no cause.
+        ((factors[term] - 1.0).abs() > 0.5 * BALANCE).then(|| (factors[term], residual.norm(factors)))
+    };
     let named = [
         one(REACTION).map(|(factor, left)| (force(factor, speed), left)),
         one(INERTIA).filter(|(factor, _)| *factor > 0.0).map(|(factor, left)| (mass(factor, speed, open), left)),

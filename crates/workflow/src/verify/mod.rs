@@ -39,7 +39,8 @@ pub struct Prepared<const D: usize, const N: usize> {
 /// The problem on its mesh and on `levels` refinements.
 ///
 /// # Errors
-/// A number of refinements out of range or with much work that was not asked for, a problem that the case language cannot say, a mesh that cannot be refined.
+/// A number of refinements out of range or with much work that was not asked for, a problem that the case language cannot say, a mesh
+/// that cannot be refined.
 pub fn prepare<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,

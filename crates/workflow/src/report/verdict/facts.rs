@@ -43,6 +43,8 @@ pub(in crate::report) struct Facts {
     pub(super) expected: Option<Expected>,
     /// Of a history of another program: its first figure over a limit.
     pub(super) inconsistent: Option<String>,
+    /// Of a history of another program: the residual of its balance over the largest term.
+    pub(super) unbalanced: f64,
     /// Whether the contact of another program is by a penalty.
     pub(super) by_a_penalty: bool,
     /// Whether the history has samples instead of steps.
@@ -101,6 +103,7 @@ impl Facts {
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
             expected: expected(estimate),
             inconsistent: figures.and_then(|found| exceeded(found).into_iter().next()).map(|excess| excess.what),
+            unbalanced: figures.map_or(0.0, |found| found.balance),
             by_a_penalty: figures.is_some_and(by_a_penalty),
             sampled: beside.checked.is_some_and(|checked| checked.samples.is_some()),
         }
