@@ -29,6 +29,7 @@ from percute.errors import (
     MissingFileError,
     PercuteError,
     SimulationError,
+    SimulationWarning,
     StorageError,
 )
 from percute.estimating import estimate
@@ -74,6 +75,7 @@ __all__ = [
     "Resultants",
     "Separation",
     "SimulationError",
+    "SimulationWarning",
     "Sources",
     "SourcesOverTime",
     "StorageError",

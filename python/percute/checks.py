@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.errors import InputError, InputWarning, MissingFileError
+from percute.errors import InputError, InputWarning, MissingFileError, SimulationWarning
 
 T = TypeVar("T")
 
@@ -54,10 +54,16 @@ def caller() -> int:
     return level
 
 
-def warn(plausibility_warnings: Iterable[str]) -> None:
-    """Issue a plausibility warning at the line that called the public function."""
-    for plausibility_warning in plausibility_warnings:
-        warnings.warn(plausibility_warning, InputWarning, stacklevel=caller())
+def warn(messages: Iterable[str], kind: type[UserWarning] = InputWarning) -> None:
+    """Issue warnings at the line that called the public function."""
+    for message in messages:
+        warnings.warn(message, kind, stacklevel=caller())
+
+
+def warn_of_result(told: Iterable[tuple[str, bool]]) -> None:
+    """Issue the warnings of a result, each with whether it doubts the result."""
+    for message, doubts in told:
+        warn([message], SimulationWarning if doubts else InputWarning)
 
 
 def instance(name: str, value: object, kind: type[T]) -> T:
@@ -77,6 +83,7 @@ def flag(name: str, value: object) -> bool:
 
 def flags(name: str, value: object, count: int, of: str) -> list[bool]:
     """Give an array of ``count`` truth values, one of each thing named by ``of``."""
+    refuse_masked(name, value)
     try:
         array = np.asarray(value)
     except (TypeError, ValueError):
@@ -137,6 +144,7 @@ def encodable(file: str) -> str:
 
 def number(name: str, value: object, *, finite: bool = False, unit: str = "") -> float:
     """Give a number. Without ``finite``, the engine checks numbers that are not finite."""
+    refuse_masked(name, value)
     allowed = ("a finite number" if finite else "a number") + (f" in {unit}" if unit else "")
     try:
         array = np.asarray(value)
@@ -167,7 +175,14 @@ def whole(name: str, value: object, *, least: int = 1, most: int = LARGEST) -> i
     return given
 
 
-def _array(value: object) -> NDArray[Any]:
+def refuse_masked(name: str, value: object) -> None:
+    """Refuse an array with missing values, which NumPy would fill."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise InputError(f"`{name}` is a masked array; give an ordinary array, without missing values")
+
+
+def _array(name: str, value: object) -> NDArray[Any]:
+    refuse_masked(name, value)
     try:
         # Among numbers a truth value would become 0 or 1, but is probably a mistake.
         return np.asarray(None if isinstance(value, list | tuple) and _has_truth(value) else value)
@@ -189,7 +204,7 @@ def _has_truth(rows: list[Any] | tuple[Any, ...]) -> bool:
 
 def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
     """Give an array of numbers with a maximum number of dimensions."""
-    array = _array(value)
+    array = _array(name, value)
     if array.dtype.kind not in "fiu":
         raise wrong(name, value, f"numbers in rows of equal length{_no_truth(value)}")
     if array.ndim > most:
@@ -208,7 +223,7 @@ def transposed(name: str, array: NDArray[Any], *columns: int | None) -> str:
 
 def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
     """Give whole numbers in rows of some columns; without columns, in one row."""
-    array = _array(value)
+    array = _array(name, value)
     if array.size == 0 and array.dtype.kind == "f":
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):

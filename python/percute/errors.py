@@ -17,6 +17,10 @@ class InputWarning(UserWarning):
     """A plausibility warning: the input is possible but probably a mistake, such as mixed units or a body that never touches."""
 
 
+class SimulationWarning(UserWarning):
+    """A result is doubtful: the energy balance is off, no contact force acted, or a field is not admissible."""
+
+
 class MissingFileError(PercuteError, FileNotFoundError):
     """There is no such file."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
-from percute.checks import flag, instance, numbers, text, warn, whole, wrong
+from percute.checks import flag, instance, numbers, text, warn_of_result, whole, wrong
 from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History
@@ -71,7 +71,9 @@ def estimate(
     -----
     InputWarning
         The last instant of a history of another program is left out, because its contact forces are not known. Or it has samples
-        that are farther apart than the steps of a solver.
+        that are farther apart than the steps of a solver. Of a history from a file or from arrays, as for `simulate`, too.
+    SimulationWarning
+        The result is doubtful: the energy balance is off, no contact force acted, a field is not admissible.
 
     Raises
     ------
@@ -97,7 +99,8 @@ def estimate(
     accept = flag("force", force)
     with shown(progress) as tell:
         data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
-    warn(data.notices())
+    # `simulate` has told what there is to say about its problem; the author of a file, or of arrays, has told nobody.
+    warn_of_result(data.warnings(True, history.path is not None or history._data.derived is not None))
     return Estimate._of(data, history, history._name)
 
 

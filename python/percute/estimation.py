@@ -126,6 +126,11 @@ class Estimate(EstimateViews):
         return None if verdict is None else cast("Literal['high', 'limited', 'low']", verdict["trust"])
 
     @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """All warnings about the problem, the simulation and the estimate, as ``percute run`` prints them."""
+        return tuple(each["message"] for each in self._verdict.get("warnings", ()))
+
+    @cached_property
     def rebound(self) -> Rebound | None:
         """Velocities before and after contact, restitution and time in contact; None without contact."""
         return Rebound._of(self._verdict.get("rebound"))
@@ -312,7 +317,8 @@ class Estimate(EstimateViews):
 
     def __str__(self) -> str:
         verdict = [] if self.verdict is None else [f"trust {self.trust}: {self.verdict}"]
-        return "\n".join([repr(self).strip("<>"), *verdict, self.meaning])
+        warnings = [f"warning: {each}" for each in self.warnings]
+        return "\n".join([repr(self).strip("<>"), *warnings, *verdict, self.meaning])
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle all but the history, which is large and can be pickled separately."""

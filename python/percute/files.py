@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from percute import _percute
-from percute.checks import encodable, flag, text, warn, wrong
+from percute.checks import encodable, flag, text, warn, warn_of_result, wrong
 from percute.checks import path as file_name
-from percute.errors import InputError, MissingFileError, StorageError
+from percute.errors import InputError, MissingFileError, PercuteError, StorageError
 from percute.estimating import pace
 from percute.estimation import Estimate
 from percute.history import History
@@ -87,6 +89,8 @@ def run(
     -----
     InputWarning
         As for `simulate`, with the line.
+    SimulationWarning
+        As for `estimate`.
 
     Raises
     ------
@@ -94,7 +98,8 @@ def run(
         The case is wrong; the message has the line. Or two of its files and the case are one.
     ExistingFileError, MissingFileError, StorageError
         A file exists already; the case cannot be read, or the files of history and estimate cannot be written. All of them are
-        checked before any work. Or the temporary file of the estimate cannot be written, as for `estimate`.
+        checked before any work. Or the temporary file of the estimate cannot be written, as for `estimate`. If the file of the history
+        was moved or removed during the run, the `StorageError` has the ``estimate``.
     SimulationError, EstimateError, KeyboardInterrupt
         As for `simulate` and `estimate`.
     """
@@ -113,8 +118,9 @@ def run(
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         read, told_late = read.resolved(tell)
         warn([] if told_late is None else [told_late])
-        with file_closed_at_signals(file):
+        with file_closed_at_signals(file), _estimate_of_the_exception(name):
             data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
+        warn_of_result(data[1].warnings(False, False))
         history = History._of(data[0], name=name)
         estimated = Estimate._of(data[1], history, name)
         try:
@@ -124,6 +130,18 @@ def run(
         except BaseException as error:
             error.history = history  # type: ignore[attr-defined]
             raise
+
+
+@contextmanager
+def _estimate_of_the_exception(name: str) -> Iterator[None]:
+    """Make an `Estimate` of the data attached to an exception, as it is if only the file of the history was lost."""
+    try:
+        yield
+    except PercuteError as error:
+        data = getattr(error, "estimate", None)
+        if isinstance(data, _percute.EstimateData):
+            error.estimate = Estimate._of(data, None, name)  # type: ignore[attr-defined]
+        raise
 
 
 def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:

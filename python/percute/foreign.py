@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute.checks import integers, numbers
+from percute.checks import integers, numbers, refuse_masked
 from percute.errors import InputError
 from percute.problem import Problem
 
@@ -53,7 +53,7 @@ class ForeignArrays:
         """Give the status of the contact surface."""
         if given is None:
             return None
-        _refuse_masked("touching", given)
+        refuse_masked("touching", given)
         array = np.asarray(given)
         if array.dtype.kind not in "bui" or (array.dtype.kind != "b" and (array.min(initial=0) < 0 or array.max(initial=0) > 1)):
             raise InputError(f"`touching` is an array of {array.dtype}; it must hold booleans, or 0 and 1")
@@ -130,7 +130,7 @@ def _time(given: ArrayLike) -> NDArray[np.float64]:
 
 def _floats(name: str, given: ArrayLike, *, finite: bool = True) -> NDArray[np.float64]:
     """Give an array of numbers that are precise enough."""
-    _refuse_masked(name, given)
+    refuse_masked(name, given)
     if getattr(given, "dtype", None) == np.float16:
         raise InputError(f"`{name}` is an array of float16, which has three digits; give float64 or float32")
     array = numbers(name, given, most=3)
@@ -144,8 +144,3 @@ def _finite(name: str, array: NDArray[np.float64]) -> None:
     if wrong.size:
         at = tuple(wrong[0].tolist())
         raise InputError(f"`{name}` is {array[at]} at [{', '.join(map(str, at))}]; it must be finite")
-
-
-def _refuse_masked(name: str, given: ArrayLike) -> None:
-    if isinstance(given, np.ma.MaskedArray):
-        raise InputError(f"`{name}` is a masked array; give an ordinary array, without missing values")

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from percute import _percute
 from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn
-from percute.errors import InputError, PercuteError
+from percute.errors import InputError, PercuteError, SimulationWarning
 from percute.history import History, true_errors_of
 from percute.kept import kept
 from percute.problem import Problem
@@ -63,7 +63,7 @@ def simulate(
     step : float
         Time step (s). The run has equal steps of at most about this length and ends at T exactly.
     steps : (n,) floats
-        Time steps (s), one by one.
+        Time steps (s), one by one. Steps that change so that they amplify vibrations a thousand times are refused.
     longest : float
         The latest end (s); required with ``end="rebound"``, and for this only.
     after : float, optional
@@ -95,7 +95,9 @@ def simulate(
     -----
     InputWarning
         The input is possible but probably a mistake: mixed units, a body that never touches, a run that needs more memory
-        than is free; or contact does not end before ``longest``.
+        than is free, steps that change so that they amplify vibrations; or contact does not end before ``longest``.
+    SimulationWarning
+        The energy balance is off by more than 10 %.
 
     Raises
     ------
@@ -117,7 +119,8 @@ def simulate(
     _percute.check_run(problem._data, grid, flag("long", long))
     warn(_percute.plausibility_warnings(problem._data, grid, file is None))
     with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
-        data = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
+        data, drift = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
+    warn([] if drift is None else [drift], SimulationWarning)
     return History._of(data, problem, "" if file is None else encodable(file))
 
 

@@ -159,6 +159,7 @@ def test_every_case_has_its_file_and_its_test() -> None:
 
 
 @pytest.mark.parametrize("key", MUST)
+@pytest.mark.filterwarnings("ignore::percute.InputWarning")
 def test_orders_and_differences(key: str, request: pytest.FixtureRequest) -> None:
     outcome = request.getfixturevalue("steel") if key == "steel_bar" else RUNS[key](None)
     for quantity, (name, orders, largest) in zip(outcome.quantities, MUST[key], strict=True):

@@ -235,6 +235,7 @@ def test_the_verdict_holds_in_all_runs(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("reconstruction", ["corrected", "consistent", "published"])
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_the_verdict_states_the_ranges_of_each_kind_on_the_page(reconstruction: str) -> None:
     page = {(kind, name): ends(cells[:4] + cells[5:9]) for kind, name, *cells in of_page("kind", "sup: lowest")}
     for case in impacts.cases():

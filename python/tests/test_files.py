@@ -1,5 +1,6 @@
 """Files of histories, and the ways in which they are missing, taken or wrong."""
 
+import json
 import os
 import pickle
 import re
@@ -153,7 +154,7 @@ def test_a_saved_estimate_comes_back(make: object, fields: bool, tmp_path: Path)
             for name, value in vars(second).items():
                 assert np.array_equal(getattr(first, name), value), name
         assert np.array_equal(again.mesh.cells, estimate.mesh.cells)
-        assert again.to_json() == estimate.to_json()
+        assert json.loads(again.to_json()) == json.loads(estimate.to_json()) | {"seconds": None}
         again.plot_map()
     plt.close("all")
     with pytest.raises(pc.InputError, match="copy that"):

@@ -141,6 +141,7 @@ def test_the_correct_history_passes(correct: pc.History, tmp_path: Path) -> None
     assert "of another program: balance off by" in command(tmp_path / "correct.vtkhdf").stdout
 
 
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_an_inconsistent_history_is_estimated_on_demand(correct: pc.History, tmp_path: Path) -> None:
     spoilt = SPOILT["a step late"][0](parts(correct))
     estimate = pc.estimate(given(correct.problem, spoilt), force=True)

@@ -76,6 +76,7 @@ def test_properties_without_evidence_are_named() -> None:
         assert named in facts(estimate)["untested"][0] and "not tested" in str(estimate.verdict)
 
 
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_the_number_is_not_trusted_for_a_reason() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
     history = struck(mesh).history

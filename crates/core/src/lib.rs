@@ -16,6 +16,7 @@ pub mod ids;
 mod instances;
 pub mod load;
 pub mod material;
+pub mod memory;
 pub mod mesh;
 mod message;
 pub mod observer;
@@ -24,6 +25,7 @@ mod ratio;
 mod simd;
 pub mod simplex;
 pub mod time;
+pub mod variable_steps;
 
 #[cfg(debug_assertions)]
 pub use instances::instances;

@@ -3,6 +3,7 @@
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, refused};
+use crate::unfinished::Unfinished;
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
@@ -35,6 +36,8 @@ impl Overwrite {
 /// A file without its final name.
 pub(crate) struct Unnamed {
     temporary: NamedTempFile,
+    /// Removed if the process ends early.
+    unfinished: Unfinished,
     path: PathBuf,
     /// Lock on the file to be replaced.
     old: Option<Held>,
@@ -51,7 +54,7 @@ impl Unnamed {
     ) -> Result<(Self, T), FileCause> {
         let (path, old) = destination(path, overwrite)?;
         let folder = folder_of(&path);
-        let temporary = temporary(folder, bytes)?;
+        let (temporary, unfinished) = temporary(folder, bytes)?;
         // A full disk is detected here in most cases, before the first write.
         if let Some(free) = free(folder).filter(|free| *free < bytes) {
             return Err(FileCause::NoSpace { needed: bytes, free });
@@ -68,7 +71,7 @@ impl Unnamed {
             Err(error) => return Err(no_room(error.into(), folder, bytes.max(length))),
         }
         texts.put(temporary.as_file()).map_err(|error| no_room(error, folder, bytes))?;
-        Ok((Self { temporary, path, old, overwrite }, made))
+        Ok((Self { temporary, unfinished, path, old, overwrite }, made))
     }
 
     /// The file, for further writes.
@@ -83,17 +86,23 @@ impl Unnamed {
 
     /// Gives the file its name. It is locked against writers from then on.
     pub(crate) fn put(self) -> Result<Held, FileCause> {
-        let own = self.temporary.as_file().try_clone().map_err(|source| FileCause::Create { source })?;
+        let Self { mut temporary, unfinished: _unfinished, path, mut old, overwrite } = self;
+        let own = temporary.as_file().try_clone().map_err(|source| FileCause::Create { source })?;
         let held = Held::shared(own)?;
-        let put = match self.overwrite {
-            Overwrite::Refuse => self.temporary.persist_noclobber(&self.path),
-            Overwrite::Replace => self.temporary.persist(&self.path),
-        };
-        drop(self.old);
-        match put {
-            Ok(_) => Ok(held),
-            Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => Err(FileCause::Exists),
-            Err(refused) => Err(FileCause::Create { source: refused.error }),
+        loop {
+            // A file is replaced only by the one that holds the lock on it: of two runs that begin together, one is refused.
+            let put = match old.as_ref().is_some_and(|old| old.is_at(&path)) {
+                true => temporary.persist(&path),
+                false => temporary.persist_noclobber(&path),
+            };
+            match put {
+                Ok(_) => return Ok(held),
+                Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
+                    temporary = refused.file;
+                    old = destination(&path, overwrite)?.1;
+                }
+                Err(refused) => return Err(FileCause::Create { source: refused.error }),
+            }
         }
     }
 }
@@ -111,20 +120,31 @@ pub fn write_bytes(path: impl AsRef<Path>, overwrite: Overwrite, bytes: &[u8]) -
 pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileCause> {
     let (path, old) = destination(path, overwrite)?;
     let (folder, length) = (folder_of(&path), bytes.len() as u64);
-    let mut temporary = temporary(folder, length)?;
+    let (mut temporary, unfinished) = temporary(folder, length)?;
     temporary.write_all(bytes).map_err(|error| no_room(error, folder, length))?;
-    Unnamed { temporary, path, old, overwrite }.put().map(|_| ())
+    Unnamed { temporary, unfinished, path, old, overwrite }.put().map(|_| ())
 }
 
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
 }
 
+/// Makes sure that files can be created in the folder of one that is not there. The name is left alone: another run may be
+/// creating it.
+///
+/// # Errors
+/// Whatever the system reports.
+pub fn check_folder(path: &Path) -> io::Result<()> {
+    tempfile::Builder::new().prefix(".percute-").tempfile_in(folder_of(path)).map(drop)
+}
+
 /// A file under a temporary name, which is removed unless it is renamed.
-fn temporary(folder: &Path, bytes: u64) -> Result<NamedTempFile, FileCause> {
+fn temporary(folder: &Path, bytes: u64) -> Result<(NamedTempFile, Unfinished), FileCause> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".percute-").permissions(Permissions::from_mode(0o666));
-    builder.tempfile_in(folder).map_err(|error| no_room(error, folder, bytes))
+    let made = builder.tempfile_in(folder).map_err(|error| no_room(error, folder, bytes))?;
+    let unfinished = Unfinished::new(made.path());
+    Ok((made, unfinished))
 }
 
 /// Creates an HDF5 file and closes it.
@@ -134,6 +154,7 @@ fn make<T>(path: &Path, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) 
         // VTK loses arrays of later formats. Arrays are aligned so that they can be mapped into memory. The file
         // has no other users yet.
         .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).file_locking(false))
+        .with_fcpl(|p| p.obj_track_times(false))
         .create(path)
         .map_err(|error| refused(&error))?;
     let made = fill(&file)?;

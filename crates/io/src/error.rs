@@ -44,11 +44,20 @@ pub enum FileCause {
     #[error("step {step} could not be written: {source}; all steps before it are in the file")]
     Write { step: usize, source: io::Error },
     /// The file could not be completed.
-    #[error("the file could not be completed: {detail}; it has its {steps} steps, and `percute recover` completes it")]
+    #[error(
+        "the file could not be completed: {detail}; {steps} instants were written to it: if it is whole, `percute recover` \
+         completes it"
+    )]
     Finish { detail: String, steps: usize },
-    /// The file of a run disappeared during the run.
-    #[error("the file was moved, removed or replaced during the run")]
-    Lost,
+    /// The file of a run that was killed before its first step.
+    #[error("the run was killed before it wrote its first step: the file holds nothing; delete it, and run again")]
+    NoStep,
+    /// The file of a run disappeared during the run; `now` is its place and name, if it still has one.
+    #[error("the file was moved, removed or replaced during the run{}", match now {
+        Some(now) => format!("; it is complete, as {}", now.display()),
+        None => ": its steps are lost".to_string(),
+    })]
+    Lost { now: Option<PathBuf> },
     /// The file cannot be read.
     #[error("the file cannot be read: {source}")]
     Read { source: io::Error },
@@ -76,6 +85,13 @@ pub enum FileCause {
     /// Written by an earlier percute.
     #[error("the file has layout {found}, but this version of percute reads {known} only; simulate or estimate again")]
     OlderLayout { found: i64, known: i64 },
+    /// Numbers that are not those written.
+    #[error(
+        "`{name}` does not have its checksum{}: the file was damaged or changed after its run; simulate again, or delete \
+         `percute/checksum` and `percute/checksums` from a file that was changed on purpose",
+        step.map_or(String::new(), |step| format!(" at instant {step}"))
+    )]
+    Checksum { name: String, step: Option<usize> },
     /// A missing part.
     #[error("`{name}` is missing; the layout of the file requires it")]
     MissingPart { name: String },
@@ -135,7 +151,7 @@ impl FileCause {
                 | Self::NoSpace { .. }
                 | Self::Write { .. }
                 | Self::Finish { .. }
-                | Self::Lost
+                | Self::Lost { .. }
                 | Self::Read { .. }
                 | Self::Replaced
                 | Self::TooLarge { .. }

@@ -2,6 +2,9 @@
 
 use crate::error::FileCause;
 use std::fs::{File, TryLockError};
+use std::os::fd::AsRawFd;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
 
 /// A file that is locked. The lock is given back in so many words: closing alone leaves it with any child
 /// process that was forked meanwhile, and this one might then find its own file in use. For the same
@@ -22,6 +25,19 @@ impl Held {
 
     pub(crate) fn file(&self) -> &File {
         &self.0
+    }
+
+    /// Whether this file is the one at a path.
+    pub(crate) fn is_at(&self, path: &Path) -> bool {
+        let (Ok(mine), Ok(there)) = (self.0.metadata(), path.metadata()) else { return false };
+        (mine.dev(), mine.ino()) == (there.dev(), there.ino())
+    }
+
+    /// The path of the file: `path`, or where it has been moved to. None if it was removed or replaced, or if the system does
+    /// not tell.
+    pub(crate) fn place(&self, path: &Path) -> Option<PathBuf> {
+        let moved = || std::fs::read_link(format!("/proc/self/fd/{}", self.0.as_raw_fd())).ok();
+        if self.is_at(path) { Some(path.to_path_buf()) } else { moved().filter(|now| self.is_at(now)) }
     }
 }
 

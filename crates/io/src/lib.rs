@@ -4,6 +4,7 @@
 //! A history file holds the mesh, the steps, and the statement of the problem as text in the language of
 //! the case files. This crate stores and returns that text, but does not parse it.
 
+mod checksum;
 mod create;
 mod error;
 pub mod estimate_file;
@@ -17,12 +18,14 @@ mod mesh;
 mod names;
 mod read;
 mod steps;
+mod unfinished;
 mod write;
 
-pub use create::{Overwrite, write_bytes};
+pub use create::{Overwrite, check_folder, write_bytes};
 pub use error::{FileCause, FileError};
 pub use kind::{Kind, is_vtkhdf_name};
 pub use library::hdf5_version;
 pub use read::is_hdf5;
 pub use read::kind;
+pub use unfinished::remove_unfinished;
 pub use write::{Case, Provenance};

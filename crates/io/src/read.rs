@@ -1,6 +1,7 @@
 //! Reading with HDF5: every size is checked against the stored bytes before memory is allocated.
 
 mod data;
+mod heap;
 
 pub(crate) use data::Data;
 
@@ -11,6 +12,7 @@ use crate::library::{alone, damaged};
 use hdf5::dataset::Layout;
 use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5::{Container, Group, H5Type};
+use std::cell::OnceCell;
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
@@ -27,6 +29,8 @@ pub(crate) const LAYOUT: i64 = 2;
 pub(crate) struct Opened {
     file: hdf5::File,
     bytes: u64,
+    /// Whether texts of variable length can be read, or why not; unknown until one is.
+    heaps: OnceCell<Result<(), String>>,
     _held: Held,
     /// Dropped last, after the file is closed.
     _alone: MutexGuard<'static, ()>,
@@ -37,7 +41,7 @@ impl Opened {
         let alone = alone();
         let (held, bytes) = look(path)?;
         let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open(path).map_err(damaged)?;
-        Ok(Self { file, bytes, _held: held, _alone: alone })
+        Ok(Self { file, bytes, heaps: OnceCell::new(), _held: held, _alone: alone })
     }
 
     /// Bytes of the file.
@@ -46,7 +50,8 @@ impl Opened {
     }
 
     pub(crate) fn root(&self) -> Part<'_> {
-        Part { group: (*self.file).clone(), name: String::new(), file_bytes: self.bytes, file: &self.file }
+        let Self { file, bytes, heaps, .. } = self;
+        Part { group: (**file).clone(), name: String::new(), file_bytes: *bytes, file, heaps }
     }
 
     /// History or estimate; any other file is an error with its contents.
@@ -124,6 +129,7 @@ pub(crate) struct Part<'f> {
     name: String,
     file_bytes: u64,
     file: &'f hdf5::File,
+    heaps: &'f OnceCell<Result<(), String>>,
 }
 
 impl<'f> Part<'f> {
@@ -136,7 +142,8 @@ impl<'f> Part<'f> {
             return Ok(None);
         }
         let group = self.group.group(name).map_err(damaged)?;
-        Ok(Some(Part { group, name: self.path(name), file_bytes: self.file_bytes, file: self.file }))
+        let Self { file_bytes, file, heaps, .. } = *self;
+        Ok(Some(Part { group, name: self.path(name), file_bytes, file, heaps }))
     }
 
     pub(crate) fn group(&self, name: &str) -> Result<Part<'f>, FileCause> {
@@ -206,7 +213,24 @@ impl<'f> Part<'f> {
 
     pub(crate) fn text_attribute(&self, name: &str) -> Result<String, FileCause> {
         let (attribute, path, kind) = self.attribute(name)?;
+        self.check_heaps(&kind)?;
         text(&attribute, &kind, path)
+    }
+
+    /// Makes sure that a text of variable length can be read.
+    fn check_heaps(&self, kind: &TypeDescriptor) -> Result<(), FileCause> {
+        if !matches!(kind, TypeDescriptor::VarLenUnicode | TypeDescriptor::VarLenAscii) {
+            return Ok(());
+        }
+        if self.heaps.get().is_none() {
+            let found = File::open(self.file.filename()).and_then(|file| heap::check(&file, self.file_bytes));
+            // Nobody else sets it.
+            let _ = self.heaps.set(found.map_err(|source| FileCause::Read { source })?);
+        }
+        match self.heaps.get() {
+            Some(Err(detail)) => Err(FileCause::Damaged { detail: detail.clone() }),
+            _ => Ok(()),
+        }
     }
 
     /// A text attribute, empty if missing.
@@ -237,6 +261,7 @@ impl<'f> Part<'f> {
         if let TypeDescriptor::FixedUnicode(length) | TypeDescriptor::FixedAscii(length) = data.kind {
             return self.fixed(&data, length).map(Some);
         }
+        self.check_heaps(&data.kind)?;
         text(&data.set, &data.kind, data.name).map(Some)
     }
 }

@@ -52,9 +52,9 @@ impl Provenance {
 
 type Made<T> = Result<T, FileCause>;
 
-/// A group inside another.
+/// A group inside another. It has no times, so that identical runs make identical files.
 pub(crate) fn group(parent: &Group, name: &str) -> Made<Group> {
-    parent.create_group(name).map_err(|error| refused(&error))
+    parent.create_group_builder().obj_track_times(false).create(name).map_err(|error| refused(&error))
 }
 
 /// Space for later numbers.

@@ -128,6 +128,7 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
         Failure::Run(error) => estimate(py, error),
         Failure::File(error) => file(py, error),
         Failure::Contact(error) => PyMemoryError::new_err(error.to_string()),
+        Failure::Memory(told) => PyMemoryError::new_err(told.clone()),
         Failure::Inconsistent { file, figure, cause } => {
             let told = inconsistency(file.as_deref(), figure, cause.as_deref());
             input(py, format!("{told}; to estimate it as it is, give force=True"))

@@ -20,7 +20,7 @@ use percute_workflow::case::{Instants, statement};
 use percute_workflow::foreign::Checked;
 use percute_workflow::grade::Graded;
 use percute_workflow::outline::Outline;
-use percute_workflow::report::{PARTS, Report, SOURCES, Subject, left_out, sampled};
+use percute_workflow::report::{PARTS, Report, SOURCES, Subject, Warning, warnings_of};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -176,6 +176,21 @@ impl<const D: usize, const N: usize> Made<D, N> {
         self.document(name, Report::to_json)
     }
 
+    /// The same for files.
+    pub(crate) fn stored_report(&self, name: &str) -> Result<String, String> {
+        self.document(name, Report::to_stored_json)
+    }
+
+    /// Warnings that only the result shows, and those that a run is told of before; none if the report was made before.
+    fn warnings(&self) -> [Vec<Warning>; 2] {
+        let Self { problem, times, options, estimate, report, checked, .. } = self;
+        let ReportSource::Now { simulation, held, .. } = report else { return Default::default() };
+        // Equal steps need no critical step.
+        let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
+        let subject = Subject { name: "", problem, times, critical_step, held: *held, checked: checked.as_ref() };
+        warnings_of(&subject, *options, &simulation.balance, estimate)
+    }
+
     /// A document made from the report; if that is there as a text only, this text, which has all of it.
     fn document(&self, name: &str, text: fn(&Report) -> Result<String, std::io::Error>) -> Result<String, String> {
         let Self { problem, times, options, estimate, report, checked, .. } = self;
@@ -200,7 +215,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         contact: Option<&ContactResults<D>>,
     ) -> Result<(), Failure> {
         let Self { problem, estimate, case, .. } = self;
-        let (report, case) = (&self.report(name).map_err(Failure::Argument)?, case.as_ref());
+        let (report, case) = (&self.stored_report(name).map_err(Failure::Argument)?, case.as_ref());
         let statement = &statement(problem, Some(&self.options))?;
         let contents = EstimateContents { problem, estimate, contact, statement, case, report };
         Ok(estimate_file::write(path, overwrite, &contents)?)
@@ -318,12 +333,16 @@ impl EstimateData {
         (given.velocity, given.acceleration)
     }
 
-    /// What became of a history of another program before its estimate.
-    fn notices(&self) -> Vec<String> {
-        each_dimension!(&self.made, m => m.checked.as_ref().map_or_else(Vec::new, |checked| {
-            let left_out = checked.left_out.map(left_out);
-            left_out.into_iter().chain(checked.samples.as_ref().map(sampled)).collect()
-        }))
+    /// The warnings of the command, each with whether it doubts the result: those that only the result shows; with `options`,
+    /// those about the options of the estimate; with `input`, those about the problem.
+    fn warnings(&self, options: bool, input: bool) -> Vec<(String, bool)> {
+        let told = |warning: &Warning| {
+            let of_options = warning.name == "few_samples";
+            of_options && options || !of_options && input
+        };
+        let [found, mut before] = each_dimension!(&self.made, made => made.warnings());
+        before.retain(told);
+        found.into_iter().chain(before).map(|warning| (warning.message.clone(), warning.doubts_result())).collect()
     }
 
     /// Names of the method's choices, and the samples taken.
@@ -362,7 +381,7 @@ impl EstimateData {
         }
     }
 
-    /// A JSON document with verdict and rebound.
+    /// A JSON document with verdict, rebound and warnings.
     fn verdict(&self, py: Python<'_>) -> PyResult<String> {
         let text = each_dimension!(&self.made, made => {
             let made = made.clone();

@@ -142,7 +142,7 @@ fn shown<const D: usize, const N: usize>(
     name: &str,
     contact: Option<&ContactResults<D>>,
 ) -> Result<Shown, Failure> {
-    let json = made.report(name).map_err(Failure::Argument)?;
+    let json = made.stored_report(name).map_err(Failure::Argument)?;
     Ok(Shown {
         body: Body::new(made.problem.mesh()),
         document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,

@@ -15,15 +15,16 @@ use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
-use percute_io::Overwrite;
 use percute_io::history::Writer;
+use percute_io::{FileCause, FileError, Overwrite};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants, Keep, Source, refused_start};
 use percute_workflow::choice::StepChoice;
 use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::{plan, stored_case};
 use percute_workflow::info::memory;
-use percute_workflow::run::{self, Analysis, Storage, TakeStep};
+use percute_workflow::report::{drifted, varying_steps};
+use percute_workflow::run::{self, Analysis, Outcome, Storage, TakeStep};
 use percute_workflow::until::{NO_PLANE, Until};
 use pyo3::prelude::*;
 use std::any::Any;
@@ -55,7 +56,8 @@ fn keep_of(py: Python<'_>, (every, wanted, fields): Kept, times: &TimeGrid) -> P
     Ok(Keep { steps, fields })
 }
 
-/// Simulates. What is raised on the way has what was done as its `history`: the data, or the file.
+/// Simulates; with a warning if energy appears or is lost. What is raised on the way has what was done as its `history`: the
+/// data, or the file.
 #[pyfunction]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -65,7 +67,7 @@ pub(crate) fn simulate(
     keep: Kept,
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<HistoryData> {
+) -> PyResult<(HistoryData, Option<String>)> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let keep = keep_of(py, keep, &times)?;
@@ -83,19 +85,22 @@ fn simulate_one<const D: usize, const N: usize>(
     store: Option<Store>,
     progress: Option<&Bound<'_, PyAny>>,
     either: Either<D, N>,
-) -> PyResult<HistoryData> {
+) -> PyResult<(HistoryData, Option<String>)> {
     let work = {
         let (problem, times) = (problem.clone(), times.clone());
         move |storage: Storage<'_, D>, watch: &mut Watch| {
-            let done = run::simulate(&problem, &times, storage, watch)?;
-            Ok((done.balance_over_time, ()))
+            let Outcome { results, unstored } = run::simulate(&problem, &times, storage, watch)?;
+            let drifted = drifted(results.balance.energy_drift, times.varies());
+            Ok(Done { balance: results.balance_over_time, rest: drifted.map(|warning| warning.message), unstored })
         }
     };
     let planned = Planned { problem: problem.clone(), times, options: Options::default(), store };
-    Ok(planned.carry_out(py, progress, either, work, &|failure| failure)?.0)
+    let (history, drifted) = planned.carry_out(py, progress, either, work, &|failure| failure)?;
+    Ok((history?, drifted))
 }
 
-/// Simulates a case and estimates its error beside the run. What is raised on the way has a `history`, likewise.
+/// Simulates a case and estimates its error beside the run. What is raised on the way has a `history`, likewise; and if only the
+/// file of the history was lost, an `estimate`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn run_case(
@@ -124,7 +129,11 @@ pub(crate) fn run_case(
             (history, ByDimension::Plane(made))
         }
     };
-    Ok((history, EstimateData { made }))
+    let made = EstimateData { made };
+    match history {
+        Ok(history) => Ok((history, made)),
+        Err(error) => Err(with(py, error, "estimate", Some(made))),
+    }
 }
 
 fn run_one<const D: usize, const N: usize>(
@@ -135,7 +144,7 @@ fn run_one<const D: usize, const N: usize>(
     analysis: Analysis,
     progress: Option<&Bound<'_, PyAny>>,
     either: Either<D, N>,
-) -> PyResult<(HistoryData, Arc<Made<D, N>>)> {
+) -> PyResult<(PyResult<HistoryData>, Arc<Made<D, N>>)> {
     let (problem, times, options) = (Arc::new(case.problem.clone()), case.times.clone(), analysis.options);
     let store = store
         .map(|path| Store::new(path, overwrite, case.options, Some(case.source.clone()), case.output.keep.clone()));
@@ -143,8 +152,9 @@ fn run_one<const D: usize, const N: usize>(
         let (problem, times) = (problem.clone(), times.clone());
         move |storage: Storage<'_, D>, watch: &mut Watch| {
             let start = Instant::now();
-            let results = run::run(&problem, &times, &analysis, storage, watch)?;
-            Ok((results.simulation.balance_over_time.clone(), (results, start.elapsed().as_secs_f64())))
+            let Outcome { results, unstored } = run::run(&problem, &times, &analysis, storage, watch)?;
+            let balance = results.simulation.balance_over_time.clone();
+            Ok(Done { balance, rest: (results, start.elapsed().as_secs_f64()), unstored })
         }
     };
     let planned = Planned { problem: problem.clone(), times: times.clone(), options: case.options, store };
@@ -195,7 +205,8 @@ pub(crate) fn plausibility_warnings(
     in_memory: bool,
 ) -> PyResult<Vec<String>> {
     let (end, courant, step, steps) = times;
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let critical = problem.critical_step(py)?;
+    let times = time::grid(py, end, courant, step, steps, critical)?;
     let (plausibility_warnings, needed, names) = each_dimension!(&problem.problem, problem => {
         let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
         (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups(problem))
@@ -204,10 +215,12 @@ pub(crate) fn plausibility_warnings(
         format!("`{}`: {}", errors::argument(plausibility_warning.place, &names), plausibility_warning.message)
     });
     let scarce = memory::scarce(needed, memory::available(), in_memory).map(|message| format!("`mesh`: {message}"));
-    Ok(told.chain(scarce).collect())
+    let varying = varying_steps(&times, critical).map(|warning| format!("`steps` {}", warning.message));
+    Ok(told.chain(varying).chain(scarce).collect())
 }
 
-/// Refuses a start that the simulation would refuse, and a long run unless `long` says so, before warnings and any work.
+/// Refuses a start that the simulation would refuse, a run for which there is no memory, and a long one unless `long` says so, before
+/// warnings and any work.
 #[pyfunction]
 pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, long: bool) -> PyResult<()> {
     let (end, courant, step, steps) = times;
@@ -220,7 +233,8 @@ pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, lon
         let effort = Effort::of(problem, &times, Options::default().every);
         match effort.refusal(&times, false, Long::asked(long, "`long=True`")) {
             Some(told) => Err(errors::input(py, format!("`end` {told}"))),
-            None => Ok(()),
+            None => memory::refusal(memory::of_run(problem, &times))
+                .map_or(Ok(()), |told| Err(errors::input(py, format!("`mesh`: {told}")))),
         }
     })
 }
@@ -269,6 +283,14 @@ impl Store {
     }
 }
 
+/// What a run has done.
+struct Done<T> {
+    balance: Vec<Balance>,
+    rest: T,
+    /// Why its file could not be completed.
+    unstored: Option<FileError>,
+}
+
 /// A run whose history goes to a file or into memory.
 struct Planned<const D: usize, const N: usize> {
     problem: Arc<Problem<D, N>>,
@@ -279,15 +301,15 @@ struct Planned<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Planned<D, N> {
-    /// Does the work, which returns the balance over time and more, and gives the history and the rest.
+    /// Does the work, and gives the history and the rest. There is no history if its file was lost during the run.
     fn carry_out<T: Send + 'static>(
         self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,
         either: Either<D, N>,
-        work: impl FnOnce(Storage<'_, D>, &mut Watch) -> Result<(Vec<Balance>, T), Failure> + Send + 'static,
+        work: impl FnOnce(Storage<'_, D>, &mut Watch) -> Result<Done<T>, Failure> + Send + 'static,
         located: &dyn Fn(Failure) -> Failure,
-    ) -> PyResult<(HistoryData, T)> {
+    ) -> PyResult<(PyResult<HistoryData>, T)> {
         let Self { problem, times, options, store } = self;
         let growing = store.is_none().then(|| Growing::new(&times));
         let task = {
@@ -314,23 +336,28 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         let data =
             |history, balance| HistoryData { run: either(Arc::new(Run::new(problem, history, options, balance))) };
         match (outcome, store) {
-            (Ok((_, rest)), Some(store)) => Ok((open_history(py, store.path)?, rest)),
-            (Ok((balance, rest)), None) => match kept {
-                Some(history) => Ok((data(history, Some(balance)), rest)),
+            (Ok(Done { rest, unstored: Some(lost), .. }), Some(_)) => {
+                let error = errors::file(py, &lost);
+                let FileCause::Lost { now } = lost.cause else { return Ok((Err(error), rest)) };
+                Ok((Err(with(py, error, "history", now)), rest))
+            }
+            (Ok(Done { rest, .. }), Some(store)) => Ok((open_history(py, store.path), rest)),
+            (Ok(Done { balance, rest, .. }), None) => match kept {
+                Some(history) => Ok((Ok(data(history, Some(balance))), rest)),
                 None => Err(errors::percute_error(py, "internal error: a simulation without steps")),
             },
             // To open it takes time that whoever pressed Ctrl-C does not have.
-            (Err(error), Some(store)) if store.ours.load(Relaxed) => Err(with_history(py, error, Some(store.path))),
-            (Err(error), _) => Err(with_history(py, error, kept.map(|history| data(history, None)))),
+            (Err(error), Some(store)) if store.ours.load(Relaxed) => Err(with(py, error, "history", Some(store.path))),
+            (Err(error), _) => Err(with(py, error, "history", kept.map(|history| data(history, None)))),
         }
     }
 }
 
-/// Hangs what was done on an exception: the history, or its file.
-fn with_history<'py>(py: Python<'py>, error: PyErr, history: Option<impl IntoPyObject<'py>>) -> PyErr {
-    if let Some(history) = history {
+/// Hangs what was done on an exception, such as the history or its file.
+fn with<'py>(py: Python<'py>, error: PyErr, name: &str, done: Option<impl IntoPyObject<'py>>) -> PyErr {
+    if let Some(done) = done {
         // One that takes no attributes is raised all the same.
-        let _ = error.value(py).setattr("history", history);
+        let _ = error.value(py).setattr(name, done);
     }
     error
 }

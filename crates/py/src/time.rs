@@ -2,12 +2,13 @@
 
 use crate::errors;
 use percute_core::time::{TimeGrid, is_stable};
+use percute_workflow::report::unstable_steps;
 use pyo3::prelude::*;
 
 /// The instants from 0 to `end`: by the ratio to the critical step, by the step, or step by step (s).
 ///
 /// # Errors
-/// Not exactly one of the three, no end, or a step above the critical one.
+/// Not exactly one of the three, no end, a step above the critical one, or steps that change so that the run would be unstable.
 pub(crate) fn grid(
     py: Python<'_>,
     end: Option<f64>,
@@ -33,7 +34,11 @@ pub(crate) fn grid(
             for (i, step) in steps.iter().enumerate() {
                 below(py, &format!("steps[{i}]"), *step, critical)?;
             }
-            TimeGrid::from_steps(&steps)
+            let grid = TimeGrid::from_steps(&steps);
+            if let Some(told) = grid.as_ref().ok().and_then(|grid| unstable_steps(grid, critical)) {
+                return Err(refused(format!("`steps` {told}")));
+            }
+            grid
         }
         _ => {
             let ways = "`courant` (0 to 1), `step` (s) and `steps` (a list in s)";

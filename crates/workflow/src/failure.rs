@@ -59,6 +59,9 @@ pub enum Failure {
     /// No room for the contact results.
     #[error(transparent)]
     Contact(#[from] ContactMemoryError),
+    /// Not enough memory for the work.
+    #[error("{0}")]
+    Memory(String),
     /// A file that cannot be written.
     #[error("{what}: cannot write {file}: {cause}", file = .file.display())]
     Unwritable {
@@ -101,7 +104,7 @@ impl Failure {
             | Self::Reference(_)
             | Self::NotRepresentable(_) => true,
             Self::File(error) => !error.cause.is_of_the_system(),
-            Self::Run(_) | Self::Contact(_) | Self::Unwritable { .. } | Self::Output(_) => false,
+            Self::Run(_) | Self::Contact(_) | Self::Memory(_) | Self::Unwritable { .. } | Self::Output(_) => false,
         }
     }
 

@@ -4,6 +4,7 @@
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
+use crate::info::memory;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};
@@ -17,6 +18,7 @@ use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
+use percute_io::FileError;
 use percute_io::history::Writer;
 use std::any::Any;
 use std::sync::atomic::AtomicBool;
@@ -45,6 +47,29 @@ pub struct Results<const D: usize> {
     pub outline: Option<Outline>,
 }
 
+/// What a run gave, though its history file may not be what it should.
+#[derive(Debug)]
+pub struct Outcome<T> {
+    /// The results.
+    pub results: T,
+    /// Why the file could not be completed: it was moved or removed, or the disk is full.
+    pub unstored: Option<FileError>,
+}
+
+impl<T> Outcome<T> {
+    /// The results of a run whose file is complete.
+    ///
+    /// # Errors
+    /// A file that could not be completed.
+    pub fn stored(self) -> Result<T, Failure> {
+        self.unstored.map_or(Ok(self.results), |error| Err(error.into()))
+    }
+
+    fn map<U>(self, results: impl FnOnce(T) -> Result<U, Failure>) -> Result<Outcome<U>, Failure> {
+        Ok(Outcome { results: results(self.results)?, unstored: self.unstored })
+    }
+}
+
 /// The places of the history of a run; each is optional.
 #[derive(Default)]
 pub struct Storage<'s, const D: usize> {
@@ -70,14 +95,14 @@ impl Analysis {
 /// Simulates a problem.
 ///
 /// # Errors
-/// A start that the simulation refuses (its history file is removed), an unstable run, a history that cannot be stored;
-/// after these the file holds the steps done.
+/// A start that the simulation refuses (its history file is removed), an unstable run, a step that cannot be stored; after
+/// these the file holds the steps done.
 pub fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
-) -> Result<Simulation, Failure> {
+) -> Result<Outcome<Simulation>, Failure> {
     drive(&Ordered::new(problem), times, None, storage, &mut Discard, observer)
 }
 
@@ -124,7 +149,7 @@ pub fn run<const D: usize, const N: usize>(
     analysis: &Analysis,
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
-) -> Result<Results<D>, Failure> {
+) -> Result<Outcome<Results<D>>, Failure> {
     beside(&Ordered::new(problem), times, analysis, storage, &mut Discard, observer)
 }
 
@@ -136,17 +161,19 @@ pub(crate) fn beside<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     sink: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
-) -> Result<Results<D>, Failure> {
+) -> Result<Outcome<Results<D>>, Failure> {
     let mut contact = analysis.recorder(ordered.problem(), times)?;
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?;
     let mut outline = LastOutline::new(ordered.problem().mesh());
     let mut sinks = ((&mut estimator, (&mut contact, &mut outline)), sink);
-    let simulation = drive(ordered, times, analysis.options.threads, storage, &mut sinks, observer)?;
-    let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
-    let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
-    Ok(Results { simulation, estimate, contact, outline })
+    let done = drive(ordered, times, analysis.options.threads, storage, &mut sinks, observer)?;
+    done.map(|simulation| {
+        let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
+        let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
+        Ok(Results { simulation, estimate, contact, outline })
+    })
 }
 
 /// Analyses the steps of a history; with the same options, the results are those of its run, bit by bit.
@@ -160,6 +187,12 @@ pub fn estimate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Results<D>, Failure> {
     let Analysis { options, request, .. } = analysis;
+    let needed = memory::of_run(problem, source.times()).saturating_add(percute_estimator::memory(
+        problem,
+        source.times(),
+        options,
+    ) as u64);
+    memory::refusal(needed).map_or(Ok(()), |told| Err(Failure::Memory(told)))?;
     let ordered = Ordered::new(problem);
     let mut contact = analysis.recorder(ordered.problem(), source.times())?;
     let mut outline = LastOutline::new(ordered.problem().mesh());
@@ -313,7 +346,7 @@ fn drive<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
-) -> Result<Simulation, Failure> {
+) -> Result<Outcome<Simulation>, Failure> {
     let Storage { file, memory, open } = storage;
     let done = drive_into(ordered, times, threads, (file, memory), beside, observer);
     drop(open);
@@ -327,7 +360,7 @@ fn drive_into<'s, const D: usize, const N: usize>(
     (mut file, mut memory): (Option<Writer<D>>, Option<&'s mut TakeStep<'s, D>>),
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
-) -> Result<Simulation, Failure> {
+) -> Result<Outcome<Simulation>, Failure> {
     let stored = file.is_some() || memory.is_some();
     let kept = file.as_ref().and_then(Writer::kept);
     let [velocity, acceleration] = kept.map_or([false; 2], |kept| [kept.velocity, kept.acceleration]);
@@ -342,10 +375,8 @@ fn drive_into<'s, const D: usize, const N: usize>(
     let mut sinks = (stored.then(|| ordered.sink(&mut store, motion)), beside);
     let simulation = simulate_threaded(ordered.problem(), times, threads, &mut sinks, observer);
     match (simulation, file) {
-        (Ok(simulation), Some(history)) => {
-            history.finish()?;
-            Ok(simulation)
-        }
+        // A file that was lost must not cost the results.
+        (Ok(results), file) => Ok(Outcome { results, unstored: file.and_then(|history| history.finish().err()) }),
         (Err(error @ SimulationError::StartsTooNear { .. }), Some(history)) => {
             let file = history.path().to_path_buf();
             drop(history);
@@ -353,6 +384,6 @@ fn drive_into<'s, const D: usize, const N: usize>(
             let _ = std::fs::remove_file(file);
             Err(ordered.failure(error.into()))
         }
-        (simulation, _) => simulation.map_err(|error| ordered.failure(error.into())),
+        (Err(error), _) => Err(ordered.failure(error.into())),
     }
 }

@@ -1,5 +1,6 @@
 //! Whether a file can be written, asked before any work is done for it.
 
+use percute_io::check_folder;
 use std::fs::OpenOptions;
 use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
@@ -15,15 +16,16 @@ pub fn check(file: &Path) -> Result<()> {
         let message = format!("there is no folder {folder}; create it first, or give another name");
         return Err(Error::new(ErrorKind::NotFound, message));
     }
-    // Not the target of a link: a link to nothing must not be taken for a new file and removed.
-    let new = match std::fs::symlink_metadata(file) {
-        Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => false,
-        Ok(_) => return Err(Error::other("it is not a regular file")),
-        Err(_) => true,
-    };
-    // Appending nothing changes nothing.
-    OpenOptions::new().append(true).create(true).open(file)?;
-    if new { std::fs::remove_file(file) } else { Ok(()) }
+    // Not the target of a link: a link to nothing must not be taken for a new file.
+    match std::fs::symlink_metadata(file) {
+        // Appending nothing changes nothing.
+        Ok(found) if found.is_symlink() && file.is_file() || found.is_file() => {
+            OpenOptions::new().append(true).open(file).map(drop)
+        }
+        Ok(_) => Err(Error::other("it is not a regular file")),
+        Err(error) if error.kind() == ErrorKind::NotFound => check_folder(file),
+        Err(error) => Err(error),
+    }
 }
 
 /// Whether two paths name one file, be it there or not.

@@ -70,7 +70,7 @@ fn ran(problem: &TriangleProblem) -> (Results<2>, History<2>) {
     let mut history = History::new(&times());
     let mut keep = |step: &Step<'_, 2>| history.push(step);
     let storage = Storage { file: None, memory: Some(&mut keep), open: None };
-    let results = run(problem, &times(), &analysis(), storage, &mut Unobserved).unwrap();
+    let results = run(problem, &times(), &analysis(), storage, &mut Unobserved).unwrap().results;
     (results, history)
 }
 

@@ -205,7 +205,7 @@ fn as_good_as_the_case<const D: usize, const N: usize>(problem: &Problem<D, N>, 
     let estimate = |problem, options| {
         let (analysis, storage) =
             (Analysis { options, ..Analysis::default() }, Storage { file: None, memory: None, open: None });
-        let results = run(problem, times, &analysis, storage, &mut Unobserved).unwrap();
+        let results = run(problem, times, &analysis, storage, &mut Unobserved).unwrap().results;
         (results.simulation, results.estimate)
     };
     assert_eq!(estimate(problem, options), estimate(&problem_again, options_again));

@@ -10,7 +10,7 @@ from functools import partial
 from importlib import import_module
 from pathlib import Path
 
-from percute.errors import ExistingFileError, InputError, InputWarning, StorageError
+from percute.errors import ExistingFileError, InputError, InputWarning, SimulationWarning, StorageError
 from percute.verification import page
 from percute.verification.page import Section
 from percute.verification.parallel import Resolution
@@ -99,6 +99,7 @@ def run(
         with warnings.catch_warnings():
             # Slow speeds and short runs are meant here.
             warnings.simplefilter("ignore", InputWarning)
+            warnings.simplefilter("ignore", SimulationWarning)
             sections.append(study.compute(resolution))
         there = [section.key for section in sections]
         write = partial(page.write, folder, sections, resolution.name, [other.key for other in STUDIES if other.key not in there], svg)

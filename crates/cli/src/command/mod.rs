@@ -17,7 +17,7 @@ use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
 use crate::exit::{BAD_INPUT, DONE, FAILED, code};
 use crate::progress::Watch;
 use clap::Parser;
-use percute_io::is_hdf5;
+use percute_io::{FileError, is_hdf5};
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Source, parse};
 use percute_workflow::message::hint;
@@ -96,6 +96,15 @@ impl Console<'_> {
     /// Says something beside the result; what cannot be said must not cost it.
     fn say(&mut self, text: &str) {
         let _ = writeln!(self.err, "{text}");
+    }
+
+    /// The outcome of a command whose history file could not be completed: the results are given all the same.
+    fn but_lost(&mut self, unstored: Option<FileError>, given: Result<u8, Failure>) -> Result<u8, Failure> {
+        let Some(error) = unstored else { return given };
+        if let Err(failure) = given {
+            self.say(&format!("error: {failure}"));
+        }
+        Err(error.into())
     }
 
     /// Says why nothing was done.

@@ -27,9 +27,8 @@ pub(super) fn present(
 ) -> Result<(), Failure> {
     let Shown { body, document, statement, case, surface } = shown;
     let overwrite = Overwrite::allowed(work.force);
-    if let Some(output) = picture(print) {
-        file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused)?;
-    }
+    let drawn = picture(print)
+        .map_or(Ok(()), |output| file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused));
     if let Some(output) = page(print) {
         let contents = Contents { document, body, statement, case: *case, surface: surface.as_ref() };
         let size = file::write_page(&output, overwrite, &contents).map_err(refused)?;
@@ -37,7 +36,7 @@ pub(super) fn present(
             console.say(&format!("report {}: {}", output.file.display(), bytes(size)));
         }
     }
-    Ok(())
+    drawn
 }
 
 /// A file that appeared since it was checked.

@@ -13,12 +13,9 @@ pub(super) fn command(arguments: &RecoverArguments, console: &mut Console<'_>) -
     let planned = each_dimension!(open(file)?, found => found.times().step_count());
     let (shown, steps) = (file.display(), recovered.count.saturating_sub(1));
     let held = format!("{steps} of {planned} planned steps");
-    console.print(&match (recovered.was_complete, recovered.count) {
-        (true, _) => format!("{shown} is closed already, with {held}; nothing was changed"),
-        (false, 0) => {
-            format!("{shown}: the run was killed before it wrote its first step; there is nothing to estimate")
-        }
-        (false, _) => format!("{shown} is now closed, with {held}"),
+    console.print(&match recovered.was_complete {
+        true => format!("{shown} is closed already, with {held}; nothing was changed"),
+        false => format!("{shown} is now closed, with {held}"),
     })?;
     Ok(DONE)
 }

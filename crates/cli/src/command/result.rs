@@ -44,29 +44,50 @@ pub(super) fn give<const D: usize, const N: usize>(
     if !work.quiet {
         console.warn(report.warnings.iter().filter(|warning| !told.contains(&warning.name)));
     }
-    let json = report.to_json()?;
-    // The result first: a file that cannot be written must not cost it.
-    console.print(&if print.json { json.clone() } else { summary(report) })?;
-    if print.picture.is_some() || print.report.is_some() {
-        let shown = Shown {
-            body: Body::new(subject.problem.mesh()),
-            document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,
-            statement: statement(subject.problem, Some(options))?,
-            case: finished.case.as_ref(),
-            surface: Surface::new(contact),
-        };
-        present(&shown, print, work, console)?;
+    let stored_json = report.to_stored_json()?;
+    // The result first, and one file after the other: what cannot be written must not cost the rest.
+    let printed = console.print(&if print.json { report.to_json()? } else { summary(report) });
+    let stored = stored.map_or(Ok(()), |output| store(finished, &stored_json, output, work.force));
+    let tables = tabulate(finished, work.force);
+    let shown = show(finished, &stored_json, print, work, console);
+    let mut failures = [printed, stored, tables, shown].into_iter().filter_map(Result::err);
+    let Some(first) = failures.next() else { return Ok(if simulation.interrupted { INTERRUPTED } else { DONE }) };
+    for failure in failures {
+        console.say(&format!("error: {failure}"));
     }
-    if let Some(tables) = &finished.tables {
-        let (mesh, contact) = (subject.problem.mesh(), Some(contact));
-        let (balance, error) = (&simulation.balance_over_time[..], &estimate.over_time[..]);
-        let results = tables::Results { mesh, contact, balance, error, by_element: &estimate.by_element };
-        tables.write(&results, Overwrite::allowed(work.force))?;
+    Err(first)
+}
+
+/// Draws the picture and writes the page, as far as they are wanted.
+fn show<const D: usize, const N: usize>(
+    finished: &Finished<'_, D, N>,
+    json: &str,
+    print: &PrintArguments,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<(), Failure> {
+    if print.picture.is_none() && print.report.is_none() {
+        return Ok(());
     }
-    if let Some(output) = stored {
-        store(finished, &json, output, work.force)?;
-    }
-    Ok(if simulation.interrupted { INTERRUPTED } else { DONE })
+    let Finished { subject, options, case, results, .. } = finished;
+    let shown = Shown {
+        body: Body::new(subject.problem.mesh()),
+        document: Document::parse(json).map_err(|error| Failure::Argument(error.to_string()))?,
+        statement: statement(subject.problem, Some(options))?,
+        case: case.as_ref(),
+        surface: Surface::new(&results.contact),
+    };
+    present(&shown, print, work, console)
+}
+
+/// Writes the tables, if they are wanted.
+fn tabulate<const D: usize, const N: usize>(finished: &Finished<'_, D, N>, force: bool) -> Result<(), Failure> {
+    let Some(tables) = &finished.tables else { return Ok(()) };
+    let Results { simulation, estimate, contact, .. } = &finished.results;
+    let (mesh, contact) = (finished.subject.problem.mesh(), Some(contact));
+    let (balance, error) = (&simulation.balance_over_time[..], &estimate.over_time[..]);
+    let results = tables::Results { mesh, contact, balance, error, by_element: &estimate.by_element };
+    tables.write(&results, Overwrite::allowed(force))
 }
 
 fn store<const D: usize, const N: usize>(

@@ -13,7 +13,7 @@ use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::effort::Long;
 use percute_workflow::history::stored_case;
 use percute_workflow::outputs::{OutputFile, chosen};
-use percute_workflow::run::{Analysis, Storage, located, run};
+use percute_workflow::run::{Analysis, Outcome, Storage, located, run};
 use percute_workflow::tables::Destination;
 use std::time::Instant;
 
@@ -51,7 +51,7 @@ fn run_case<const D: usize, const N: usize>(
         Storage { file: history, memory: None, open: None },
     );
     let done = run(&case.problem, &case.times, &analysis, storage, watch).map_err(|failure| located(case, failure));
-    let results = match done {
+    let Outcome { results, unstored } = match done {
         // Nothing can be estimated from a run stopped at its very start.
         Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
             console.say(&format!("interrupted: {error}"));
@@ -61,7 +61,9 @@ fn run_case<const D: usize, const N: usize>(
     };
     watch.clear();
     let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
-    give(&Finished { subject, options, case, results, seconds, told, tables }, print, stored, work, console)
+    let finished = Finished { subject, options, case, results, seconds, told, tables };
+    let given = give(&finished, print, stored, work, console);
+    console.but_lost(unstored, given)
 }
 
 /// The files of the history and of the estimate, as far as they are wanted.

@@ -10,8 +10,8 @@ use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{OutputFile, chosen};
-use percute_workflow::report::{reported, simulated};
-use percute_workflow::run::{self, Storage, located};
+use percute_workflow::report::{drifted, reported, simulated};
+use percute_workflow::run::{self, Outcome, Storage, located};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -41,10 +41,13 @@ fn simulate<const D: usize, const N: usize>(
     let start = Instant::now();
     let storage = Storage { file: Some(writer), memory: None, open: None };
     let done = run::simulate(&case.problem, &case.times, storage, watch);
-    let simulation = done.map_err(|failure| located(case, failure))?;
+    let Outcome { results: simulation, unstored } = done.map_err(|failure| located(case, failure))?;
     watch.clear();
-    console.print(&simulated(&case.subject(), &simulation, history.file, start.elapsed().as_secs_f64()))?;
-    Ok(if simulation.interrupted { INTERRUPTED } else { DONE })
+    if !quiet {
+        console.warn(&drifted(simulation.balance.energy_drift, case.times.varies()));
+    }
+    let told = console.print(&simulated(&case.subject(), &simulation, history.file, start.elapsed().as_secs_f64()));
+    console.but_lost(unstored, told.map(|()| if simulation.interrupted { INTERRUPTED } else { DONE }))
 }
 
 /// The name of the case with another ending, in the working directory.

@@ -3,6 +3,7 @@
 use crate::common::{BLOCK, Bench, stderr, stdout};
 use crate::history::result;
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 /// Starts a run that would take far longer than any test.
 pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Child {
@@ -157,4 +158,41 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     assert!(stdout(&recovered).contains("is now closed, with "), "{}", stdout(&recovered));
     assert!(!stdout(&bench.percute(&["info", "case.vtkhdf"])).contains("complete"));
     assert!(result(&stdout(&before)) == result(&stdout(&bench.percute(&estimate))));
+}
+
+/// Sends the signal and gives the time that the process takes to end.
+fn end(signal: &str, child: Child) -> (Output, Duration) {
+    let start = Instant::now();
+    let output = send(signal, child);
+    (output, start.elapsed())
+}
+
+/// Half a second, and as much for a busy machine.
+const SOON: Duration = Duration::from_secs(1);
+
+#[test]
+fn a_pipe_without_a_writer_is_left_at_once() {
+    let bench = Bench::new(BLOCK);
+    assert!(Command::new("mkfifo").arg(bench.path("pipe")).status().unwrap().success());
+    for command in ["run", "simulate", "verify"] {
+        let child = start(&bench, &[command, "pipe"]);
+        std::thread::sleep(Duration::from_millis(200));
+        let (output, took) = end("TERM", child);
+        assert_eq!(output.status.code(), Some(130), "{command}: {}", stderr(&output));
+        assert!(took < SOON, "{command}: {took:?}");
+    }
+}
+
+#[test]
+fn the_set_up_of_a_large_mesh_is_left_at_once() {
+    // Several seconds: two million triangles, and their critical step.
+    let bench = Bench::new(&BLOCK.replace("nx = 5, ny = 4", "nx = 1000, ny = 1000"));
+    for arguments in [&["info", "case.toml"][..], &["run", "case.toml", "--history", "h.vtkhdf", "--long"]] {
+        let child = start(&bench, arguments);
+        wait_until(&child, 20);
+        let (output, took) = end("INT", child);
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        assert!(took < SOON, "{took:?}");
+        assert_eq!(bench.files(), ["case.toml"], "nothing of no use is left");
+    }
 }

@@ -11,8 +11,13 @@ mod examples;
 mod history;
 #[cfg(target_os = "linux")]
 mod interrupt;
+#[cfg(target_os = "linux")]
+mod lost;
+#[cfg(target_os = "linux")]
+mod memory;
 mod mesh_file;
 mod mistakes;
 mod picture;
 mod report;
 mod run;
+mod steps;

@@ -24,7 +24,9 @@ fn numbers(value: &Value, found: &mut Vec<String>) {
 #[test]
 fn a_page_has_all_numbers_and_needs_nothing_else() {
     for (case, figures) in [(BLOCK, 6), (BAR, 5), (ARRAYS, 2)] {
-        let (page, document) = page(&Bench::new(case), "case.toml");
+        let (page, mut document) = page(&Bench::new(case), "case.toml");
+        // A page is the same for identical runs.
+        document["seconds"] = Value::Null;
         let mut all = Vec::new();
         numbers(&document, &mut all);
         assert!(all.len() > 60, "{}", all.len());

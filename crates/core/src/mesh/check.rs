@@ -25,6 +25,12 @@ pub enum MeshError {
     /// More entities than 32-bit indices can count.
     #[error("the mesh has {count} {what}; at most {most} can be counted")]
     TooLarge { what: &'static str, count: usize, most: usize },
+    /// More elements than memory can hold.
+    #[error(
+        "a mesh of {elements} elements needs about {:.1} GB, which cannot be had; give a coarser mesh",
+        *.bytes as f64 / 1e9
+    )]
+    NoMemory { elements: usize, bytes: u64 },
     /// A generator was given an impossible value.
     #[error("`{name}` is {value}; it must be {allowed}")]
     Generator { name: &'static str, value: f64, allowed: &'static str },

@@ -1,6 +1,8 @@
 //! An open history file.
 
 use super::kept::KeptSteps;
+use super::sums::{check_rows, of_flags, of_vectors};
+use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
@@ -58,6 +60,8 @@ pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) stored: [bool; 2],
     pub(super) kept: Option<KeptSteps>,
     pub(super) lacks_reactions: bool,
+    /// Whether each field at each instant has a checksum.
+    pub(super) checksums: bool,
 }
 
 /// A history in a file. Steps are read on demand, and the file is open only during reading.
@@ -117,6 +121,12 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.contents.provenance
+    }
+
+    /// Whether its numbers are compared with checksums when they are read. Those of other programs have none.
+    #[must_use]
+    pub fn has_checksums(&self) -> bool {
+        self.contents.checksums
     }
 
     /// u₀ at the nodes (m): step 0.
@@ -194,11 +204,13 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     fn nodal(&self, name: &str, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
         let nodes = self.mesh().node_count();
         let rows = nodes * steps.start..nodes * steps.end;
-        self.steps(steps, |opened| {
+        self.steps(steps.clone(), |opened| {
             let Some(data) = opened.root().group("VTKHDF")?.group("PointData")?.optional(name)? else {
                 return Ok(None);
             };
-            vectors::<D>(&data, data.float_rows(rows)?).map(Some)
+            let values = vectors::<D>(&data, data.float_rows(rows)?)?;
+            self.check(opened, name, steps, &values, of_vectors)?;
+            Ok(Some(values))
         })
     }
 
@@ -207,7 +219,12 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     /// # Errors
     /// As for [`HistoryFile::displacement`].
     pub fn reaction(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
-        self.contact(steps, "reaction", |data, steps| Ok(data.float_rows(steps)?.as_chunks::<D>().0.to_vec()))
+        self.contact(
+            steps,
+            "reaction",
+            |data, steps| Ok(data.float_rows(steps)?.as_chunks::<D>().0.to_vec()),
+            of_vectors,
+        )
     }
 
     /// Touching status of [`HistoryFile::contact_nodes`], node by node and step after step.
@@ -219,7 +236,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
             let count = steps.len() * self.contact_nodes().len();
             return self.steps(steps, |_| Ok(vec![false; count]));
         }
-        self.contact(steps, "touching", |data, steps| data.flag_rows(steps))
+        self.contact(steps, "touching", |data, steps| data.flag_rows(steps), of_flags)
     }
 
     fn contact<T>(
@@ -227,12 +244,29 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         steps: Range<usize>,
         name: &str,
         read: impl FnOnce(&Data<'_>, Range<usize>) -> Result<Vec<T>, FileCause>,
+        sum: impl Fn(&[T]) -> Checksum,
     ) -> Result<Vec<T>, FileError> {
         if self.contact_nodes().is_empty() {
             return self.steps(steps, |_| Ok(Vec::new()));
         }
         let rows = steps.clone();
-        self.steps(steps, |opened| read(&opened.root().group("percute")?.group("contact")?.data(name)?, rows))
+        self.steps(steps, |opened| {
+            let values = read(&opened.root().group("percute")?.group("contact")?.data(name)?, rows.clone())?;
+            self.check(opened, name, rows, &values, sum)?;
+            Ok(values)
+        })
+    }
+
+    /// Compares numbers with their checksums, if there are any.
+    pub(super) fn check<T>(
+        &self,
+        opened: &Opened,
+        field: &str,
+        steps: Range<usize>,
+        values: &[T],
+        sum: impl Fn(&[T]) -> Checksum,
+    ) -> Result<(), FileCause> {
+        if self.contents.checksums { check_rows(opened, field, steps, values, sum) } else { Ok(()) }
     }
 
     fn steps<T>(

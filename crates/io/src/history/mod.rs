@@ -7,6 +7,7 @@ mod plan;
 mod recover;
 mod rows;
 mod source;
+mod sums;
 mod thinned;
 mod writer;
 

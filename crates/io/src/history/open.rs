@@ -3,6 +3,7 @@
 use super::DISPLACEMENT;
 use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
 use super::kept;
+use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{read, vectors};
@@ -59,14 +60,25 @@ where
     let (contact_nodes, given_contact) = contact(&ours, instants, nodes, D)?;
     let statement = ours.optional_text("problem")?;
     let statement = statement.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
+    let (case, provenance) = (case(&ours)?, provenance(&ours)?);
+    let checksums = provenance.is_percute() && ours.optional("checksums")?.is_some();
+    if checksums {
+        let nodes = contact_nodes.iter().copied();
+        let found = fixed_part(&mesh, &initial_velocity, &statement, case.as_ref(), times.instants(), nodes);
+        check_fixed_part(&ours, found)?;
+        if count > 0 {
+            check_rows(opened, "displacement", 0..1, &initial_displacement, of_vectors)?;
+        }
+        check_seen(&vtk, count, complete)?;
+    }
     Ok(HistoryFile::new(Contents {
         path: path.to_path_buf(),
         identity,
         bytes: opened.bytes(),
         mesh,
         statement,
-        case: case(&ours)?,
-        provenance: provenance(&ours)?,
+        case,
+        provenance,
         initial_displacement,
         initial_velocity,
         times,
@@ -78,7 +90,18 @@ where
         stored,
         kept,
         lacks_reactions: ours.has_attribute("without_reactions"),
+        checksums,
     }))
+}
+
+/// In a final file the instants are those visible to VTK: a second count of them.
+fn check_seen(vtk: &Part<'_>, count: usize, complete: bool) -> Result<(), FileCause> {
+    let seen = vtk.group("Steps")?.integer_attribute("NSteps")?;
+    if !complete || seen == count.max(1) as i64 {
+        return Ok(());
+    }
+    let detail = format!("{count} instants, but {seen} are visible to VTK");
+    Err(FileCause::Value { name: "percute/steps_written".to_string(), detail })
 }
 
 /// The initial displacement, and whether velocities and accelerations are given; all of their shapes are

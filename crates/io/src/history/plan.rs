@@ -1,7 +1,8 @@
 //! A history file before its run: its size and its parts.
 
 use super::kept::Kept;
-use super::rows::{Places, write_vectors};
+use super::rows::{FIELDS, Places, write_vectors};
+use super::sums::fixed_part;
 use super::writer::Writer;
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
@@ -15,7 +16,7 @@ use percute_core::time::TimeGrid;
 use std::path::Path;
 
 /// Overhead of the library beside the arrays and for each group of the mesh (bytes): measured, rounded up.
-const LIBRARY: u64 = 16_100;
+const LIBRARY: u64 = 16_700;
 const PER_GROUP: u64 = 350;
 
 /// A planned history file.
@@ -70,7 +71,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let vectors = 1 + self.given.iter().filter(|given| **given).count() as u64;
         let step = 24 * nodes * vectors + contact * (8 * d + 1);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
-        let steps = 8 * (7 + vectors);
+        let steps = 8 * (7 + vectors + FIELDS.len() as u64);
         let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
         let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
@@ -117,6 +118,11 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         write_groups(&ours, mesh)?;
         let velocity = self.problem.initial_velocity();
         unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
+        let surface = if self.has_contact() { self.problem.surface().nodes() } else { &[] };
+        let nodes = surface.iter().map(|contact| contact.node.index());
+        let sum = fixed_part(mesh, velocity, &self.statement, self.case.as_ref(), &self.stored_times(), nodes);
+        numbers(&ours, "checksum", &[], &[sum])?;
+        let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
         let instants = &self.stored_times();
@@ -143,6 +149,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             touching,
             steps_written: offset(&steps_written)?,
             complete: offset(&complete)?,
+            checksums: offset(&checksums)?,
             nodes: mesh.node_count(),
             contact_nodes: self.problem.surface().nodes().len(),
             has_contact: self.has_contact(),

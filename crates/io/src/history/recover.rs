@@ -1,11 +1,13 @@
 //! Completes the file of a run that was killed.
 
+use super::file::NativeArray;
 use super::open::open;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::steps::{give_steps, note_steps};
 use percute_core::each_dimension;
+use rustix::fs::{FallocateFlags, fallocate};
 use std::fs::File;
 use std::path::Path;
 
@@ -18,26 +20,34 @@ pub struct Recovered {
     pub was_complete: bool,
 }
 
-/// Completes a history whose run was killed: VTK then reads all its complete steps.
+/// Completes a history whose run was killed: VTK then reads all its complete steps. The room of steps that were never written is
+/// given back.
 ///
 /// # Errors
-/// A file that is not a history, is still being written, or cannot be written to.
+/// A file that is not a history, is truncated, has no step, is still being written, or cannot be written to.
 pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     let path = path.as_ref();
     let found = open(path)?;
     let (count, was_complete) = each_dimension!(&found, file => (file.count(), file.is_complete()));
+    let planned = each_dimension!(&found, file => file.times().instants().len());
     let recovered = Recovered { count, was_complete };
     if recovered.was_complete {
         return Ok(recovered);
     }
+    // Read before the lock, which keeps readers out.
+    let arrays = each_dimension!(&found, file => file.arrays())?;
     let finish = || {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
         // A running writer holds a lock on the file.
         let held = Held::alone(file)?;
+        if count == 0 {
+            return Err(FileCause::NoStep);
+        }
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
         set_steps(path, recovered.count).map_err(failed)?;
         set_complete(path).map_err(failed)?;
+        give_back_room(held.file(), arrays.iter().filter_map(room), planned, count);
         held.file().sync_all().map_err(|error| failed(error.to_string()))
     };
     finish().map_err(|cause| cause.at(path))?;
@@ -52,6 +62,23 @@ pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
         give_steps(&file.group("VTKHDF")?, times.get(..count.max(1)).unwrap_or(&times))
     })?;
     change(path, |file| note_steps(&file.group("VTKHDF")?, count.max(1)))
+}
+
+/// Gives back the room of steps that were never written. `rooms` are the places of step 0 and the sizes of a step (bytes); of the
+/// `planned` instants, `count` were written. The file keeps its length, and has holes there.
+pub(super) fn give_back_room(file: &File, rooms: impl IntoIterator<Item = (u64, u64)>, planned: usize, count: usize) {
+    let unwritten = planned.saturating_sub(count) as u64;
+    for (place, row) in rooms.into_iter().filter(|(_, row)| row * unwritten > 0) {
+        let flags = FallocateFlags::PUNCH_HOLE | FallocateFlags::KEEP_SIZE;
+        // File systems without holes keep the room.
+        let _ = fallocate(file, flags, place + row * count as u64, row * unwritten);
+    }
+}
+
+/// The room of an array, if it is as percute writes it.
+fn room(NativeArray { name, shape, offset }: &NativeArray) -> Option<(u64, u64)> {
+    let width = if *name == "touching" { 1 } else { 8 };
+    Some(((*offset)?, width * shape[1..].iter().product::<usize>() as u64))
 }
 
 fn set_complete(path: &Path) -> Result<(), String> {

@@ -1,10 +1,14 @@
 //! The rows of a step as bytes at their place in the file.
 
+use crate::checksum::Checksum;
 use crate::mesh::in_space;
 use percute_core::history::Step;
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
+
+/// Fields over time, in the order of their checksums.
+pub(super) const FIELDS: [&str; 5] = ["displacement", "velocity", "acceleration", "reaction", "touching"];
 
 /// The place of the rows of step 0 in the file (bytes), and their number of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -16,10 +20,22 @@ pub(super) struct Places {
     pub(super) touching: u64,
     pub(super) steps_written: u64,
     pub(super) complete: u64,
+    /// Of a row of checksums for each step.
+    pub(super) checksums: u64,
     pub(super) nodes: usize,
     pub(super) contact_nodes: usize,
     /// Whether the file has reactions and touching status.
     pub(super) has_contact: bool,
+}
+
+impl Places {
+    /// The place of each array over time, and the size of a step in it (bytes).
+    pub(super) fn rooms(&self, dimension: u64) -> impl Iterator<Item = (u64, u64)> {
+        let (nodes, contact) = (24 * self.nodes as u64, self.contact_nodes as u64);
+        let nodal = [Some(self.displacement), self.velocity, self.acceleration].into_iter().flatten();
+        let of_contact = [(self.reaction, 8 * dimension * contact), (self.touching, contact)];
+        nodal.map(move |place| (place, nodes)).chain(of_contact.into_iter().filter(|_| self.has_contact))
+    }
 }
 
 /// A copy of a step, passed between threads.
@@ -73,7 +89,22 @@ impl<const D: usize> Row<D> {
             file.write_all_at(&reaction, places.reaction + n * contact * 8 * D as u64)?;
             file.write_all_at(&self.touching, places.touching + n * contact)?;
         }
+        let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
+        file.write_all_at(&sums, places.checksums + n * sums.len() as u64)?;
         file.write_all_at(&(n + 1).to_ne_bytes(), places.steps_written)
+    }
+
+    /// The checksums of the fields, in the order of [`FIELDS`]; 0 of those that are not stored.
+    fn checksums(&self, has_contact: bool) -> [i64; FIELDS.len()] {
+        let nodal = |values: &Vec<[f64; D]>| {
+            if values.is_empty() { 0 } else { Checksum::new().numbers(values.as_flattened()).stored() }
+        };
+        let mut all = [nodal(&self.displacement), nodal(&self.velocity), nodal(&self.acceleration), 0, 0];
+        if has_contact {
+            all[3] = Checksum::new().numbers(self.reaction.as_flattened()).stored();
+            all[4] = Checksum::new().indices(self.touching.iter().map(|&touches| touches.into())).stored();
+        }
+        all
     }
 }
 

@@ -1,6 +1,7 @@
 //! Steps from a file, as a source for the estimator.
 
 use super::file::HistoryFile;
+use super::sums::{of_flags, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Opened, Part};
@@ -67,8 +68,14 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
             let displacement = fields.data("displacement")?;
             let displacement = vectors(&displacement, displacement.float_rows(rows.clone())?)?;
             self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
+            self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
             let (reaction, touching) = self.contact(opened, steps.clone())?;
-            Ok(StepBlock { displacement, reaction, touching, motion: [velocity?, acceleration?] })
+            let motion = [velocity?, acceleration?];
+            for (name, values) in ["velocity", "acceleration"].into_iter().zip(&motion) {
+                let Some(values) = values else { continue };
+                self.file.check(opened, name, steps.clone(), values, of_vectors)?;
+            }
+            Ok(StepBlock { displacement, reaction, touching, motion })
         })
     }
 
@@ -117,6 +124,8 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
             false => vec![false; reaction.len()],
         };
         self.finite(&data.name, reaction, steps.start, |row| listed[row])?;
+        self.file.check(opened, "reaction", steps.clone(), reaction, of_vectors)?;
+        self.file.check(opened, "touching", steps.clone(), &touching, of_flags)?;
         for (k, step) in steps.clone().enumerate() {
             let here = |row: usize| k * listed.len() + row;
             let touches = |row: usize| touching[here(row)] || reaction[here(row)] != [0.0; D];

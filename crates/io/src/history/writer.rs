@@ -1,14 +1,15 @@
 //! Writes the steps of a run during the run.
 
 use super::kept::Kept;
-use super::recover::set_steps;
+use super::recover::{give_back_room, set_steps};
 use super::rows::{Places, Row};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
+use crate::unfinished::Unfinished;
 use percute_core::history::{SinkError, State, StateSink, Step, StepError};
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::{FileExt, MetadataExt};
+use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
@@ -29,6 +30,8 @@ pub struct Writer<const D: usize> {
     stored: usize,
     given: [bool; 2],
     kept: Option<Kept>,
+    /// Until there is a step, the file is of no use.
+    unfinished: Option<Unfinished>,
     rows: Option<SyncSender<Row<D>>>,
     used: Receiver<Row<D>>,
     thread: Option<JoinHandle<Result<(), Failure>>>,
@@ -64,8 +67,9 @@ impl<const D: usize> Writer<D> {
         let work = move || write_all(&own, &places, &taken, &back);
         let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
         let (rows, thread) = (Some(rows), Some(thread));
-        let path = path.to_path_buf();
-        Ok(Self { path, held, places, last, next: 0, stored: 0, given, kept, rows, used, thread, failed: None })
+        let (path, unfinished) = (path.to_path_buf(), Some(Unfinished::new(path)));
+        let (next, stored, failed) = (0, 0, None);
+        Ok(Self { path, held, places, last, next, stored, given, kept, unfinished, rows, used, thread, failed })
     }
 
     /// The file.
@@ -87,10 +91,10 @@ impl<const D: usize> Writer<D> {
     }
 
     /// Waits for the last step, writes the number of steps for VTK, marks the file complete and waits for
-    /// the disk. A run that was stopped cleanly ends in the same way.
+    /// the disk. A run that was stopped cleanly ends in the same way. A file that was moved is completed in its new place.
     ///
     /// # Errors
-    /// A step that could not be written, or a file that no longer exists.
+    /// A step that could not be written, or a file that was moved or removed.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.stop();
         let finished = match &self.failed {
@@ -104,13 +108,14 @@ impl<const D: usize> Writer<D> {
         let failed = |detail: String| FileCause::Finish { detail, steps: self.stored };
         let told = |error: io::Error| failed(error.to_string());
         self.held.file().sync_data().map_err(told)?;
-        let mine = self.held.file().metadata().map_err(told)?;
-        if !self.path.metadata().is_ok_and(|there| (there.dev(), there.ino()) == (mine.dev(), mine.ino())) {
-            return Err(FileCause::Lost);
-        }
-        set_steps(&self.path, self.stored).map_err(failed)?;
+        let place = self.held.place(&self.path);
+        let Some(now) = place else { return Err(FileCause::Lost { now: None }) };
+        set_steps(&now, self.stored).map_err(failed)?;
         self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
-        self.held.file().sync_all().map_err(told)
+        let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
+        give_back_room(self.held.file(), self.places.rooms(D as u64), planned, self.stored);
+        self.held.file().sync_all().map_err(told)?;
+        if now == self.path { Ok(()) } else { Err(FileCause::Lost { now: Some(now) }) }
     }
 
     /// Completes the pending writes and ends the thread.
@@ -174,6 +179,7 @@ impl<const D: usize> Writer<D> {
             return Err(failure.cause());
         }
         (self.next, self.stored) = (self.next + 1, place + 1);
+        self.unfinished = None;
         Ok(())
     }
 

@@ -90,6 +90,14 @@ impl<'f> Data<'f> {
         }
     }
 
+    /// Complete rows of whole numbers.
+    pub(crate) fn integer_rows(&self, rows: Range<usize>) -> Result<Vec<i64>, FileCause> {
+        match self.kind {
+            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => self.rows(rows),
+            _ => self.refuse_type("integers"),
+        }
+    }
+
     /// Indices below `count`.
     pub(crate) fn indices(&self, count: usize, of: &str) -> Result<Vec<usize>, FileCause> {
         let values = self.integers()?;

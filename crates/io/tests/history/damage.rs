@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use crate::foreign::{Style, rewrite};
+use percute_core::history::History;
 use percute_io::{FileCause, kind};
 use percute_testkit::Random;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,7 @@ fn samples(folder: &Path) -> Vec<PathBuf> {
     let path = folder.join("native.vtkhdf");
     small(&path);
     let mut paths = vec![path.clone()];
-    for style in [Style::Old, Style::Chunked, Style::Deflated] {
+    for style in [Style::Old, Style::Chunked, Style::Deflated, Style::Narrow] {
         let other = folder.join(format!("{style:?}.vtkhdf"));
         rewrite(&path, &other, style);
         paths.push(other);
@@ -24,14 +25,14 @@ fn samples(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Everything that can be asked of a file; whatever is said must be said in words.
-fn ask(path: &Path) -> bool {
+fn ask(path: &Path) -> Option<History<2>> {
     let problem = block(4, 3);
-    let told = replayed(path, &problem).map(|_| ()).and_then(|()| plane_file(path).arrays().map(|_| ()));
+    let told = replayed(path, &problem).and_then(|history| plane_file(path).arrays().map(|_| history));
     if let Err(error) = &told {
         assert!(error.path == path && error.to_string().len() > 20, "{error}");
     }
     let _ = kind(path);
-    told.is_ok()
+    told.ok()
 }
 
 /// Cuts files at many lengths and changes bytes at many places. Runs with little memory, see below.
@@ -40,13 +41,15 @@ fn child() {
     let Ok(folder) = std::env::var(FOLDER) else { return };
     let folder = PathBuf::from(folder);
     let mut random = Random::new(7);
+    let problem = block(4, 3);
+    let original = run(&problem, &steps(&problem, 12));
     for sample in samples(&folder) {
         let whole = std::fs::read(&sample).unwrap();
         let spoilt = folder.join("spoilt.vtkhdf");
         for k in 0..=100 {
             let length = if k < 40 { k * 13 } else { whole.len() * k / 101 };
             std::fs::write(&spoilt, &whole[..length]).unwrap();
-            assert!(!ask(&spoilt), "{} cut at {length} of {}", sample.display(), whole.len());
+            assert!(ask(&spoilt).is_none(), "{} cut at {length} of {}", sample.display(), whole.len());
         }
         let mut good = 0;
         for k in 0..400 {
@@ -56,10 +59,49 @@ fn child() {
                 bytes[at] = if k % 3 == 0 { 0xff } else { random.bits() as u8 };
             }
             std::fs::write(&spoilt, &bytes).unwrap();
-            good += usize::from(ask(&spoilt));
+            let Some(history) = ask(&spoilt) else { continue };
+            good += 1;
+            // What has checksums is as it was, or refused.
+            if sample.ends_with("native.vtkhdf") {
+                assert_eq!(history.len(), original.len());
+                assert_same(&history, &original, original.len());
+            }
         }
-        // Most bytes are numbers, of which another one is as good.
-        assert!(good > 40 && good < 400, "{}: {good}", sample.display());
+        assert!(good < 400, "{}: {good}", sample.display());
+    }
+}
+
+/// Each stored number of the steps and of the mesh: one that is changed is refused, with its field and instant, or is not read.
+#[test]
+fn a_changed_number_is_refused() {
+    let folder = folder();
+    let path = folder.path().join("a.vtkhdf");
+    small(&path);
+    let whole = std::fs::read(&path).unwrap();
+    let places = plane_file(&path).arrays().unwrap();
+    let spoilt = folder.path().join("spoilt.vtkhdf");
+    for array in &places {
+        let width = if array.name == "touching" { 1 } else { 8 };
+        let row = width * array.shape[1..].iter().product::<usize>();
+        for step in [0, 5, 12] {
+            let mut bytes = whole.clone();
+            // The lowest bit of the first number.
+            bytes[array.offset.unwrap() as usize + step * row] ^= 1;
+            std::fs::write(&spoilt, &bytes).unwrap();
+            let error = replayed(&spoilt, &block(4, 3)).unwrap_err();
+            let FileCause::Checksum { name, step: Some(at) } = &error.cause else { panic!("{}: {error}", array.name) };
+            assert_eq!((name.as_str(), *at), (array.name, step));
+        }
+    }
+    assert!(places.len() >= 3);
+    // A point of the mesh, the initial velocity and a letter of the statement.
+    let place = |part: &[u8]| whole.windows(part.len()).position(|bytes| bytes == part).unwrap();
+    for at in [place(&0.0125_f64.to_ne_bytes()), place(&400.0_f64.to_ne_bytes()), place(&STATEMENT.as_bytes()[..20])] {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 1;
+        std::fs::write(&spoilt, &bytes).unwrap();
+        let error = replayed(&spoilt, &block(4, 3)).unwrap_err();
+        assert!(matches!(&error.cause, FileCause::Checksum { step: None, .. }), "{error}");
     }
 }
 

@@ -45,6 +45,10 @@ fn copy(from: &Group, to: &Group, style: Style, stored: &[u8], texts: &mut Vec<(
         copy_attribute(from, to, &name, style);
     }
     for name in from.member_names().unwrap() {
+        // Checksums of numbers that were 64 bits wide.
+        if style == Style::Narrow && name.starts_with("checksum") {
+            continue;
+        }
         match from.group(&name) {
             Ok(group) => copy(&group, &to.create_group(&name).unwrap(), style, stored, texts),
             Err(_) => {
@@ -172,6 +176,12 @@ fn contact_rows_go_by_their_nodes() {
         let file = raw(path, OpenMode::ReadWrite);
         let ours = file.group("percute").unwrap();
         ours.unlink("contact").unwrap();
+        // The file is changed on purpose.
+        for sums in ["checksum", "checksums"] {
+            if ours.link_exists(sums) {
+                ours.unlink(sums).unwrap();
+            }
+        }
         let contact = ours.create_group("contact").unwrap();
         contact.new_dataset_builder().with_data(&nodes).create("nodes").unwrap();
         let set = contact.new_dataset::<f64>().shape((instants, count + 1, 2)).create("reaction").unwrap();

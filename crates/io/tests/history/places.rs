@@ -192,9 +192,16 @@ fn files_that_go_away() {
     let folder = folder();
     let path = folder.path().join("a.vtkhdf");
     let writer = create(&path, Overwrite::Refuse).unwrap();
-    fs::rename(&path, folder.path().join("b.vtkhdf")).unwrap();
+    let moved = folder.path().join("b.vtkhdf");
+    fs::rename(&path, &moved).unwrap();
     let error = writer.finish().unwrap_err();
-    assert!(matches!(error.cause, FileCause::Lost), "{error}");
+    assert!(matches!(&error.cause, FileCause::Lost { now: Some(now) } if *now == moved), "{error}");
+    assert!(plane_file(&moved).is_complete(), "it is completed in its new place");
+
+    let writer = create(&path, Overwrite::Refuse).unwrap();
+    fs::remove_file(&path).unwrap();
+    let error = writer.finish().unwrap_err();
+    assert!(matches!(error.cause, FileCause::Lost { now: None }), "{error}");
 
     let (problem, _) = small(&path);
     let file = plane_file(&path);

@@ -200,6 +200,5 @@ fn time(document: &Document) -> String {
     if !derived.is_empty() {
         row("derived, because the history lacks them", derived.join(", "));
     }
-    row("duration of the work", quantity(document.number("seconds"), "s"));
     table.html()
 }

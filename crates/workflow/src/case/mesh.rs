@@ -60,6 +60,30 @@ pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseErro
     error
 }
 
+/// A mesh of more elements than this is large: to make it takes more than a tenth of a second.
+const LARGE: usize = 100_000;
+
+/// The coarsest mesh of the same kind, with the same groups, for checks of other tables before a large mesh is made. None unless the
+/// mesh is generated and large.
+pub(super) fn coarsest(table: &Table<'_>) -> Option<AnyMesh> {
+    let count = |of: &str, keys: &[&'static str], key: &str| {
+        table.get(of).and_then(|value| value.table(keys, "").ok()?.get(key)?.count(1).ok()).unwrap_or(1)
+    };
+    let sides = ["nx", "ny"].map(|side| count("rectangle", &["width", "height", "nx", "ny"], side));
+    let rings = count("disc", &["radius", "rings"], "rings");
+    let elements = count("bar", &["length", "elements"], "elements");
+    if sides[0].saturating_mul(sides[1]).max(rings.saturating_mul(rings)).max(elements) <= LARGE {
+        return None;
+    }
+    let made = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
+        [true, false, false] => TriangleMesh::rectangle(1.0, 1.0, 1, 1).map(AnyMesh::Plane),
+        [false, true, false] => TriangleMesh::disc(1.0, 1).map(AnyMesh::Plane),
+        [false, false, true] => BarMesh::uniform_bar(1.0, 1).map(AnyMesh::Bar),
+        _ => return None,
+    };
+    made.ok()
+}
+
 /// The file that the mesh is in, if it is in one.
 pub(super) fn file(table: &Table<'_>) -> Option<PathBuf> {
     let value = table.get("file")?;
@@ -164,7 +188,7 @@ fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
         MeshError::NonManifoldNode { node, .. } => entry("points", *node),
         MeshError::NoSuchFacet { group, .. } => named("edge_groups", group),
         MeshError::NoSuchElement { group, .. } => named("element_groups", group),
-        MeshError::Generator { .. } | MeshError::TooLarge { .. } => None,
+        MeshError::Generator { .. } | MeshError::TooLarge { .. } | MeshError::NoMemory { .. } => None,
     };
     value.map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
 }

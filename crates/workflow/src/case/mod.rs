@@ -53,6 +53,7 @@ use crate::effort::{Effort, Long};
 use crate::report::Subject;
 use crate::until::Until;
 use percute_core::dynamics::{SimulationError, check_start};
+use percute_core::each_dimension;
 use percute_core::problem::{Place, Problem, cause_of_refused_start};
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -106,6 +107,9 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     root.only(&TABLES)?;
     let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
     let file = mesh::file(&mesh);
+    if let Some(coarsest) = mesh::coarsest(&mesh) {
+        each_dimension!(coarsest, coarsest => check_tables(&root, coarsest)?);
+    }
     match mesh::read(&mesh)? {
         ByDimension::Bar(bar) => {
             let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
@@ -113,6 +117,17 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
         }
         ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(read(&source, &root, triangles, file)?))),
     }
+}
+
+/// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make.
+fn check_tables<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    coarsest: percute_core::mesh::Mesh<D, N>,
+) -> Result<(), CaseError> {
+    estimate::read(root)?;
+    output::read(root)?;
+    time::read(root)?;
+    problem::check_groups(root, coarsest)
 }
 
 fn read<const D: usize, const N: usize>(
@@ -188,8 +203,8 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         self.error_at(place, message)
     }
 
-    /// Refuses a start that the simulation would refuse, and a run that takes long unless `long` says so, before
-    /// warnings and before any work; `estimated` if the error is estimated beside the run.
+    /// Refuses a start that the simulation would refuse, a run for which there is no memory, and one that takes long unless
+    /// `long` says so, before warnings and before any work; `estimated` if the error is estimated beside the run.
     ///
     /// # Errors
     /// The place in the file.
@@ -199,6 +214,10 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
             let effort = Effort::of(&self.problem, &self.times, self.options.every);
             let told = effort.refusal(&self.times, estimated, long)?;
             self.error_at(Place { table: "time", index: None, key: "end" }, told)
+        });
+        let refused = refused.or_else(|| {
+            let (place, told) = self.lack_of_memory()?;
+            self.error_at(place, told)
         });
         refused.map_or(Ok(()), Err)
     }

@@ -4,7 +4,7 @@ use super::{CaseOf, parsed, place};
 use crate::case::table::Table;
 use crate::info::memory;
 use crate::message::bytes;
-use crate::report::{Warning, few_samples};
+use crate::report::{Warning, few_samples, varying_steps};
 use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
@@ -13,9 +13,16 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     #[must_use]
     pub fn plausibility_warnings(&self, in_memory: bool) -> Vec<Warning> {
         let mut all = plausibility_warnings(&self.problem, &self.times);
-        all.extend(few_samples(self.options.every, self.times.step_count()).map(|Warning { name, brief, message }| {
-            PlausibilityWarning { place: Place { table: "estimate", index: None, key: "every" }, name, brief, message }
-        }));
+        let at = |table, key, Warning { name, brief, message }| PlausibilityWarning {
+            place: Place { table, index: None, key },
+            name,
+            brief,
+            message,
+        };
+        let few = few_samples(self.options.every, self.times.step_count());
+        all.extend(few.map(|few| at("estimate", "every", few)));
+        let varying = varying_steps(&self.times, self.critical_step);
+        all.extend(varying.map(|varying| at("time", "steps", varying)));
         let needed = memory::of_case(self, in_memory);
         all.extend(memory::scarce(needed, memory::available(), in_memory).map(|message| {
             let place = Place { table: "mesh", index: None, key: "" };
@@ -23,6 +30,17 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         }));
         // The lines are looked up only if there is something to say: meshes as arrays make long texts.
         if all.is_empty() { Vec::new() } else { self.at_their_lines(all) }
+    }
+
+    /// What to say if there is no memory for the run, and where: a run of millions of steps is more likely a slip in the end.
+    pub(super) fn lack_of_memory(&self) -> Option<(Place, String)> {
+        let told = memory::refusal(memory::of_case(self, false))?;
+        let warnings = plausibility_warnings(&self.problem, &self.times);
+        let many = warnings.into_iter().find(|warning| warning.name == "many_steps");
+        Some(match many {
+            Some(many) => (many.place, format!("{} As it is, {told}", many.message)),
+            None => (Place { table: "mesh", index: None, key: "" }, told),
+        })
     }
 
     fn at_their_lines(&self, plausibility_warnings: Vec<PlausibilityWarning>) -> Vec<Warning> {

@@ -14,6 +14,22 @@ pub(super) fn read<const D: usize, const N: usize>(
     mesh: Mesh<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
     let import_warnings = mesh.import_warnings().to_vec();
+    with_start(root, mesh)?.build().map_err(|error| located(root, &error, &import_warnings))
+}
+
+/// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups.
+pub(super) fn check_groups<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    mesh: Mesh<D, N>,
+) -> Result<(), CaseError> {
+    match with_start(root, mesh)?.build() {
+        Err(error) if matches!(error.cause, Cause::UnknownGroup { .. }) => Err(located(root, &error, &[])),
+        _ => Ok(()),
+    }
+}
+
+/// Reads all that makes the problem, and does not check it as a whole.
+fn with_start<const D: usize, const N: usize>(root: &Table<'_>, mesh: Mesh<D, N>) -> Result<Builder<D, N>, CaseError> {
     let mut builder = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
@@ -24,7 +40,7 @@ pub(super) fn read<const D: usize, const N: usize>(
             builder = builder.initial_displacement(field(&value, "m")?);
         }
     }
-    builder.build().map_err(|error| located(root, &error, &import_warnings))
+    Ok(builder)
 }
 
 /// Reads materials, planes, supports and loads.

@@ -4,6 +4,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use crate::message::trimmed;
+use crate::report::unstable_steps;
 use crate::until::{NO_PLANE, Until};
 use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
@@ -121,7 +122,7 @@ impl Wanted<'_> {
                 steps.iter().zip(&entries).try_for_each(|(step, entry)| below(*step, critical, entry))?;
                 let grid = TimeGrid::from_steps(steps).map_err(|e| refused(at, &e))?;
                 self.agrees(&grid)?;
-                Ok(grid)
+                unstable_steps(&grid, critical).map_or(Ok(grid), |told| Err(at.error(told)))
             }
         }
     }

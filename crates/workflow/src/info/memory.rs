@@ -5,9 +5,13 @@ use crate::message::bytes;
 use percute_core::contact::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::memory::can_be_had;
 use percute_core::mesh::Facet;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+
+/// Beside the prediction.
+const MARGIN: u64 = 16 << 20;
 
 /// About how many bytes a run and its estimate take; with `in_memory`, its history too.
 pub(crate) fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>, in_memory: bool) -> u64 {
@@ -42,6 +46,20 @@ pub fn scarce(needed: u64, free: Option<u64>, in_memory: bool) -> Option<String>
     let file = if in_memory { ", or store the history in a file" } else { "" };
     Some(format!(
         "the run needs about {needed} of memory, but {free} are free: use a coarser mesh, fewer steps or a larger machine{file}"
+    ))
+}
+
+/// What to say if so much memory cannot be had.
+#[must_use]
+pub fn refusal(needed: u64) -> Option<String> {
+    // The prediction is good to a tenth; threads and the library need some, too.
+    if can_be_had(needed.saturating_add(needed / 10).saturating_add(MARGIN)) {
+        return None;
+    }
+    let needed = bytes(needed);
+    Some(format!(
+        "the run needs about {needed} of memory, which cannot be had: use a coarser mesh, fewer steps, or a larger machine or limit \
+         (`ulimit -v`)"
     ))
 }
 
@@ -99,5 +117,7 @@ mod tests {
         let told = scarce(8_000_000_000, Some(1_000_000_000), true).unwrap();
         assert!(told.contains("8.00 GB") && told.contains("1.00 GB") && told.contains("in a file"), "{told}");
         assert!(scarce(1001, Some(1000), false).is_some_and(|told| !told.contains("in a file")));
+        assert_eq!(refusal(1000), None);
+        assert!(refusal(1 << 60).is_some_and(|told| told.contains("coarser mesh")));
     }
 }

@@ -67,6 +67,7 @@ pub struct HistoryInfo {
     pub versions: Versions,
     pub file: String,
     pub written_by: Provenance,
+    pub checksums: bool,
     pub case: Option<String>,
     pub problem: ProblemSummary,
     pub time: TimeInfo,
@@ -175,6 +176,7 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         versions: Versions::of_this_program(),
         file: stored.name.clone(),
         written_by: file.provenance().clone(),
+        checksums: file.has_checksums(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
         time: TimeInfo::new(file.kept().map_or(file.times(), |kept| &kept.times), subject.critical_step),
@@ -235,6 +237,9 @@ impl HistoryInfo {
     fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines =
             vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
+        if !self.checksums {
+            lines.push(("", "without checksums: damage to its numbers is not found".to_string()));
+        }
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", body(&self.problem)));
         lines.extend(self.time.lines());
@@ -242,6 +247,9 @@ impl HistoryInfo {
         let ended = match (self.complete, self.steps == Some(self.time.steps_planned)) {
             (true, true) => "complete".to_string(),
             (true, false) => "the run was stopped there, and its file is closed".to_string(),
+            (false, _) if self.steps.is_none() => {
+                "INCOMPLETE: the run goes on or was killed; after a kill, delete the file".to_string()
+            }
             (false, _) => {
                 let file = &self.file;
                 format!(

@@ -1,14 +1,15 @@
 //! From the results of a run to its report.
 
 use super::columns::{Columns, EnergiesOverTime, PARTS};
-use super::warnings::{Facts, Warning, few_samples, reported, warnings};
+use super::varying_steps::varying_steps;
+use super::warnings::{Facts, Warning, few_samples, found, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report, SourceReport,
     Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::outline::Outline;
 use percute_core::contact::ContactResults;
-use percute_core::dynamics::Simulation;
+use percute_core::dynamics::{Balance, Simulation};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
@@ -33,19 +34,9 @@ impl Report {
     ) -> Self {
         let Subject { name, times, critical_step, held, checked, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let facts = Facts {
-            problem: &problem,
-            checked,
-            plausibility_warnings: &foreseen(subject, estimate),
-            drift: simulation.balance.energy_drift,
-            interrupted: estimate.steps < times.step_count(),
-            reconstruction: options.reconstruction,
-            kept_impulse: estimate.kept_impulse,
-            own_contacts: estimate.own_contacts,
-            residual: &largest_residual,
-        };
         let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
-        let (interrupted, warnings) = (facts.interrupted, all_warnings(&facts, subject, options));
+        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate);
+        warnings.extend(told_before);
         Self {
             format: FORMAT,
             versions: Versions::of_this_program(),
@@ -58,7 +49,7 @@ impl Report {
             steps: estimate.steps,
             end: estimate.end,
             steps_planned: times.step_count(),
-            interrupted,
+            interrupted: estimate.steps < times.step_count(),
             given: estimate.given,
             derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
             consistency: checked.map(|checked| checked.consistency),
@@ -82,7 +73,7 @@ impl Report {
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             outline: outline.cloned(),
-            seconds,
+            seconds: Some(seconds),
         }
     }
 }
@@ -114,14 +105,35 @@ fn foreseen<const D: usize, const N: usize>(
     all
 }
 
-fn all_warnings<const D: usize, const N: usize>(
-    facts: &Facts<'_>,
+/// The warnings of a result: those that only the result shows, and those that a run is told of before.
+pub fn warnings_of<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
-) -> Vec<Warning> {
-    let few = few_samples(options.every, subject.times.step_count());
+    balance: &Balance,
+    estimate: &Estimate<D>,
+) -> [Vec<Warning>; 2] {
+    let Subject { times, checked, critical_step, .. } = *subject;
+    let foreseen = foreseen(subject, estimate);
+    let facts = Facts {
+        problem: &problem_summary(subject),
+        checked,
+        plausibility_warnings: &foreseen,
+        drift: balance.energy_drift,
+        relative: [estimate.error.relative_sup, estimate.error.relative_mean],
+        steps_vary: times.varies(),
+        interrupted: estimate.steps < times.step_count(),
+        reconstruction: options.reconstruction,
+        kept_impulse: estimate.kept_impulse,
+        own_contacts: estimate.own_contacts,
+        residual: &largest_residual(estimate),
+    };
+    let few = few_samples(options.every, times.step_count());
     let few = few.map(|few| Warning { message: format!("every {}", few.message), ..few });
-    warnings(facts).into_iter().chain(few).chain(reported(subject.problem.mesh())).collect()
+    // The steps of another program have been taken, and its samples are none.
+    let varying = checked.is_none().then(|| varying_steps(times, critical_step)).flatten();
+    let varying = varying.map(|varying| Warning { message: format!("the steps {}", varying.message), ..varying });
+    let before = foreseen.iter().map(Warning::from).chain(varying).chain(few);
+    [found(&facts), before.chain(reported(subject.problem.mesh())).collect()]
 }
 
 pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {

@@ -9,9 +9,11 @@ mod rebound;
 mod simulated;
 mod sources;
 pub(crate) mod summary;
+mod varying_steps;
 mod verdict;
 mod warnings;
 
+pub use build::warnings_of;
 pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
 pub use meaning::meaning;
@@ -19,10 +21,11 @@ pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
 pub use sources::SourceReport;
 pub use summary::summary;
+pub use varying_steps::{unstable_steps, varying_steps};
 pub use verdict::{Shares, Touches, Trust, Verdict};
 pub(crate) use warnings::few_samples;
 pub use warnings::reported;
-pub use warnings::{Warning, left_out, sampled};
+pub use warnings::{Warning, drifted, left_out};
 
 use crate::foreign::{Checked, Consistency, Derived, Samples};
 use crate::outline::Outline;
@@ -95,7 +98,7 @@ pub struct Report {
     pub by_element: Vec<f64>,
     pub outline: Option<Outline>,
     pub warnings: Vec<Warning>,
-    pub seconds: f64,
+    pub seconds: Option<f64>,
 }
 
 /// Versions of the programs that made a report.
@@ -164,14 +167,22 @@ impl Versions {
 }
 
 impl Report {
-    /// Verdict and rebound as a JSON document.
+    /// Verdict, rebound and warnings as a JSON document.
     ///
     /// # Errors
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
-        let Self { verdict, rebound, .. } = self;
-        serde_json::to_string(&serde_json::json!({ "verdict": verdict, "rebound": rebound }))
+        let Self { verdict, rebound, warnings, .. } = self;
+        serde_json::to_string(&serde_json::json!({ "verdict": verdict, "rebound": rebound, "warnings": warnings }))
             .map_err(std::io::Error::from)
+    }
+
+    /// The document for files: without the duration of the work, so that identical runs make identical files.
+    ///
+    /// # Errors
+    /// As [`Report::to_json`].
+    pub fn to_stored_json(&self) -> Result<String, std::io::Error> {
+        Self { seconds: None, ..self.clone() }.to_json()
     }
 
     /// The report as a JSON document. Numbers that are not finite become `null`.

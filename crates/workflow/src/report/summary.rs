@@ -72,7 +72,7 @@ pub(crate) fn step(step: f64, critical: f64) -> String {
 
 fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
     let label = if report.held.is_some() { "history" } else { "case" };
-    let (version, seconds) = (report.versions.percute, short(report.seconds, 3));
+    let (version, seconds) = (report.versions.percute, short(report.seconds.unwrap_or(f64::NAN), 3));
     let options = &report.options;
     let mut lines = vec![
         (label, format!("{} (percute {version}, {seconds} s)", report.case)),
@@ -189,7 +189,7 @@ fn residual(report: &Report) -> String {
 /// The figures of a history of another program that say most.
 fn consistency(found: &Consistency) -> String {
     let [balance, start, energy] = [found.balance, found.initial_velocity, found.energy].map(percent);
-    format!("of another program: balance off by {balance}, start {start}, energy {energy}")
+    format!("of another program: balance off by {balance}, start {start}, energy {energy}; without checksums")
 }
 
 /// Nothing where all is kept.

@@ -10,6 +10,9 @@ use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
 const DRIFT: f64 = 0.1;
+/// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum of their squared
+/// norms: e/D is 1/√2 where they are orthogonal.
+const NEAR_CEILING: f64 = 0.6;
 /// So is a contact impulse of which less than the one or more than the other is kept.
 const KEPT: [f64; 2] = [0.9, 1.1];
 /// Resampling of tables below this is rounding.
@@ -33,6 +36,10 @@ pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
     pub(super) plausibility_warnings: &'a [PlausibilityWarning],
     pub(super) drift: f64,
+    /// The largest relative error and the mean.
+    pub(super) relative: [f64; 2],
+    /// Whether the steps have different lengths.
+    pub(super) steps_vary: bool,
     pub(super) interrupted: bool,
     pub(super) reconstruction: Reconstruction,
     pub(super) kept_impulse: Option<f64>,
@@ -40,13 +47,14 @@ pub(super) struct Facts<'a> {
     pub(super) residual: &'a LargestResidual,
 }
 
-/// All warnings of a run.
-pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
+/// What only the results of a run show.
+pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
     [
         not_admissible(facts),
         last_instant(facts),
         samples(facts),
         energy_drift(facts),
+        relative_error(facts.relative),
         kept_impulse(facts),
         no_contact(facts),
         resampled(facts),
@@ -54,8 +62,15 @@ pub(super) fn warnings(facts: &Facts<'_>) -> Vec<Warning> {
     ]
     .into_iter()
     .flatten()
-    .chain(facts.plausibility_warnings.iter().map(Warning::from))
     .collect()
+}
+
+impl Warning {
+    /// Whether it doubts the result, rather than the input or how it was taken.
+    #[must_use]
+    pub fn doubts_result(&self) -> bool {
+        ["not_admissible", "energy_drift", "relative_error", "kept_impulse", "no_contact"].contains(&self.name)
+    }
 }
 
 impl From<&PlausibilityWarning> for Warning {
@@ -100,8 +115,7 @@ fn samples(facts: &Facts<'_>) -> Option<Warning> {
 }
 
 /// The limits of an estimate from samples.
-#[must_use]
-pub fn sampled(samples: &Samples) -> String {
+fn sampled(samples: &Samples) -> String {
     let Samples { count, distance, critical_steps } = *samples;
     let (samples, distance, critical_steps) =
         (counted(count, "sample"), trimmed(distance, 4), trimmed(critical_steps, 4));
@@ -122,14 +136,37 @@ pub fn left_out(time: f64) -> String {
 }
 
 fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
+    drifted(facts.drift, facts.steps_vary)
+}
+
+/// A warning of an energy balance that is off.
+#[must_use]
+pub fn drifted(drift: f64, steps_vary: bool) -> Option<Warning> {
     // A drift that is no number must not pass.
-    if facts.drift <= DRIFT {
+    if drift <= DRIFT {
         return None;
     }
-    let drift = percent(facts.drift);
-    let message =
-        format!("the energy balance is off by {drift} of the largest energy; reduce the time step or refine the mesh");
+    let drift = percent(drift);
+    let remedy = match steps_vary {
+        true => "take equal time steps, since changes of the step amplify vibrations, or refine the mesh",
+        false => "reduce the time step or refine the mesh",
+    };
+    let message = format!("the energy balance is off by {drift} of the largest energy; {remedy}");
     warning("energy_drift", format!("energy balance off by {drift}"), message)
+}
+
+/// A relative error that says no more than that it is large.
+fn relative_error(relative: [f64; 2]) -> Option<Warning> {
+    let largest = relative[0].max(relative[1]);
+    if largest <= NEAR_CEILING {
+        return None;
+    }
+    let shown = percent(largest);
+    let message = format!(
+        "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true error; refine the \
+         mesh, and look for elements that are nearly flat"
+    );
+    warning("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), message)
 }
 
 fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
@@ -210,4 +247,18 @@ pub fn reported<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Itera
         let (brief, message) = (brief.clone(), message.clone());
         Warning { name, brief, message }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_near_the_ceiling_and_drifts_are_told() {
+        assert_eq!(relative_error([0.6, 0.5]), None);
+        assert!(relative_error([0.1, 0.61]).is_some_and(|told| told.message.contains("61") && told.doubts_result()));
+        assert_eq!(drifted(0.1, false), None);
+        assert!(drifted(f64::NAN, false).is_some_and(|told| told.message.contains("reduce the time step")));
+        assert!(drifted(0.86, true).is_some_and(|told| told.message.contains("take equal time steps")));
+    }
 }

@@ -14,9 +14,10 @@ pub use table::{announced, table};
 use crate::case::{Source, problem_from, statement};
 use crate::effort::{Effort, Long};
 use crate::failure::Failure;
+use crate::info::memory;
 use crate::numbering::Ordered;
 use crate::report::{Report, Subject};
-use crate::run::{Analysis, Results, Storage, beside};
+use crate::run::{Analysis, Outcome, Results, Storage, beside};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StateSink;
 use percute_core::observer::Observer;
@@ -89,6 +90,7 @@ pub fn verify<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
     done: &mut dyn FnMut(&Verification),
 ) -> Result<Verification, Failure> {
+    memory::refusal(cost(prepared, &options).bytes).map_or(Ok(()), |told| Err(Failure::Memory(told)))?;
     let ordered: Vec<_> = prepared.iter().map(|each| Ordered::new(&each.problem)).collect();
     let (mut levels, mut motions, mut first_errors) = (Vec::<Level>::new(), Vec::new(), Vec::new());
     let so_far = |levels: &[Level], first_errors: &[f64]| {
@@ -122,7 +124,7 @@ impl<const D: usize, const N: usize> Prepared<D, N> {
         observer: &mut dyn Observer,
     ) -> Result<Option<Results<D>>, Failure> {
         let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
-        match beside(ordered, &self.times, &analysis, nowhere, sink, observer) {
+        match beside(ordered, &self.times, &analysis, nowhere, sink, observer).and_then(Outcome::stored) {
             Ok(results) => Ok(Some(results).filter(|results| !results.simulation.interrupted)),
             // Nothing can be estimated of a run that was stopped at its start.
             Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. }))) => Ok(None),

@@ -1,0 +1,87 @@
+//! Results outlive their files: what can still be given is given.
+
+use crate::common::{BLOCK, Bench, stderr, stdout};
+use crate::interrupt::start;
+use std::time::{Duration, Instant};
+
+/// A run of about a second, with its history in a folder.
+fn bench() -> Bench {
+    let bench = Bench::new(&BLOCK.replace("end = 5e-6", "end = 3e-3").replace("1e-4]", "1e-2]"));
+    std::fs::create_dir(bench.path("before")).unwrap();
+    bench
+}
+
+fn wait_for(bench: &Bench, name: &str) {
+    let begin = Instant::now();
+    while !bench.path(name).exists() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "{name} did not appear");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn a_folder_that_is_renamed_costs_no_result() {
+    let bench = bench();
+    let arguments =
+        ["run", "case.toml", "--history", "before/a.vtkhdf", "--estimate", "e.vtkhdf", "--picture", "p.svg", "--quiet"];
+    let child = start(&bench, &arguments);
+    wait_for(&bench, "before/a.vtkhdf");
+    std::fs::rename(bench.path("before"), bench.path("after")).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("\nresult    sup "), "{}", stdout(&output));
+    let told = stderr(&output);
+    assert!(told.contains("was moved, removed or replaced during the run; it is complete, as "), "{told}");
+    assert!(told.contains("after/a.vtkhdf"), "{told}");
+    assert!(bench.path("p.svg").exists() && bench.path("e.vtkhdf").exists());
+    let info = bench.percute(&["info", "after/a.vtkhdf"]);
+    assert!(stdout(&info).contains("complete"), "{}", stdout(&info));
+}
+
+#[test]
+fn of_two_runs_on_one_file_the_second_is_refused_at_its_start() {
+    let bench = bench();
+    let run = |picture: &str| {
+        start(&bench, &["run", "case.toml", "--history", "a.vtkhdf", "--force", "--quiet", "--picture", picture])
+    };
+    for there in [false, true] {
+        let outputs = [run("p.svg"), run("q.svg")].map(|child| child.wait_with_output().unwrap());
+        let mut codes = outputs.iter().map(|output| output.status.code()).collect::<Vec<_>>();
+        codes.sort_unstable();
+        assert_eq!(codes, [Some(0), Some(1)], "with a file before: {there}");
+        let loser = outputs.iter().find(|output| output.status.code() == Some(1)).unwrap();
+        assert!(stderr(loser).contains("another program is using the file"), "{}", stderr(loser));
+        assert_eq!(stdout(loser), "");
+        let info = bench.percute(&["info", "a.vtkhdf"]);
+        assert!(stdout(&info).contains("complete"), "{}", stdout(&info));
+    }
+}
+
+#[test]
+fn identical_runs_make_identical_files() {
+    let bench = Bench::new(BLOCK);
+    let names = |run: usize| ["h.vtkhdf", "e.vtkhdf", "p.svg", "p.html"].map(|name| format!("{run}-{name}"));
+    for run in 0..2 {
+        // Times in files have whole seconds.
+        std::thread::sleep(Duration::from_millis(1100 * run as u64));
+        let [history, estimate, picture, page] = names(run);
+        let made = bench.percute(&[
+            "run",
+            "case.toml",
+            "--history",
+            &history,
+            "--estimate",
+            &estimate,
+            "--picture",
+            &picture,
+            "--report",
+            &page,
+        ]);
+        assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    }
+    for (a, b) in names(0).iter().zip(names(1)) {
+        let [a, b] = [bench.path(a), bench.path(&b)].map(|path| std::fs::read(path).unwrap());
+        let differ = a.iter().zip(&b).position(|(a, b)| a != b);
+        assert!(a == b, "{b:?} differs at {differ:?}", b = names(1));
+    }
+}

@@ -1,0 +1,66 @@
+//! The checksums of a history: one of all that does not change in time, and one of each field at each instant.
+
+use super::rows::FIELDS;
+use crate::checksum::Checksum;
+use crate::error::FileCause;
+use crate::read::{Opened, Part};
+use crate::write::Case;
+use percute_core::mesh::Mesh;
+use std::ops::Range;
+
+/// The checksum of all that does not change in time: mesh, initial velocity, texts, instants and contact nodes.
+pub(super) fn fixed_part<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    initial_velocity: &[[f64; D]],
+    statement: &str,
+    case: Option<&Case>,
+    times: &[f64],
+    contact_nodes: impl IntoIterator<Item = usize>,
+) -> i64 {
+    let all = Checksum::new().mesh(mesh).numbers(initial_velocity.as_flattened()).text(statement);
+    let all = case.map_or(all, |case| all.text(&case.name).text(&case.text));
+    all.numbers(times).indices(contact_nodes).stored()
+}
+
+/// Compares the stored checksum of that part.
+pub(super) fn check_fixed_part(ours: &Part<'_>, found: i64) -> Result<(), FileCause> {
+    let Some(stored) = ours.optional("checksum")? else { return Ok(()) };
+    if stored.integers()? == [found] {
+        return Ok(());
+    }
+    Err(FileCause::Checksum {
+        name: "mesh, initial velocity, texts, instants and contact nodes".to_string(),
+        step: None,
+    })
+}
+
+/// Compares the checksums of a field at some instants with those of the numbers read, `row` for each instant.
+pub(super) fn check_rows<T>(
+    opened: &Opened,
+    field: &str,
+    steps: Range<usize>,
+    values: &[T],
+    sum: impl Fn(&[T]) -> Checksum,
+) -> Result<(), FileCause> {
+    let ours = opened.root().group("percute")?;
+    let Some(stored) = ours.optional("checksums")? else { return Ok(()) };
+    let Some(column) = FIELDS.iter().position(|name| *name == field) else { return Ok(()) };
+    let rows = stored.integer_rows(steps.clone())?;
+    let row = values.len() / steps.len().max(1);
+    for (k, step) in steps.enumerate() {
+        if rows.get(FIELDS.len() * k + column) != Some(&sum(&values[k * row..(k + 1) * row]).stored()) {
+            return Err(FileCause::Checksum { name: field.to_string(), step: Some(step) });
+        }
+    }
+    Ok(())
+}
+
+/// The checksum of nodal vectors.
+pub(super) fn of_vectors<const D: usize>(values: &[[f64; D]]) -> Checksum {
+    Checksum::new().numbers(values.as_flattened())
+}
+
+/// The checksum of touching status.
+pub(super) fn of_flags(values: &[bool]) -> Checksum {
+    Checksum::new().indices(values.iter().map(|&touches| touches.into()))
+}

@@ -1,0 +1,121 @@
+//! The heaps of texts of variable length, checked before the library reads them: they have no checksums, and an object of a wrong size
+//! can keep the library in an endless loop.
+
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+
+/// First bytes of a heap: its signature, its version and three zeros.
+const SIGNATURE: [u8; 8] = *b"GCOL\x01\0\0\0";
+/// Bytes of its header, and of that of an object.
+const HEADER: u64 = 16;
+/// Bytes that are searched at once.
+const BLOCK: usize = 1 << 20;
+
+/// Looks for all heaps of a file of so many bytes and follows their objects.
+///
+/// # Errors
+/// What is wrong with a heap; a file that cannot be read.
+pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
+    if size_of_lengths(file)? != 8 {
+        return Ok(Err("its texts have a layout that percute does not read".to_string()));
+    }
+    let mut block = vec![0; BLOCK];
+    let mut start = 0;
+    while start < bytes {
+        let length = block.len().min((bytes - start) as usize);
+        file.read_exact_at(&mut block[..length], start)?;
+        for at in (0..length).filter(|&at| block[at..length].starts_with(&SIGNATURE)) {
+            let place = start + at as u64;
+            if !is_sound(file, place, bytes)? {
+                return Ok(Err(format!("the texts of variable length at byte {place}")));
+            }
+        }
+        // A signature may begin at the end of a block.
+        start += if length < BLOCK { length } else { length - (SIGNATURE.len() - 1) } as u64;
+    }
+    Ok(Ok(()))
+}
+
+/// The size of a length in the file, from its superblock.
+fn size_of_lengths(file: &File) -> io::Result<u8> {
+    let mut superblock = [0; 16];
+    file.read_exact_at(&mut superblock, 0)?;
+    Ok(if superblock[8] < 2 { superblock[14] } else { superblock[10] })
+}
+
+/// Whether the objects of a heap follow each other to its end.
+fn is_sound(file: &File, place: u64, bytes: u64) -> io::Result<bool> {
+    let size = length(file, place + 8, bytes)?;
+    if size < HEADER || size > bytes - place {
+        return Ok(false);
+    }
+    let mut at = HEADER;
+    while at + HEADER <= size {
+        let object = place + at;
+        let mut index = [0; 2];
+        file.read_exact_at(&mut index, object)?;
+        let stored = length(file, object + 8, bytes)?;
+        // The free space counts its own header.
+        let needed = if index == [0; 2] { Some(stored) } else { padded(stored) };
+        match needed.filter(|needed| (HEADER..=size - at).contains(needed)) {
+            Some(needed) => at += needed,
+            None => return Ok(false),
+        }
+    }
+    Ok(true)
+}
+
+/// Bytes of an object with its header.
+fn padded(stored: u64) -> Option<u64> {
+    stored.checked_next_multiple_of(8)?.checked_add(HEADER)
+}
+
+/// A length in the file; one beyond its end is larger than any that fits.
+fn length(file: &File, place: u64, bytes: u64) -> io::Result<u64> {
+    if place + 8 > bytes {
+        return Ok(u64::MAX);
+    }
+    let mut stored = [0; 8];
+    file.read_exact_at(&mut stored, place)?;
+    Ok(u64::from_le_bytes(stored))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    /// A file with a heap of one text and free space.
+    fn heap(change: impl FnOnce(&mut Vec<u8>)) -> Result<(), String> {
+        let mut bytes = vec![0; 48];
+        bytes[8] = 2;
+        bytes[10] = 8;
+        let start = bytes.len();
+        bytes.extend(SIGNATURE);
+        bytes.extend(128_u64.to_le_bytes());
+        bytes.extend([1, 0, 0, 0, 0, 0, 0, 0]);
+        bytes.extend(11_u64.to_le_bytes());
+        bytes.extend([b'a'; 16]);
+        bytes.extend([0; 8]);
+        bytes.extend(80_u64.to_le_bytes());
+        bytes.resize(start + 128, 0);
+        change(&mut bytes);
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&bytes).unwrap();
+        check(&file, bytes.len() as u64).unwrap()
+    }
+
+    #[test]
+    fn objects_must_follow_each_other_to_the_end() {
+        assert_eq!(heap(|_| ()), Ok(()));
+        let length = |at: usize, value: u64| heap(|bytes| bytes[at..at + 8].copy_from_slice(&value.to_le_bytes()));
+        // The size of the heap; of the text; of the free space, of which 0 is the endless loop.
+        for (at, wrong) in [(56, 4096), (56, 8), (72, 200), (72, u64::MAX), (104, 0), (104, 8), (104, 81)] {
+            assert!(length(at, wrong).is_err(), "{wrong} at {at}");
+        }
+        assert!(heap(|bytes| bytes[10] = 4).is_err());
+        // Other bytes are no heap.
+        assert_eq!(heap(|bytes| bytes[48] = b'X'), Ok(()));
+    }
+}
