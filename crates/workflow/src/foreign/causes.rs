@@ -4,6 +4,7 @@ use super::complete::Derived;
 use super::figures::Consistency;
 use super::limits::{BALANCE, Excess, PLACE};
 use super::measure::{Evidence, measure};
+use super::tried::{FALL, Tried};
 use super::units;
 use crate::message::{numbered, percent, times, trimmed, vector};
 use crate::through::Through;
@@ -12,8 +13,6 @@ use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::is_stable;
 
-/// A change must leave less than this share of the residual to be named.
-pub(super) const FALL: f64 = 0.2;
 /// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to 0.02.
 const DRIFT: f64 = 0.1;
 /// The cause of a history that runs backwards.
@@ -28,12 +27,6 @@ pub(super) struct Suspect<'s, const D: usize, const N: usize> {
     pub(super) derived: &'s [Derived],
     pub(super) found: &'s Consistency,
     pub(super) evidence: &'s Evidence<'s, D, N>,
-}
-
-/// A change with what it leaves of the residual.
-pub(super) struct Tried {
-    pub(super) text: String,
-    pub(super) left: f64,
 }
 
 impl<const D: usize, const N: usize> Suspect<'_, D, N> {

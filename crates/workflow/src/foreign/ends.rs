@@ -1,8 +1,8 @@
 //! The start of a history against the initial state of its problem, and its end against the same.
 
 use super::balance::{Balance, Motion, dot, rate};
-use super::causes::FALL;
 use super::figures::Consistency;
+use super::tried::FALL;
 use super::window::Window;
 use super::{ratio, widest};
 use percute_core::problem::Problem;

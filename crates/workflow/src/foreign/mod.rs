@@ -12,6 +12,7 @@ mod measure;
 mod nearness;
 mod residual;
 mod samples;
+mod tried;
 mod units;
 mod window;
 

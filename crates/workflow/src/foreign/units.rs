@@ -1,10 +1,10 @@
 //! Quantities in other units, or simply wrong: factors of the terms of the balance, and the start.
 
-use super::causes::{FALL, Tried};
 use super::complete::Derived;
 use super::limits::BALANCE;
 use super::measure::Evidence;
 use super::residual::{INERTIA, LOAD, REACTION, STIFFNESS};
+use super::tried::{FALL, Tried};
 use crate::message::times;
 
 /// Two numbers that agree to this, relatively, are taken for equal.
