@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
-from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn
+from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn, wrong
 from percute.errors import InputError, PercuteError, SimulationWarning
 from percute.history import History, true_errors_of
 from percute.kept import kept
@@ -28,6 +28,8 @@ __all__ = ["simulate", "true_errors"]
 
 def times_of(end: object, courant: float | None, step: float | None, steps: ArrayLike | None) -> _percute._Times:
     """Check the end and the steps of a run."""
+    if isinstance(end, str):
+        raise wrong("end", end, 'a positive number in s, or "rebound"')
     lengths = None if steps is None else np.atleast_1d(numbers("steps", steps, most=1)).tolist()
     return optional_number("end", end), optional_number("courant", courant), optional_number("step", step), lengths
 
