@@ -99,8 +99,8 @@ fn simulate_one<const D: usize, const N: usize>(
     Ok((history?, drifted))
 }
 
-/// Simulates a case and estimates its error beside the run. What is raised on the way has a `history`, likewise; and if only the
-/// file of the history was lost, an `estimate`.
+/// Simulates a case and estimates its error beside the run. What is raised on the way has a `history` as that of
+/// [`simulate`], and if only the file of the history was lost, an `estimate`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn run_case(

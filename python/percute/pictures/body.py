@@ -98,7 +98,7 @@ def draw_body(
         # Small values are as light as the paper.
         edges = np.column_stack([x, y])[boundary(cells)[0]]
         axes.add_collection(pyplot().matplotlib.collections.LineCollection(edges, colors="#6e6e78", linewidths=0.6))
-    for colour, width in (("white", 3.0), ("#282830", 1.2)):
+    for colour, width in (("white", 3.0), ("#282830", 1.2)) if outline else ():
         # Seen on dark and on light elements.
         lines = pyplot().matplotlib.collections.LineCollection([line / factor for line in outline], colors=colour, linewidths=width, zorder=4)
         axes.add_collection(lines)

@@ -24,8 +24,6 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
     file = writable("save", save, overwrite)
     plots = _axes(axes)
     errors, indices, contact = plots
-    from matplotlib.ticker import LogFormatter
-
     for name, colour in MEASURES:
         estimate, error = getattr(verification, f"estimate_{name}"), getattr(verification, f"error_{name}")
         errors.plot(verification.size, estimate, "o-", color=colour, label=f"estimate, {name}")
@@ -33,7 +31,7 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
         indices.plot(verification.size, getattr(verification, f"effectivity_{name}"), "o-", color=colour, label=name)
     if np.any(np.concatenate([verification.estimate_sup, verification.estimate_mean]) > 0.0):
         errors.set_yscale("log")
-        errors.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.5)))
+        errors.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(1, 0.5)))
     indices.axhspan(*verification.expected, color="#24966e", alpha=0.15, label="expected on the first mesh")
     for name, label, colour in CONTACT:
         values = getattr(verification, name)
