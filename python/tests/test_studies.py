@@ -91,7 +91,6 @@ def test_the_mode_of_a_square_has_the_known_effectivities() -> None:
         assert (spinning[name].sup, spinning[name].mean) == pytest.approx((lame[name].sup, lame[name].mean), rel=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_sources_say_what_half_the_size_changes() -> None:
     """Within 20 % of the change in a run: a front, a corner at 4 m/s, a smooth mode; and half the step of a bar that vibrates."""
     of = {(subject.name, subject.level): subject for subject in sources.subjects()}

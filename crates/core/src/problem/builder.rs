@@ -165,7 +165,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             candidates::add(&mut surface, mesh, obstacle, |f| held[f.index()], |node| fixed[node.index()], area)?;
         }
 
-        let problem = Problem {
+        let mut problem = Problem {
             materials,
             element_material,
             mass,
@@ -182,7 +182,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             stated: self.stated,
             mesh: self.mesh,
         };
-        check_start_of_supports(&problem)?;
+        start_with_supports(&mut problem)?;
         check_start_of_contact(&problem)?;
         Ok(problem)
     }
@@ -267,18 +267,22 @@ fn nodal<const D: usize>(field: &Initial<D>, nodes: usize, key: &'static str) ->
 }
 
 /// The initial velocity must agree with the supports (§3.1, remark).
-fn check_start_of_supports<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
+///
+/// One that agrees up to rounding, as sin(kx) at a support does, becomes that of the support: kinematically admissible
+/// fields satisfy both, eq. \[4\] and \[7\].
+fn start_with_supports<const D: usize, const N: usize>(problem: &mut Problem<D, N>) -> Result<(), InputError> {
     let speeds = problem.initial_velocity.iter().flatten().map(|v| v.abs());
     let largest = speeds.fold(0.0, f64::max);
-    for p in &problem.prescribed {
-        let initial = problem.initial_velocity[p.node.index()][p.component];
-        let prescribed = problem.prescribed_velocity(p, 0.0);
+    for i in 0..problem.prescribed.len() {
+        let p = &problem.prescribed[i];
+        let (node, component, prescribed) = (p.node.index(), p.component, problem.prescribed_velocity(p, 0.0));
+        let initial = &mut problem.initial_velocity[node][component];
         // Far above rounding of the two, far below any speed that matters.
-        if (initial - prescribed).abs() > 1e-12 * largest.max(prescribed.abs()) {
-            let (node, component) = (p.node.index(), axis(p.component));
-            let cause = Cause::InconsistentStart { node, component, initial, prescribed };
+        if (*initial - prescribed).abs() > 1e-12 * largest.max(prescribed.abs()) {
+            let cause = Cause::InconsistentStart { node, component: axis(component), initial: *initial, prescribed };
             return Err(cause.at("initial", None, "velocity"));
         }
+        *initial = prescribed;
     }
     Ok(())
 }

@@ -171,6 +171,16 @@ fn a_start_against_the_supports() {
     assert_eq!(refused(pushed), (place("initial", None, "velocity"), cause));
 }
 
+/// sin(π) is 1e-16, and the support's velocity is 0: an admissible start has the latter, bit for bit.
+#[test]
+fn a_start_that_agrees_with_the_supports_up_to_rounding() {
+    let rounded = [0.0, 3.0 * (1.0 + f64::EPSILON)];
+    let pushed = solid().support(support("top", [false, true], Some([0.0, 3.0])));
+    let problem = pushed.initial_velocity(Initial::Uniform(rounded)).build().expect("agrees up to rounding");
+    let speeds = problem.initial_velocity().iter().map(|v| v[1]);
+    assert_eq!(speeds.collect::<Vec<_>>(), [rounded[1], rounded[1], 3.0, 3.0]);
+}
+
 #[test]
 fn loads_on_supports() {
     let both = solid().support(support("top", [false, true], None)).traction(traction("top", [0.0, 1.0]));
