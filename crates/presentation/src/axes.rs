@@ -23,6 +23,8 @@ pub(crate) struct Look<'a> {
     pub(crate) y: &'a str,
     /// Numbers of marks.
     pub(crate) marks: [usize; 2],
+    /// Whether y has marks at whole numbers only.
+    pub(crate) whole: bool,
     /// Whether lines cross the plot at the marks of y, and of x.
     pub(crate) grid: [bool; 2],
 }
@@ -46,7 +48,7 @@ impl Plot {
             svg.line("axis", [at, bottom], [at, bottom + MARK]);
             svg.text("label", [at, bottom + MARK + 13.0], Anchor::Middle, false, &tick(x));
         }
-        for y in self.y.ticks(look.marks[1]) {
+        for y in self.y.ticks(look.marks[1]).into_iter().filter(|y| !look.whole || y.fract() == 0.0) {
             let [_, at] = self.at(self.x.low, y);
             if look.grid[0] {
                 svg.line("grid", [left, at], [right, at]);

@@ -20,3 +20,4 @@ pub use document::{Document, NoDocument};
 pub use page::{Contents, Surface, page};
 pub use png::DrawError;
 pub use scale::{ColourScale, colour_scale};
+pub use svg::SERIES;

@@ -152,6 +152,8 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
+/// Components below this part of the largest are left over from zero: sums of thousands of steps and nodes have roundings of 1e-13.
+const ROUNDING: f64 = 1e-12;
 /// Units that get no prefix.
 const PLAIN: [&str; 3] = ["m/s", "kg", ""];
 
@@ -164,7 +166,8 @@ pub(crate) fn quantity(value: f64, unit: &str, digits: usize) -> String {
 pub(crate) fn vector_quantity(values: &[f64], unit: &str, digits: usize) -> String {
     let most = values.iter().map(|x| x.abs()).fold(0.0, f64::max);
     let (factor, unit) = if PLAIN.contains(&unit) { (1.0, unit.to_string()) } else { prefixed(unit, most) };
-    let values: Vec<f64> = values.iter().map(|x| x * factor).collect();
+    let part = |x: &f64| if x.abs() > ROUNDING * most { x * factor } else { 0.0 };
+    let values: Vec<f64> = values.iter().map(part).collect();
     format!("{} {unit}", vector(&values, digits)).trim_end().to_string()
 }
 
@@ -249,5 +252,7 @@ mod tests {
         assert!((prefixed("s", 1.3e-5).0 - 1e6).abs() < 1.0);
         assert_eq!([quantity(-3.0653e8, "N", 4), quantity(1e4, "m/s", 4)], ["-306.5 MN", "10000 m/s"]);
         assert_eq!(vector_quantity(&[-684.689, 3424.4], "N s", 3), "(-0.685, 3.42) kN s");
+        assert_eq!(vector_quantity(&[-2.8e-15, 83.8], "N s", 3), "(0, 83.8) N s");
+        assert_eq!(vector_quantity(&[1e-9, 83.8], "N s", 3), "(1e-9, 83.8) N s");
     }
 }

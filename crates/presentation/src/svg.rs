@@ -12,13 +12,15 @@ const LIGHT: [(&str, &str); 10] = [
     ("ink", "#282830"),
     ("faint", "#6e6e78"),
     ("grid", "#e2e2e6"),
-    ("s0", "#1f4e8c"),
-    ("s1", "#c2571a"),
-    ("s2", "#2a7f62"),
-    ("s3", "#8b2f7a"),
-    ("s4", "#8a7200"),
-    ("s5", "#5b5b66"),
+    ("s0", SERIES[0]),
+    ("s1", SERIES[1]),
+    ("s2", SERIES[2]),
+    ("s3", SERIES[3]),
+    ("s4", SERIES[4]),
+    ("s5", SERIES[5]),
 ];
+/// The light colours of the lines of a chart, the first line first.
+pub const SERIES: [&str; 6] = ["#1f4e8c", "#c2571a", "#2a7f62", "#8b2f7a", "#8a7200", "#5b5b66"];
 /// Font sizes of the classes (pixels).
 pub(crate) const TITLE: f64 = 19.0;
 pub(crate) const LABEL: f64 = 13.0;

@@ -113,12 +113,20 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
-/// A text as HTML. A number and its `%` stay in a line.
+/// A text in which a number stays in a line with the Δ of the symbol that follows.
+fn joined(text: &str) -> String {
+    match text.strip_suffix(" Δ") {
+        Some(before) if before.ends_with(|c: char| c.is_ascii_digit()) => format!("{before}\u{a0}Δ"),
+        _ => text.to_string(),
+    }
+}
+
+/// A text as HTML. A number and its `%` or symbol stay in a line.
 pub(crate) fn html(text: &str) -> String {
     let tag = |(kind, text): (Kind, String)| {
         let text = escaped(&text);
         match kind {
-            Kind::Plain => text.replace(" %", "\u{a0}%"),
+            Kind::Plain => joined(&text.replace(" %", "\u{a0}%")),
             Kind::Symbol => format!("<i>{text}</i>"),
             Kind::Sub => format!("<sub>{text}</sub>"),
             Kind::Sup => format!("<sup>{text}</sup>"),
@@ -160,7 +168,7 @@ mod tests {
 
     #[test]
     fn symbols_have_indices_and_powers() {
-        assert_eq!(html("0.9 Δt_c and e_ref"), "0.9 Δ<i>t</i><sub>c</sub> and <i>e</i><sub>ref</sub>");
+        assert_eq!(html("0.9 Δt_c and e_ref"), "0.9\u{a0}Δ<i>t</i><sub>c</sub> and <i>e</i><sub>ref</sub>");
         assert_eq!(html("166.8 J^½, 2·10^-3"), "166.8 J<sup>½</sup>, 2·10<sup>−3</sup>");
         assert_eq!(html("F_DA, a^b, x_"), "<i>F</i><sub>DA</sub>, a^b, x_");
     }

@@ -1,103 +1,178 @@
-//! A verification over the size of the elements.
+//! A verification over the size of the elements. `python/percute/pictures/convergence.py` draws the same.
 
-use super::{ROOM, SIZE, legend};
+use super::{LETTER, ROOM, SAMPLE, SIZE};
 use crate::axes::{Look, Plot};
 use crate::scale::Scale;
 use crate::svg::{Anchor, Svg};
 use percute_workflow::verify::{Level, Verification};
 
-/// Height of a plot, and distance of two (pixels).
+/// Height of a plot, room below it for the sizes of the elements, height of a row of a legend (pixels).
 const HEIGHT: f64 = 190.0;
-const DISTANCE: f64 = 100.0;
+const BELOW: f64 = 34.0;
+const ROW: f64 = 20.0;
+/// Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their range.
+const BESIDE: f64 = 1.1;
+const AROUND: f64 = 1.25;
+const PADDING: f64 = 0.1;
 
-/// A quantity of a level, with its name.
-type Quantity = (&'static str, fn(&Level) -> Option<f64>);
+/// A quantity of a level with its look and its name.
+struct Quantity {
+    class: &'static str,
+    name: &'static str,
+    of: fn(&Level) -> Option<f64>,
+}
 
 const ERRORS: [Quantity; 4] = [
-    ("estimate, mean", |level| Some(level.estimate.mean)),
-    ("true error, mean", |level| level.error.map(|error| error.mean)),
-    ("estimate, sup", |level| Some(level.estimate.sup)),
-    ("true error, sup", |level| level.error.map(|error| error.sup)),
+    Quantity { class: "s0 solid", name: "estimate, mean", of: |level| Some(level.estimate.mean) },
+    Quantity { class: "s1 solid", name: "estimate, sup", of: |level| Some(level.estimate.sup) },
+    Quantity {
+        class: "s0 dashed",
+        name: "true error against the finest mesh, mean",
+        of: |level| level.error.map(|error| error.mean),
+    },
+    Quantity {
+        class: "s1 dashed",
+        name: "true error against the finest mesh, sup",
+        of: |level| level.error.map(|error| error.sup),
+    },
 ];
 const INDICES: [Quantity; 2] = [
-    ("effectivity index of the mean", |level| level.effectivity.map(|index| index.mean)),
-    ("of the sup", |level| level.effectivity.map(|index| index.sup)),
+    Quantity { class: "s0 solid", name: "of the mean", of: |level| level.effectivity.map(|index| index.mean) },
+    Quantity { class: "s1 solid", name: "of the sup", of: |level| level.effectivity.map(|index| index.sup) },
 ];
 const CONTACT: [Quantity; 3] = [
-    ("peak force", |level| level.peak_force),
-    ("impulse", |level| level.impulse),
-    ("rebound velocity", |level| level.rebound),
+    Quantity { class: "s0 solid", name: "peak force", of: |level| level.peak_force },
+    Quantity { class: "s1 solid", name: "impulse", of: |level| level.impulse },
+    Quantity { class: "s2 solid", name: "rebound velocity", of: |level| level.rebound },
 ];
+/// The meaning of the shaded range.
+const EXPECTED: &str = "expected by the verdict on the first mesh";
 
-/// Estimate and true error, effectivity index, and peak force, impulse and rebound velocity over their values on the finest mesh, all
-/// over the size of the elements, as an SVG document. The range of the index that the verdict expects is shaded. None with fewer
-/// than two meshes or without an error.
+/// Estimate and true error, effectivity index, and peak force, impulse and rebound velocity over their values on the
+/// finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects on
+/// the first mesh is shaded. None with fewer than two meshes or without an error.
 #[must_use]
 pub fn convergence(verification: &Verification) -> Option<String> {
     let levels = &verification.levels;
-    let errors = lines(levels, &ERRORS, 1.0);
-    let y = around(&errors, 1.25).filter(|_| levels.len() > 1)?;
-    let mut charts = vec![Chart { lines: errors, label: "error (J^½)", y, band: None, one: false }];
-    let (indices, band) = (lines(levels, &INDICES, 1.0), levels[0].expected);
-    let shown: Vec<f64> = indices.iter().flat_map(|line| &line.points).map(|point| point.1).chain(band).collect();
-    if indices.iter().any(|line| !line.points.is_empty()) {
-        let y = padded(&shown);
-        charts.push(Chart { lines: indices, label: "effectivity index", y, band: Some(band), one: true });
-    }
-    let contact = over_the_finest(levels);
-    let shown: Vec<f64> = contact.iter().flat_map(|line| &line.points).map(|point| point.1).collect();
-    if !shown.is_empty() {
-        charts.push(Chart { lines: contact, label: "over the finest", y: padded(&shown), band: None, one: true });
-    }
-    let count = charts.len() as f64;
-    let mut svg = Svg::new([SIZE[0], ROOM[1] + ROOM[3] + count * HEIGHT + (count - 1.0) * DISTANCE]);
+    let errors = with_values(ERRORS.iter().map(|quantity| Line::new(quantity, levels, 1.0).positive()));
+    let y = around(&errors).filter(|_| levels.len() > 1)?;
+    let (indices, band) = (INDICES.iter().map(|quantity| Line::new(quantity, levels, 1.0)), levels[0].expected);
+    let (indices, contact) = (with_values(indices), over_the_finest(levels));
+    let charts = [
+        Chart { label: "error (J^½)", y, lines: errors, rows: 2, band: None, none: "" },
+        Chart {
+            label: "effectivity index",
+            y: padded(&indices, &band),
+            lines: indices,
+            rows: 1,
+            band: Some(band),
+            none: "the error is zero to rounding",
+        },
+        Chart {
+            label: "over the finest",
+            y: padded(&contact, &[]),
+            lines: contact,
+            rows: 1,
+            band: None,
+            none: "nothing touches",
+        },
+    ];
+    let height = charts.iter().map(|chart| chart.head() + HEIGHT + BELOW).sum::<f64>();
+    let mut svg = Svg::new([SIZE[0], height + ROOM[3] - BELOW]);
+    let mut top = 0.0;
     for (k, chart) in charts.iter().enumerate() {
-        chart.draw(&mut svg, ROOM[1] + k as f64 * (HEIGHT + DISTANCE), levels.len());
+        let label = if k + 1 == charts.len() { "element size over that of the first mesh" } else { "" };
+        chart.draw(&mut svg, top, levels.len(), label);
+        top += chart.head() + HEIGHT + BELOW;
     }
     Some(svg.alone())
 }
 
 /// A quantity at the levels that have it: element size over that of the first mesh, and value.
 struct Line {
+    class: &'static str,
     name: &'static str,
     points: Vec<(f64, f64)>,
 }
 
-/// One of the plots, with its scale and a range that is shaded.
+impl Line {
+    /// The values over `scale`.
+    fn new(quantity: &Quantity, levels: &[Level], scale: f64) -> Self {
+        let point = |(k, level): (usize, &Level)| Some((size(k), (quantity.of)(level)? / scale));
+        let points = levels.iter().enumerate().filter_map(point).filter(|(_, value)| value.is_finite()).collect();
+        Self { class: quantity.class, name: quantity.name, points }
+    }
+
+    /// Without the values that a logarithmic scale cannot show.
+    fn positive(mut self) -> Self {
+        self.points.retain(|&(_, value)| value > 0.0);
+        self
+    }
+}
+
+/// One of the plots, with its scale, the rows of its legend, a range that is shaded, and the reason for no values. On a
+/// linear scale a line marks 1.
 struct Chart {
-    lines: Vec<Line>,
     label: &'static str,
+    lines: Vec<Line>,
     y: Scale,
+    rows: usize,
     band: Option<[f64; 2]>,
-    /// Whether a line marks the value 1.
-    one: bool,
+    none: &'static str,
 }
 
 impl Chart {
-    fn draw(&self, svg: &mut Svg, top: f64, levels: usize) {
-        let x = Scale::logarithmic(size(levels - 1) / 1.1, 1.1);
-        let plot = Plot { corner: [ROOM[0], top], size: [SIZE[0] - ROOM[0] - ROOM[2], HEIGHT], x, y: self.y };
+    /// Room for the legend.
+    fn head(&self) -> f64 {
+        ROW * self.rows as f64 + 14.0
+    }
+
+    fn draw(&self, svg: &mut Svg, top: f64, levels: usize, below: &str) {
+        let x = Scale::logarithmic(size(levels - 1) / BESIDE, BESIDE);
+        let corner = [ROOM[0], top + self.head()];
+        let plot = Plot { corner, size: [SIZE[0] - ROOM[0] - ROOM[2], HEIGHT], x, y: self.y };
         if let Some([low, high]) = self.band {
-            svg.rectangle("class=\"area\"", plot.at(x.low, low), plot.at(x.high, high));
+            svg.rectangle("class=\"s2 band\"", plot.at(x.low, low), plot.at(x.high, high));
         }
-        let label = "element size over that of the first mesh";
-        plot.axes(svg, &Look { x: label, y: self.label, marks: [0, 5], grid: [true; 2] });
+        plot.axes(svg, &Look { x: below, y: self.label, marks: [0, 5], whole: false, grid: [true; 2] });
         for k in 0..levels {
             let ([at, bottom], name) = (plot.at(size(k), self.y.low), fraction(k));
             svg.line("axis", [at, bottom], [at, bottom + 5.0]);
             svg.text("label", [at, bottom + 18.0], Anchor::Middle, false, &name);
         }
-        if self.one {
+        if !self.y.logarithmic {
             svg.line("now", plot.at(x.low, 1.0), plot.at(x.high, 1.0));
         }
-        for (k, line) in self.lines.iter().enumerate() {
-            let (class, places) = (format!("s{k}"), line.points.iter().map(|&(x, y)| plot.at(x, y)));
-            let places: Vec<_> = places.collect();
-            places.iter().for_each(|&at| svg.circle(&class, at, 3.5));
-            svg.polyline(&class, places);
+        for line in &self.lines {
+            let places: Vec<_> = line.points.iter().map(|&(x, y)| plot.at(x, y)).collect();
+            places.iter().for_each(|&at| svg.circle(line.class, at, 3.5));
+            svg.polyline(line.class, places);
         }
-        let names: Vec<_> = self.lines.iter().map(|line| line.name).collect();
-        legend(svg, top - ROOM[1], &names);
+        if self.lines.is_empty() {
+            let middle = [corner[0] + 0.5 * plot.size[0], corner[1] + 0.5 * HEIGHT];
+            svg.text("faint", middle, Anchor::Middle, false, self.none);
+        }
+        self.legend(svg, top);
+    }
+
+    /// Names beside samples, column by column.
+    fn legend(&self, svg: &mut Svg, top: f64) {
+        let lines = self.lines.iter().map(|line| (line.class, line.name));
+        let entries: Vec<_> = lines.chain(self.band.map(|_| ("s2 band", EXPECTED))).collect();
+        let mut x = ROOM[0];
+        for column in entries.chunks(self.rows) {
+            for (row, &(class, name)) in column.iter().enumerate() {
+                let y = top + 14.0 + ROW * row as f64;
+                if class.ends_with("band") {
+                    svg.rectangle(&format!("class=\"{class}\""), [x, y - 5.0], [x + SAMPLE, y + 5.0]);
+                } else {
+                    svg.line(class, [x, y], [x + SAMPLE, y]);
+                }
+                svg.text("label", [x + SAMPLE + 6.0, y + 4.5], Anchor::Start, false, name);
+            }
+            let longest = column.iter().map(|(_, name)| name.chars().count()).max().unwrap_or(0);
+            x += SAMPLE + 6.0 + LETTER * longest as f64 + 18.0;
+        }
     }
 }
 
@@ -110,31 +185,27 @@ fn fraction(level: usize) -> String {
     if level == 0 { "1".to_string() } else { format!("1/{}", 1 << level) }
 }
 
-/// The lines of quantities; values that are not positive have no place on a logarithmic scale.
-fn lines(levels: &[Level], quantities: &[Quantity], scale: f64) -> Vec<Line> {
-    let points = |of: fn(&Level) -> Option<f64>| {
-        let all = levels.iter().enumerate().filter_map(move |(k, level)| Some((size(k), of(level)? / scale)));
-        all.filter(|(_, value)| *value > 0.0 && value.is_finite()).collect()
-    };
-    quantities.iter().map(|&(name, of)| Line { name, points: points(of) }).collect()
+fn with_values(lines: impl Iterator<Item = Line>) -> Vec<Line> {
+    lines.filter(|line| !line.points.is_empty()).collect()
 }
 
 /// The lines of contact, each over its value on the finest mesh; those without one are left out.
 fn over_the_finest(levels: &[Level]) -> Vec<Line> {
     let finest = |of: fn(&Level) -> Option<f64>| levels.last().and_then(of).filter(|value| *value != 0.0);
-    let line = |quantity: &Quantity| Some(lines(levels, &[*quantity], finest(quantity.1)?).remove(0));
-    CONTACT.iter().filter_map(line).collect()
+    let line = |quantity: &Quantity| Some(Line::new(quantity, levels, finest(quantity.of)?));
+    with_values(CONTACT.iter().filter_map(line))
 }
 
-/// A logarithmic scale with room on both sides of the values; none without values.
-fn around(lines: &[Line], room: f64) -> Option<Scale> {
+/// A logarithmic scale with room on both sides of the errors; none without any.
+fn around(lines: &[Line]) -> Option<Scale> {
     let values = || lines.iter().flat_map(|line| &line.points).map(|point| point.1);
-    Some(Scale::logarithmic(values().reduce(f64::min)? / room, values().reduce(f64::max)? * room))
+    Some(Scale::logarithmic(values().reduce(f64::min)? / AROUND, values().reduce(f64::max)? * AROUND))
 }
 
-/// A linear scale around values and 1.
-fn padded(values: &[f64]) -> Scale {
-    let (low, high) = values.iter().fold((1.0_f64, 1.0_f64), |(low, high), &v| (low.min(v), high.max(v)));
-    let room = 0.1 * (high - low).max(0.05);
+/// A linear scale around the values of lines, others and 1.
+fn padded(lines: &[Line], others: &[f64]) -> Scale {
+    let values = lines.iter().flat_map(|line| &line.points).map(|point| point.1).chain(others.iter().copied());
+    let (low, high) = values.fold((1.0_f64, 1.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+    let room = PADDING * (high - low).max(0.05);
     Scale::linear(low - room, high + room)
 }

@@ -18,6 +18,10 @@ use crate::svg::{Anchor, Svg};
 const SIZE: [f64; 2] = [720.0, 308.0];
 const ROOM: [f64; 4] = [76.0, 42.0, 20.0, 50.0];
 
+/// Mean width of a letter of a legend, length of a sample (pixels).
+const LETTER: f64 = 6.9;
+const SAMPLE: f64 = 26.0;
+
 /// The plot of a chart of the usual size.
 fn plot(x: Scale, y: Scale) -> Plot {
     let [left, top, right, below] = ROOM;
@@ -26,9 +30,6 @@ fn plot(x: Scale, y: Scale) -> Plot {
 
 /// Draws names beside samples of their lines, in a row above the plot; `top` is that of its room.
 fn legend(svg: &mut Svg, top: f64, names: &[&str]) {
-    /// Mean width of a letter, length of a sample, gaps (pixels).
-    const LETTER: f64 = 6.9;
-    const SAMPLE: f64 = 26.0;
     let mut x = ROOM[0];
     for (k, name) in names.iter().enumerate() {
         svg.line(&format!("s{k}"), [x, top + 12.0], [x + SAMPLE, top + 12.0]);

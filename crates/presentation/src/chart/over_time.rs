@@ -50,8 +50,8 @@ impl OverTime<'_> {
         let quantity = if unit.is_empty() { self.quantity.to_string() } else { format!("{} ({unit})", self.quantity) };
         let labels = (format!("t ({second})"), quantity);
         // Numbers of things have no halves.
-        let marks = if unit.is_empty() { 5.min(high as usize) } else { 5 };
-        plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, marks], grid: [true, false] });
+        let whole = unit.is_empty();
+        plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], whole, grid: [true, false] });
         if let Some((at, name)) = self.mark {
             let [x, _] = plot.at(at * in_time, 0.0);
             svg.line("now", [x, ROOM[1]], [x, SIZE[1] - ROOM[3]]);
@@ -102,6 +102,24 @@ mod tests {
         assert!(points.len() <= POINTS + 1 && points.contains(&(12_345.0, 7.0)) && points.contains(&(23_456.0, -3.0)));
         assert!(points.is_sorted_by(|a, b| a.0 <= b.0));
         assert_eq!(thinned(&[0.0, 1.0], &[f64::NAN, 2.0]), [(1.0, 2.0)]);
+    }
+
+    #[test]
+    fn numbers_of_things_have_whole_marks() {
+        for (most, marks) in [(1.0, &["0", "1"][..]), (2.0, &["0", "1", "2"]), (3.0, &["0", "1", "2", "3"])] {
+            let chart = OverTime {
+                time: vec![0.0, 2e-5],
+                quantity: "nodes",
+                unit: "",
+                prefixes: false,
+                lines: vec![Line { name: "all", values: vec![0.0, most] }],
+                mark: None,
+            };
+            let drawn = chart.draw().unwrap().alone();
+            let labels = drawn.lines().filter(|line| line.contains("text-anchor=\"end\""));
+            let labels: Vec<_> = labels.filter_map(|line| line.split(['>', '<']).nth(2)).collect();
+            assert_eq!(labels, marks);
+        }
     }
 
     #[test]

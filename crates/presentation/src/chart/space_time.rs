@@ -28,7 +28,7 @@ pub(crate) fn space_time(surface: &Surface) -> Result<Svg, DrawError> {
     let opposite = [0, 1].map(|c| plot.corner[c] + plot.size[c]);
     svg.image("cells", &raster(surface.pressure[0].len(), &rows(surface, most))?, plot.corner, opposite);
     let labels = (format!("t ({second})"), format!("along the surface ({metre})"));
-    plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], grid: [false; 2] });
+    plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], whole: false, grid: [false; 2] });
     let bar = [opposite[0] + 20.0, top];
     let label = format!("pressure ({pascal})");
     colour_bar(&mut svg, bar, [16.0, plot.size[1]], &Scale::linear(0.0, most * to_pascal), (&label, false));

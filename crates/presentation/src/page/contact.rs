@@ -19,13 +19,7 @@ pub(super) fn section_of(contents: &Contents<'_>) -> String {
     if document.number("contact.first_touch").is_none() {
         return section("Contact", &paragraph("No node touches a plane."));
     }
-    let all = [
-        facts(document),
-        force(document),
-        zone(document),
-        pressure(contents),
-        members("rebound", document.at("rebound"), &REBOUND),
-    ];
+    let all = [facts(document), force(document), zone(document), pressure(contents), rebound(document)];
     section("Contact", &all.join(""))
 }
 
@@ -90,6 +84,17 @@ fn pressure(contents: &Contents<'_>) -> String {
          undeformed. No colour: no pressure."
     );
     figure(&svg, "pressure along the surface over time", &caption)
+}
+
+/// The rebound; without a coefficient of restitution, the motion of the body and the reason.
+fn rebound(document: &Document) -> String {
+    let mut rebound = document.at("rebound").clone();
+    let reason = rebound.as_object_mut().and_then(|members| members.remove("no_restitution"));
+    let Some(reason) = reason.as_ref().and_then(serde_json::Value::as_str) else {
+        return members("rebound", &rebound, &REBOUND);
+    };
+    let reason = remark(&format!("There is no coefficient of restitution: {reason}."));
+    members("centre of mass", &rebound, &REBOUND) + &reason
 }
 
 /// The rebound; V is the velocity of the centre of mass, n the normal of the plane.

@@ -1,7 +1,7 @@
 //! The error over elements, over time and by its sources.
 
 use super::Contents;
-use super::html::{self, Table, figure, number, paragraph, section, share, vector};
+use super::html::{self, Table, figure, number, paragraph, remark, section, share, vector};
 use crate::chart::{Line, OverTime};
 use crate::document::{Document, numbers};
 use crate::picture;
@@ -70,6 +70,10 @@ pub(super) fn over_time(document: &Document) -> String {
     section("Error over time", &(figure + &table.html()))
 }
 
+/// The reason for negative sources.
+const NEGATIVE: &str = "A source may be negative: some of its terms are products of two fields, which need not be positive. \
+                        Only the sum of the sources, η, cannot be negative.";
+
 /// The sources of η and what would change it.
 pub(super) fn sources(document: &Document) -> String {
     const SOURCES: [(&str, &str); 4] = [
@@ -95,13 +99,22 @@ pub(super) fn sources(document: &Document) -> String {
     for (name, meaning) in SOURCES {
         let mean = value("mean", name);
         let share = mean.unwrap_or(0.0) / total;
-        let bar = format!("<span class=\"bar\" style=\"width:{:.1}rem\"></span>", 6.0 * share.clamp(0.0, 1.0));
+        // A negative share has no length.
+        let width = 6.0 * share.min(1.0);
+        let bar = if share > 0.0 {
+            format!("<span class=\"bar\" style=\"width:{width:.1}rem\"></span>")
+        } else {
+            String::new()
+        };
         let cells = [name.to_string(), meaning.to_string(), number(mean), html::share(Some(share))]
             .map(|cell| crate::typeset::html(&cell));
         let others = ["at_sup", "half_size"].map(|key| crate::typeset::html(&number(value(key, name))));
         table.marked("", cells.into_iter().chain([bar]).chain(others).collect());
     }
-    section("Sources of the error", &(table.html() + &outlook(document)))
+    let of_all = ["mean", "at_sup", "half_size"].map(|key| SOURCES.map(|(name, _)| value(key, name)));
+    let negative = of_all.iter().flatten().any(|value| value.is_some_and(|value| value < 0.0));
+    let signs = if negative { remark(NEGATIVE) } else { String::new() };
+    section("Sources of the error", &(table.html() + &signs + &outlook(document)))
 }
 
 /// The mean error that a finer mesh, and a shorter step, would have.

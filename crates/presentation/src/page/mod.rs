@@ -120,6 +120,31 @@ mod tests {
     }
 
     #[test]
+    fn a_motion_that_is_no_rebound_has_its_reason() {
+        let about = |rebound: &str| {
+            let contact = r#""contact": {"first_touch": 1e-6}"#;
+            shown(&format!(r#"{{"error": {{"sup": 1.5}}, {contact}, "rebound": {{{rebound}}}}}"#), None)
+        };
+        let held = about(r#""restitution": null, "no_restitution": "supports change the velocity, too""#);
+        let reason = "There is no coefficient of restitution: supports change the velocity, too.</p>";
+        assert!(held.contains(reason) && held.contains("<th>centre of mass</th>"), "{held}");
+        let free = about(r#""restitution": 0.5, "no_restitution": null"#);
+        assert!(free.contains("<th>rebound</th>") && !free.contains("There is no coefficient"), "{free}");
+        assert!(!held.contains("no restitution</td>") && !free.contains("no restitution</td>"));
+    }
+
+    #[test]
+    fn negative_sources_are_explained() {
+        let about = |mesh: f64| {
+            let mean = format!(r#"{{"surface": 1.0, "front": 2.0, "dispersion": 3.0, "mesh": {mesh}}}"#);
+            let html = shown(&format!(r#"{{"error": {{"sup": 1.5}}, "sources": {{"mean": {mean}}}}}"#), None);
+            (html.contains("A source may be negative"), html.matches("class=\"bar\"").count())
+        };
+        assert_eq!(about(-0.5), (true, 3));
+        assert_eq!(about(0.5), (false, 4));
+    }
+
+    #[test]
     fn verdict_rebound_and_consistency_are_shown_where_they_are_known() {
         let html = shown(
             r#"{"error": {"sup": 1.5}, "verdict": {"trust": "limited", "text": ["Refine <there>.", "Keep Δt_c."]},

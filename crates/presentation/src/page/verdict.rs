@@ -105,5 +105,8 @@ fn tiles(document: &Document) -> String {
         let (big, small) = found?;
         Some(format!("<div><dt>{}</dt><dd>{}<small>{}</small></dd></div>\n", html(name), html(&big), html(&small)))
     };
-    format!("<dl class=\"tiles\">\n{}</dl>\n", all.into_iter().filter_map(tile).collect::<String>())
+    let tiles: Vec<_> = all.into_iter().filter_map(tile).collect();
+    // Six fit into a row, of seven four.
+    let class = if tiles.len() > 6 { "tiles many" } else { "tiles" };
+    format!("<dl class=\"{class}\">\n{}</dl>\n", tiles.concat())
 }

@@ -1,6 +1,6 @@
 //! The error of each element of a bar, over its length.
 
-use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, MARGIN, mark, planes, ranked};
+use super::{AXIS_BELOW, AXIS_LEFT, Body, Document, MARGIN, marks, planes, worst};
 use crate::axes::{Look, Plot};
 use crate::scale::{Scale, prefixed};
 use crate::svg::Svg;
@@ -26,18 +26,18 @@ pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, ma
     let y = Scale::linear(0.0, most * (1.0 + ROOM));
     let plot = Plot { corner: [AXIS_LEFT, top], size: PLOT, x, y };
     let label = format!("x ({unit})");
-    plot.axes(svg, &Look { x: &label, y: "e_E (J^½)", marks: [8, 6], grid: [true, false] });
+    plot.axes(svg, &Look { x: &label, y: "e_E (J^½)", marks: [8, 6], whole: false, grid: [true, false] });
     let pieces = pieces(body, &values);
     let at = |x: f64, value: f64| plot.at(x * factor, value);
     for &(a, b, value) in &pieces {
         svg.rectangle("class=\"area\"", at(a, value), at(b, 0.0));
     }
     svg.polyline("s0", pieces.iter().flat_map(|&(a, b, value)| [at(a, value), at(b, value)]));
-    for (rank, worst) in ranked(document, marked) {
-        if let &[x] = crate::document::numbers(&worst["centroid"]).as_slice() {
-            mark(svg, plot.at(x * factor, worst["error"].as_f64().unwrap_or(0.0)), rank);
-        }
-    }
+    let place = |worst: &serde_json::Value| match crate::document::numbers(&worst["centroid"]).as_slice() {
+        &[x] => Some(plot.at(x * factor, worst["error"].as_f64().unwrap_or(0.0))),
+        _ => None,
+    };
+    marks(svg, &worst(document, marked).filter_map(place).collect::<Vec<_>>());
     let places = planes(document).into_iter().map(|plane| plane.point[0] * factor);
     for place in places.filter(|place| (x.low..=x.high).contains(place)) {
         svg.line("plane", plot.at(place, 0.0), plot.at(place, y.high));

@@ -104,15 +104,46 @@ fn head(svg: &mut Svg, document: &Document) {
     svg.text("faint", [MARGIN, 50.0], Anchor::Start, false, &line);
 }
 
-/// The worst elements with their ranks, the worst last: its mark lies above the others.
-fn ranked(document: &Document, count: usize) -> impl Iterator<Item = (usize, &serde_json::Value)> {
-    document.list("worst_elements").iter().take(count).enumerate().map(|(k, worst)| (k + 1, worst)).rev()
+/// The worst elements, the worst first.
+fn worst(document: &Document, count: usize) -> impl Iterator<Item = &serde_json::Value> {
+    document.list("worst_elements").iter().take(count)
 }
 
-/// The rank of an element at its place.
-fn mark(svg: &mut Svg, [x, y]: [f64; 2], rank: usize) {
-    svg.circle("mark", [x, y], 8.5);
-    svg.text("label", [x, y + 4.5], Anchor::Middle, false, &rank.to_string());
+/// Radius of the mark of a rank, and the least distance of two (pixels).
+const MARK: f64 = 8.5;
+const APART: f64 = 2.0 * MARK + 2.0;
+
+/// Draws the ranks of elements at their places, the first place that of rank 1. A mark that would cover one before it stands beside
+/// its place, with a line to it.
+fn marks(svg: &mut Svg, places: &[[f64; 2]]) {
+    let marks = apart(places);
+    for (&place, &mark) in places.iter().zip(&marks).filter(|(place, mark)| place != mark) {
+        ["halo", "outline"].iter().for_each(|class| svg.line(class, place, mark));
+        svg.circle("mark", place, 2.5);
+    }
+    for (rank, &[x, y]) in marks.iter().enumerate() {
+        svg.circle("mark", [x, y], MARK);
+        svg.text("label", [x, y + 4.5], Anchor::Middle, false, &(rank + 1).to_string());
+    }
+}
+
+/// Places for marks that do not cover each other: each at its own or, if there is no room, at the nearest of some around it, above first.
+fn apart(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    /// Directions that are tried, and the steps in them (pixels).
+    const DIRECTIONS: usize = 12;
+    const STEP: f64 = 0.5 * APART;
+    let mut marks: Vec<[f64; 2]> = Vec::new();
+    for &[x, y] in places {
+        let around = (0..).map(|k| (k % DIRECTIONS, (k / DIRECTIONS + 2) as f64 * STEP)).map(|(k, distance)| {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sin_cos();
+            [x + distance * sin, y - distance * cos]
+        });
+        let free = |at: &[f64; 2]| marks.iter().all(|mark| (at[0] - mark[0]).hypot(at[1] - mark[1]) >= APART);
+        // Far enough away there is room.
+        let found = std::iter::once([x, y]).chain(around).find(free);
+        marks.push(found.unwrap_or([x, y]));
+    }
+    marks
 }
 
 /// A plane: a point on it and its normal.
@@ -128,4 +159,21 @@ fn planes(document: &Document) -> Vec<Plane> {
     };
     let plane = |plane: &serde_json::Value| Plane { point: vector(&plane["point"]), normal: vector(&plane["normal"]) };
     document.list("problem.obstacles").iter().map(plane).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_mark_covers_another() {
+        let places = [[50.0, 50.0], [53.0, 50.0], [50.0, 50.0], [300.0, 10.0], [51.0, 48.0], [49.0, 52.0]];
+        let marks = apart(&places);
+        let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        for (k, &mark) in marks.iter().enumerate() {
+            assert!(marks[..k].iter().all(|&other| distance(mark, other) >= 2.0 * MARK), "{marks:?}");
+            assert!(distance(mark, places[k]) <= 3.0 * APART, "{marks:?}");
+        }
+        assert_eq!((marks[0], marks[3]), (places[0], places[3]));
+    }
 }

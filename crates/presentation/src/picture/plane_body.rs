@@ -1,9 +1,9 @@
 //! The error of each triangle, on the mesh.
 
 use super::frame::Frame;
-use super::{AXIS_BELOW, AXIS_LEFT, Body, Deformed, Elements, LEGEND, Plane, Shown, mark, planes, ranked};
+use super::{AXIS_BELOW, AXIS_LEFT, Body, Deformed, Elements, LEGEND, Plane, Shown, marks, planes, worst};
 use crate::axes::{Look, Plot, colour_bar};
-use crate::png::marks;
+use crate::png;
 use crate::scale::{Scale, prefixed, viridis};
 use crate::svg::{Anchor, Svg};
 
@@ -58,7 +58,7 @@ pub(super) fn draw(svg: &mut Svg, shown: &Shown<'_>, elements: Elements, marked:
             let mut alone = Svg::new(size);
             drawn(&mut alone, &Plot { corner: [0.0, 0.0], ..plot });
             // Without memory for the pixels, the page has polygons.
-            match marks(&alone) {
+            match png::marks(&alone) {
                 Ok(png) => svg.image("map", &png, plot.corner, [0, 1].map(|c| plot.corner[c] + size[c])),
                 Err(_) => drawn(svg, &plot),
             }
@@ -68,14 +68,12 @@ pub(super) fn draw(svg: &mut Svg, shown: &Shown<'_>, elements: Elements, marked:
     if let Some(deformed) = &shown.deformed {
         draw_outline(svg, &plot, deformed);
     }
-    let marks = [size[0] / 90.0, size[1] / 60.0].map(|count| count.max(3.0) as usize);
+    let count = [size[0] / 90.0, size[1] / 60.0].map(|count| count.max(3.0) as usize);
     let labels = ["x", "y"].map(|axis| format!("{axis} ({unit})"));
-    scaled.axes(svg, &Look { x: &labels[0], y: &labels[1], marks, grid: [false; 2] });
-    for (rank, worst) in ranked(document, marked) {
-        if let &[x, y] = crate::document::numbers(&worst["centroid"]).as_slice() {
-            mark(svg, plot.at(x, y), rank);
-        }
-    }
+    scaled.axes(svg, &Look { x: &labels[0], y: &labels[1], marks: count, whole: false, grid: [false; 2] });
+    let centroids = worst(document, marked).map(|worst| crate::document::numbers(&worst["centroid"]));
+    let places = centroids.filter_map(|at| <[f64; 2]>::try_from(at).ok()).map(|[x, y]| plot.at(x, y));
+    marks(svg, &places.collect::<Vec<_>>());
     let bar = [AXIS_LEFT + size[0] + SCALE[0], top];
     let less = values.iter().any(|&value| value < colours.low);
     colour_bar(svg, bar, [SCALE[1], size[1]], &colours, ("e_E (J^½)", less));
