@@ -19,6 +19,7 @@ __all__ = [
     "MeshData",
     "ProblemData",
     "Progress",
+    "SERIES",
     "__version__",
     "check_run",
     "close_files",
@@ -40,12 +41,14 @@ __all__ = [
     "rebound_end",
     "run_case",
     "simulate",
+    "stranger",
     "true_error_of_bar_impact",
     "verification",
 ]
 
 MOST_LEVELS: int
 MOST_THREADS: int
+SERIES: list[str]
 __version__: str
 
 _Floats = NDArray[np.float64]
@@ -247,11 +250,12 @@ def rebound_end(
     after: float | None,
     progress: _Tell,
 ) -> tuple[float, str | None]: ...
+def stranger(file: str | PathLike[str], content: bytes) -> str | None: ...
 def verification(
     problem: ProblemData,
     times: _Times,
     levels: int,
-    reconstruction: str,
+    stated: tuple[str, str | None, int | str],
     threads: int | None,
     long: bool,
     tell: Callable[[str], object] | None,

@@ -90,7 +90,7 @@ def estimate(
         stated[1] if acceleration is None else text("acceleration", acceleration),
         # The default without one of its parts, for the evidence on each part.
         text("_ablation", _ablation),
-        stated[2] if every is None else _sampling(every),
+        stated[2] if every is None else sampling(every),
     )
     work = pace(threads, window)
     wanted = _wanted(instants, history)
@@ -104,7 +104,7 @@ def estimate(
     return Estimate._of(data, history, history._name)
 
 
-def _sampling(every: object) -> int | str:
+def sampling(every: object) -> int | str:
     """Check at which steps the error is sampled."""
     if isinstance(every, str):
         if every != "auto":

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import difflib
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from percute import _percute
+from percute.attached import attached
 from percute.checks import encodable, flag, text, warn, warn_of_result, wrong
 from percute.checks import path as file_name
-from percute.errors import InputError, MissingFileError, PercuteError, StorageError
+from percute.errors import InputError, MissingFileError, StorageError
 from percute.estimating import pace
 from percute.estimation import Estimate
 from percute.history import History
 from percute.mesh_files import tell_of_mesh
 from percute.progress import ProgressOption, shown
-from percute.simulation import absolute, history_of_the_exception
+from percute.simulation import absolute, history_done
 from percute.stored import StoredEstimate
 from percute.termination import file_closed_at_signals
 
@@ -105,7 +104,7 @@ def run(
     """
     told = None if store is None else file_name("store", store)
     replace, lasting, (threads, window) = flag("overwrite", overwrite), flag("long", long), pace(threads, window)
-    with shown(progress) as tell, history_of_the_exception():
+    with shown(progress) as tell, history_done():
         name, content, source = _read(case)
         read = _percute.CaseData(name, content, os.path.dirname(source or ""))
         tell_of_mesh(read.import_warnings())
@@ -118,7 +117,7 @@ def run(
         instants, fields = (asked["instants"], asked["fields"]) if report is not None else (None, False)
         read, told_late = read.resolved(tell)
         warn([] if told_late is None else [told_late])
-        with file_closed_at_signals(file), _estimate_of_the_exception(name):
+        with file_closed_at_signals(file), attached("estimate", lambda data: Estimate._of(data, None, name)):
             data = _percute.run_case(read, file, replace, (threads, window), instants, fields, report is not None, tell)
         warn_of_result(data[1].warnings(False, False))
         history = History._of(data[0], name=name)
@@ -132,18 +131,6 @@ def run(
             raise
 
 
-@contextmanager
-def _estimate_of_the_exception(name: str) -> Iterator[None]:
-    """Make an `Estimate` of the data attached to an exception, as it is if only the file of the history was lost."""
-    try:
-        yield
-    except PercuteError as error:
-        data = getattr(error, "estimate", None)
-        if isinstance(data, _percute.EstimateData):
-            error.estimate = Estimate._of(data, None, name)  # type: ignore[attr-defined]
-        raise
-
-
 def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     """Name, text and file of a case: a text has several lines, the name of a file has one."""
     if isinstance(case, str) and "\n" in case:
@@ -154,13 +141,16 @@ def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     if path.exists() and not (path.is_file() or path.is_dir() or path.is_fifo()):
         raise StorageError(f"`case`: {os.fspath(path)!r} is not a regular file; name a case file")
     try:
-        return encodable(os.fspath(path)), path.read_text(encoding="utf-8"), os.fspath(path)
+        content = path.read_bytes()
+        if (told := None if content[:4] == b"\x89HDF" else _percute.stranger(os.fspath(path), content)) is not None:
+            raise InputError(f"`case`: {os.fspath(path)!r}: {told}")
+        return encodable(os.fspath(path)), content.decode().replace("\r\n", "\n"), os.fspath(path)
     except FileNotFoundError:
         raise MissingFileError(f"`case`: there is no file {os.fspath(path)!r}{_similar(path)}") from None
     except IsADirectoryError:
         raise StorageError(f"`case`: {os.fspath(path)!r} is a folder; name a case file in it") from None
     except UnicodeDecodeError:
-        if path.read_bytes()[:4] == b"\x89HDF":
+        if content[:4] == b"\x89HDF":
             raise InputError(
                 f"`case`: {os.fspath(path)!r} is an HDF5 file, not a case; use percute.open and percute.estimate for a history"
             ) from None

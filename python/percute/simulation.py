@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
+from percute.attached import attached
 from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn, wrong
-from percute.errors import InputError, PercuteError, SimulationWarning
+from percute.errors import InputError, SimulationWarning
 from percute.history import History, true_errors_of
 from percute.kept import kept
 from percute.problem import Problem
@@ -120,7 +121,7 @@ def simulate(
     grid = instants_of(problem, end, courant, step, steps, longest, after, long, progress)
     _percute.check_run(problem._data, grid, flag("long", long))
     warn(_percute.plausibility_warnings(problem._data, grid, file is None))
-    with file_closed_at_signals(file), shown(progress) as tell, history_of_the_exception(problem):
+    with file_closed_at_signals(file), shown(progress) as tell, history_done(problem):
         data, drift = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
     warn([] if drift is None else [drift], SimulationWarning)
     return History._of(data, problem, "" if file is None else encodable(file))
@@ -210,19 +211,12 @@ def absolute(file: str | os.PathLike[str] | None) -> str | None:
     return None if file is None else os.path.abspath(file)
 
 
-@contextmanager
-def history_of_the_exception(problem: Problem | None = None) -> Iterator[None]:
-    """Make a `History` of the data attached to an exception; None before the first step."""
-    try:
-        yield
-    except BaseException as error:
-        done = getattr(error, "history", None)
-        if isinstance(done, _percute.HistoryData):
-            done = History._of(done, problem)
-        elif isinstance(done, Path):
-            done = History._at(str(done), problem, encodable(str(done)))
-        if done is not None or not isinstance(error, PercuteError):
-            # An exception without room for attributes is raised unchanged.
-            with suppress(AttributeError):
-                error.history = done  # type: ignore[attr-defined]
-        raise
+def history_done(problem: Problem | None = None) -> AbstractContextManager[None]:
+    """Make a `History` of the data, or of the file, that an exception has as its history; None before the first step."""
+
+    def made(done: _percute.HistoryData | Path | History) -> History:
+        if isinstance(done, Path):
+            return History._at(str(done), problem, encodable(str(done)))
+        return done if isinstance(done, History) else History._of(done, problem)
+
+    return attached("history", made)

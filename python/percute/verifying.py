@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -13,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.attached import attached
 from percute.checks import flag, instance, text, warn, whole
 from percute.errors import InputError
-from percute.estimating import pace
+from percute.estimating import pace, sampling
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of
@@ -137,6 +137,8 @@ def verify(
     after: float | None = None,
     levels: int = 2,
     reconstruction: Literal["corrected", "consistent", "published"] = "corrected",
+    acceleration: Literal["closest", "rigid", "weak", "mixed"] | None = None,
+    every: int | Literal["auto"] = "auto",
     threads: int | None = None,
     long: bool = False,
     progress: ProgressOption = None,
@@ -156,6 +158,10 @@ def verify(
         Number of refinements, 1 to 5.
     reconstruction : {"corrected", "consistent", "published"}, default: "corrected"
         As for `estimate`.
+    acceleration : {"closest", "rigid", "weak", "mixed"}, optional
+        As for `estimate`, on all meshes.
+    every : int or "auto", default: "auto"
+        As for `estimate`: the error of each mesh is sampled at every so many of its own steps, or at those that "auto" chooses.
     threads : int, optional
         How many threads to use; one for each core by default.
     long : bool, default: False
@@ -178,24 +184,16 @@ def verify(
     count = whole("levels", levels)
     if count > _percute.MOST_LEVELS:
         raise InputError(f"`levels` is {count}; give 1 to {_percute.MOST_LEVELS} refinements")
-    named, (workers, _), allowed = text("reconstruction", reconstruction), pace(threads, None), flag("long", long)
+    stated = (
+        text("reconstruction", reconstruction),
+        None if acceleration is None else text("acceleration", acceleration),
+        sampling(every),
+    )
+    (workers, _), allowed = pace(threads, None), flag("long", long)
     times = instants_of(problem, end, courant, step, steps, longest, after, allowed, progress)
     _percute.check_run(problem._data, times, allowed)
     warn(_percute.plausibility_warnings(problem._data, times, False))
     tell = print if progress is True else None
-    with shown(progress) as seen, _verification_of_the_exception():
-        document, table = _percute.verification(problem._data, times, count, named, workers, allowed, tell, seen)
+    with shown(progress) as seen, attached("verification", lambda done: Verification._of(json.loads(done[0]), done[1])):
+        document, table = _percute.verification(problem._data, times, count, stated, workers, allowed, tell, seen)
     return Verification._of(json.loads(document), table)
-
-
-@contextmanager
-def _verification_of_the_exception() -> Iterator[None]:
-    """Make a `Verification` of the levels attached to an exception; None before the first."""
-    try:
-        yield
-    except BaseException as error:
-        done = getattr(error, "verification", None)
-        # An exception without room for attributes is raised unchanged.
-        with suppress(AttributeError):
-            error.verification = None if done is None else Verification._of(json.loads(done[0]), done[1])  # type: ignore[attr-defined]
-        raise

@@ -4,6 +4,8 @@ import json
 import os
 import pickle
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -84,6 +86,27 @@ def test_files_of_other_kinds(tmp_path: Path) -> None:
         with pytest.raises(pc.FileFormatError) as raised:
             pc.open(path)
         assert isinstance(raised.value, ValueError) and path.name in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("empty.vtkhdf", b"", "an empty file, no history and no estimate file"),
+        ("text.h5", b"hello", "not an HDF5 file in spite of its name"),
+        ("report.json", b'{"error": 1}', "a JSON document, not a case"),
+        ("map.svg", b"<svg></svg>", "XML, such as an SVG picture"),
+        ("map.png", b"\x89PNG\r\n\x1a\n\x00\xff", "a picture (PNG), not a case"),
+        ("body.vtkhdf", b"$MeshFormat\n4.1 0 8\n", "a mesh of Gmsh, not a case"),
+    ],
+)
+def test_the_kind_of_a_file_comes_first(name: str, content: bytes, says: str, tmp_path: Path) -> None:
+    """In `percute info` and `pc.run`, before any part of a case is missed."""
+    file = tmp_path / name
+    file.write_bytes(content)
+    told = subprocess.run([sys.executable, "-m", "percute", "info", str(file)], capture_output=True, text=True)
+    assert told.returncode == 2 and told.stderr == f"error: {file}: this is {told.stderr.split(': this is ')[-1]}" and says in told.stderr
+    with pytest.raises(pc.InputError, match="^`case`: .*" + re.escape(says)):
+        pc.run(file)
 
 
 def test_a_truncated_file(stored: pc.History) -> None:

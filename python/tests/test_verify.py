@@ -3,14 +3,33 @@
 import json
 import subprocess
 import sys
+import warnings
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import percute as pc
 import pytest
+from percute._percute import SERIES
 
 MATERIAL = pc.Elastic(young=70e9, density=2700.0, section=0.02)
 PLANE = pc.Plane(point=-1e-3, normal=1.0)
+CASE = """
+[mesh]
+bar = {{ length = 0.1, elements = 16 }}
+[material]
+young = 70e9
+density = 2700.0
+section = 0.02
+[initial]
+velocity = -400.0
+[[obstacle]]
+point = -{gap}
+normal = 1.0
+[time]
+end = 60e-6
+courant = 0.9
+"""
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -43,7 +62,7 @@ def test_the_levels_are_those_of_separate_runs(tmp_path: Path) -> None:
     assert found.moved == pytest.approx(abs(error.mean / middle.mean - 1.0), rel=1e-6)
     errors, indices, contact = found.plot(save=tmp_path / "convergence.svg")
     assert (tmp_path / "convergence.svg").stat().st_size > 1000
-    assert [line.get_ydata()[0] for line in errors.lines] == [found.estimate_mean[0], found.error_mean[0], found.estimate_sup[0], found.error_sup[0]]
+    assert [line.get_ydata()[0] for line in errors.lines] == [found.estimate_mean[0], found.estimate_sup[0], found.error_mean[0], found.error_sup[0]]
     assert indices.lines[0].get_ydata()[0] == found.effectivity_mean[0]
     shown = [found.peak_force, found.impulse, found.rebound]
     assert [line.get_ydata()[0] for line in contact.lines[:3]] == pytest.approx([each[0] / each[-1] for each in shown], rel=1e-15)
@@ -134,6 +153,84 @@ def test_levels_out_of_range() -> None:
             pc.verify(bar(4), end=1e-5, courant=0.9, levels=levels)
 
 
+def test_the_options_of_the_estimate() -> None:
+    """Acceleration and sampling are those of `estimate`, and change it."""
+    problem, plain = bar(16), {"end": 60e-6, "courant": 0.9}
+    found = pc.verify(problem, **plain, levels=1, acceleration="weak", every=3)
+    estimate = pc.estimate(pc.simulate(problem, **plain), acceleration="weak", every=3)
+    assert (found.estimate_sup[0], found.estimate_mean[0]) == (estimate.sup, estimate.mean)
+    assert found.estimate_mean[0] not in (pc.verify(problem, **plain, levels=1, **other).estimate_mean[0] for other in ({"acceleration": "weak"}, {"every": 3}))
+    with pytest.raises(pc.InputError, match="`acceleration`.*mixed"):
+        pc.verify(problem, **plain, reconstruction="published", acceleration="mixed")
+    with pytest.raises(pc.InputError, match="every"):
+        pc.verify(problem, **plain, every=0)
+
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1.0])
+def test_the_picture_of_the_command_is_that_of_python(tmp_path: Path, gap: float) -> None:
+    """Points, colours, dashes, legends, the shaded range and labels, of a bar that strikes and of one that flies on."""
+    case = tmp_path / "case.toml"
+    case.write_text(CASE.format(gap=gap))
+    picture = tmp_path / "command.svg"
+    command = [sys.executable, "-m", "percute", "verify", str(case)]
+    subprocess.run([*command, "--quiet", "--picture", str(picture)], check=True, capture_output=True)
+    problem = pc.Problem(pc.Mesh.bar(0.1, elements=16), material=MATERIAL, obstacles=[pc.Plane(point=-gap, normal=1.0)], initial_velocity=-400.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pc.InputWarning)
+        plots = pc.verify(problem, end=60e-6, courant=0.9).plot()
+    root = ElementTree.parse(picture).getroot()
+    style = root.findtext(f"{SVG}style") or ""
+    texts = ["".join(text.itertext()) for text in root.iter(f"{SVG}text")]
+    legends = [entry.get_text() for axes in plots for entry in (axes.get_legend().get_texts() if axes.get_legend() else [])]
+    assert [text for text in texts if text in legends] == legends and "expected by the verdict on the first mesh" in legends
+    labels = [label.get_text() for axes in plots for label in axes.get_xticklabels()]
+    assert [text for text in texts if text in labels and text != "1" or text.startswith("1/")] == [label for label in labels if label != "1"]
+    names = [axes.get_ylabel().replace("$^{1/2}$", "½") for axes in plots] + [plots[-1].get_xlabel()]
+    assert sorted(text for text in texts if text in names) == sorted(names)
+    notes = [text.get_text() for axes in plots for text in axes.texts]
+    assert [text for text in texts if text in notes] == notes == (["the error is zero to rounding", "nothing touches"] if gap == 1.0 else [])
+    # Frames of the plots, by their axes: the vertical line is the second of both.
+    axis = [[float(line.get(key, "")) for key in ("x1", "y1", "x2", "y2")] for line in root.iter(f"{SVG}line") if line.get("class") == "axis"]
+    frames = [(across[0], across[2], up[1], up[3]) for across, up in zip(axis, axis[1:], strict=False) if across[2] - across[0] > 100]
+    assert len(frames) == len(plots) == 3
+    lines = [line for line in root.iter(f"{SVG}polyline")]
+    drawn = [(axes, frame, line) for axes, frame in zip(plots, frames, strict=True) for line in axes.lines if line.get_marker() == "o"]
+    assert len(drawn) == len(lines)
+    for (axes, (left, right, top, bottom), line), mark in zip(drawn, lines, strict=True):
+        values = np.array([point.split(",") for point in (mark.get("points") or "").split()], dtype=float)
+        data = np.column_stack([np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)])
+        places = (axes.transScale + axes.transLimits).transform(data[np.isfinite(data[:, 1])])
+        # Pixels have one decimal.
+        assert np.abs(values - [left, bottom] - places * [right - left, top - bottom]).max() < 0.06
+        series, look = (mark.get("class") or "").split()
+        assert line.get_color() == SERIES[int(series[1])] and f".{series}{{stroke:{line.get_color()}" in style
+        assert (look == "dashed") == (line.get_linestyle() == "--")
+    (band,) = [mark for mark in root.iter(f"{SVG}rect") if mark.get("class") == "s2 band" and float(mark.get("width", "")) > 100]
+    (span,) = plots[1].patches
+    low, high = (plots[1].transLimits.transform((0.0, edge))[1] for edge in span.get_window_extent().transformed(plots[1].transData.inverted()).intervaly)
+    top, bottom = frames[1][2:]
+    assert [float(band.get("y", "")), float(band.get("height", ""))] == pytest.approx([bottom + high * (top - bottom), (high - low) * (bottom - top)], abs=0.15)
+
+
+def test_errors_on_one_mesh_are_no_picture() -> None:
+    class Stop(Exception):
+        verification: pc.Verification | None
+
+    def tell(seen: pc.Progress) -> None:
+        if seen.total > 3000:
+            raise Stop
+
+    problem = bar(16)
+    with pytest.raises(Stop) as stopped:
+        pc.verify(problem, end=60e-6, step=0.02 * problem.critical_time_step, progress=tell)
+    assert stopped.value.verification is not None and len(stopped.value.verification.size) == 1
+    with pytest.raises(pc.InputError, match="errors on two meshes"):
+        stopped.value.verification.plot()
+
+
 def test_the_command(tmp_path: Path) -> None:
     run = [sys.executable, "-m", "percute", "verify"]
     done = subprocess.run([*run, str(EXAMPLES / "bar.toml")], capture_output=True, text=True, check=True)
@@ -154,6 +251,6 @@ def test_the_command(tmp_path: Path) -> None:
     subprocess.run([*plot, str(document_file), "--save", str(tmp_path / "plot.svg")], check=True, capture_output=True)
     assert (tmp_path / "plot.svg").stat().st_size > 1000
     wrong = subprocess.run([*plot, str(EXAMPLES / "bar.toml"), "--save", str(tmp_path / "other.svg")], capture_output=True, text=True)
-    assert wrong.returncode == 2 and "percute verify CASE --picture" in wrong.stderr
+    assert wrong.returncode == 2 and "bar.toml' is a case; --kind convergence draws" in wrong.stderr and "percute verify CASE --picture" in wrong.stderr
     refused = subprocess.run([*run, str(EXAMPLES / "bar.toml"), "--levels", "9"], capture_output=True, text=True)
     assert refused.returncode == 2 and "give 1 to 5 refinements" in refused.stderr

@@ -29,7 +29,7 @@ pub enum FileCause {
     #[error("the file exists already; give another name, or ask for it to be replaced")]
     Exists,
     /// Not a regular file.
-    #[error("it is not a regular file; give another name")]
+    #[error("it is a folder or a device, not a regular file; give another name")]
     NotAFile,
     /// Locked.
     #[error("another program is using the file (it is locked); wait until it is done, or give another name")]

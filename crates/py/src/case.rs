@@ -13,6 +13,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
+/// What a file is, if it is no case.
+#[pyfunction]
+pub(crate) fn stranger(file: PathBuf, content: &[u8]) -> Option<String> {
+    percute_workflow::case::stranger(&file, content)
+}
+
 /// A case, read and checked.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct CaseData {

@@ -28,6 +28,15 @@ pub(crate) fn percute_error(py: Python<'_>, message: &str) -> PyErr {
     exception(py, "PercuteError", message)
 }
 
+/// The exception with what was done before it as an attribute, such as the history or its file.
+pub(crate) fn with<'py>(py: Python<'py>, error: PyErr, name: &str, done: Option<impl IntoPyObject<'py>>) -> PyErr {
+    if let Some(done) = done {
+        // One that takes no attributes is raised all the same.
+        let _ = error.value(py).setattr(name, done);
+    }
+    error
+}
+
 /// Bad input.
 pub(crate) fn input(py: Python<'_>, message: impl ToString) -> PyErr {
     exception(py, "InputError", &message.to_string())

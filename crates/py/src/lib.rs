@@ -11,6 +11,7 @@ mod estimate;
 mod exact;
 mod export;
 mod history;
+mod made;
 mod mesh;
 mod options;
 mod present;
@@ -33,7 +34,7 @@ mod _percute {
     #[pymodule_export]
     use super::bridge::{ProgressNow, close_files};
     #[pymodule_export]
-    use super::case::CaseData;
+    use super::case::{CaseData, stranger};
     #[pymodule_export]
     use super::element_fields::element_field;
     #[pymodule_export]
@@ -63,6 +64,7 @@ mod _percute {
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("MOST_THREADS", percute_estimator::MOST_THREADS)?;
+        module.add("SERIES", percute_presentation::SERIES)?;
         module.add("MOST_LEVELS", percute_workflow::verify::MOST_LEVELS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

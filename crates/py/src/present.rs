@@ -1,7 +1,8 @@
 //! The picture and the page of an estimate.
 
-use crate::estimate::{EstimateData, Made};
+use crate::estimate::EstimateData;
 use crate::history::HistoryData;
+use crate::made::Made;
 use crate::mesh::MeshData;
 use crate::run::Run;
 use crate::{bridge, errors};

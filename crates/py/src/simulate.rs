@@ -2,8 +2,9 @@
 
 use crate::bridge::Watch;
 use crate::case::CaseData;
-use crate::estimate::{EstimateData, Made};
+use crate::estimate::EstimateData;
 use crate::history::HistoryData;
+use crate::made::Made;
 use crate::options::{Wanted, analysis};
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Growing, Run};
@@ -132,7 +133,7 @@ pub(crate) fn run_case(
     let made = EstimateData { made };
     match history {
         Ok(history) => Ok((history, made)),
-        Err(error) => Err(with(py, error, "estimate", Some(made))),
+        Err(error) => Err(errors::with(py, error, "estimate", Some(made))),
     }
 }
 
@@ -339,7 +340,7 @@ impl<const D: usize, const N: usize> Planned<D, N> {
             (Ok(Done { rest, unstored: Some(lost), .. }), Some(_)) => {
                 let error = errors::file(py, &lost);
                 let FileCause::Lost { now } = lost.cause else { return Ok((Err(error), rest)) };
-                Ok((Err(with(py, error, "history", now)), rest))
+                Ok((Err(errors::with(py, error, "history", now)), rest))
             }
             (Ok(Done { rest, .. }), Some(store)) => Ok((open_history(py, store.path), rest)),
             (Ok(Done { balance, rest, .. }), None) => match kept {
@@ -347,17 +348,10 @@ impl<const D: usize, const N: usize> Planned<D, N> {
                 None => Err(errors::percute_error(py, "internal error: a simulation without steps")),
             },
             // To open it takes time that whoever pressed Ctrl-C does not have.
-            (Err(error), Some(store)) if store.ours.load(Relaxed) => Err(with(py, error, "history", Some(store.path))),
-            (Err(error), _) => Err(with(py, error, "history", kept.map(|history| data(history, None)))),
+            (Err(error), Some(store)) if store.ours.load(Relaxed) => {
+                Err(errors::with(py, error, "history", Some(store.path)))
+            }
+            (Err(error), _) => Err(errors::with(py, error, "history", kept.map(|history| data(history, None)))),
         }
     }
-}
-
-/// Hangs what was done on an exception, such as the history or its file.
-fn with<'py>(py: Python<'py>, error: PyErr, name: &str, done: Option<impl IntoPyObject<'py>>) -> PyErr {
-    if let Some(done) = done {
-        // One that takes no attributes is raised all the same.
-        let _ = error.value(py).setattr(name, done);
-    }
-    error
 }

@@ -1,6 +1,6 @@
 //! A problem on nested meshes.
 
-use crate::options::options;
+use crate::options::{Stated, options};
 use crate::problem::ProblemData;
 use crate::simulate::Times;
 use crate::{bridge, errors, time};
@@ -24,7 +24,7 @@ pub(crate) fn verification(
     problem: &ProblemData,
     times: Times,
     levels: usize,
-    reconstruction: &str,
+    stated: Stated,
     threads: Option<usize>,
     long: bool,
     tell: Option<&Bound<'_, PyAny>>,
@@ -32,12 +32,12 @@ pub(crate) fn verification(
 ) -> PyResult<Told> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    let options =
-        Options { threads, ..options(py, reconstruction, None, &crate::options::Every::Name("auto".into()))? };
+    let (reconstruction, acceleration, every) = stated;
+    let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
     let so_far: Arc<Mutex<Option<Verification>>> = Arc::default();
     let verified = each_dimension!(&problem.problem, problem => {
         let (problem, long) = (problem.clone(), Long::asked(long, "`long=True`"));
-        let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, levels, long))?;
+        let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, &options, (levels, long)))?;
         let prepared = prepared.map_err(|error| errors::run(py, &error))?;
         if let Some(tell) = tell {
             tell.call1((announced(&cost(&prepared, &options)),))?;
@@ -53,11 +53,8 @@ pub(crate) fn verification(
     match verified {
         Ok(verification) => told(py, &verification),
         Err(error) => {
-            if let Some(done) = so_far.lock().unwrap_or_else(PoisonError::into_inner).take() {
-                // One that takes no attributes is raised all the same.
-                let _ = error.value(py).setattr("verification", told(py, &done)?);
-            }
-            Err(error)
+            let done = so_far.lock().unwrap_or_else(PoisonError::into_inner).take();
+            Err(errors::with(py, error, "verification", done.map(|done| told(py, &done)).transpose()?))
         }
     }
 }

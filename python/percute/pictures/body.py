@@ -41,6 +41,8 @@ class Scale(NamedTuple):
     low: float
     high: float
     logarithmic: bool = False
+    marks: Sequence[tuple[float, str]] = ()
+    """Values with marks, and their labels."""
 
     def norm(self) -> Normalize:
         """Give it to matplotlib."""
@@ -51,8 +53,7 @@ class Scale(NamedTuple):
 
 def scale_of(values: Floats) -> Scale:
     """Give the scale of values that are not negative, as in the pictures of the command: logarithmic where a few elements outshine the rest."""
-    low, high, logarithmic, _ = _percute.colour_scale(np.ascontiguousarray(values, dtype=np.float64), MARKS)
-    return Scale(low, high, logarithmic)
+    return Scale(*_percute.colour_scale(np.ascontiguousarray(values, dtype=np.float64), MARKS))
 
 
 def linear(values: Floats, colours: str) -> Scale:
@@ -104,10 +105,10 @@ def draw_body(
         axes.add_collection(lines)
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
-    _colour_bar(axes, drawn, label, shown, values)
+    _colour_bar(axes, drawn, label, shown)
 
 
-def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, values: Floats) -> None:
+def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale) -> None:
     """Draw the scale of colours: as high as the body, or below a slim one."""
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     if height < SLIM * width:
@@ -116,15 +117,8 @@ def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale, val
         place = {"cax": axes.inset_axes((1.03, 0.0, 0.04, 1.0))}
     bar = axes.figure.colorbar(drawn, label=label + (", logarithmic" if scale.logarithmic else ""), **place)
     if scale.logarithmic:
-        places, labels = _marks(values)
-        bar.set_ticks(places, labels=labels)
+        bar.set_ticks([value for value, _ in scale.marks], labels=[typeset(text) for _, text in scale.marks])
     bar.minorticks_off()
-
-
-def _marks(values: Floats) -> tuple[list[float], list[str]]:
-    """Give the marks of a logarithmic scale and their labels."""
-    marks = _percute.colour_scale(np.ascontiguousarray(values, dtype=np.float64), MARKS)[3]
-    return [value for value, _ in marks], [typeset(label) for _, label in marks]
 
 
 def _size(points: Floats, cells: NDArray[Any]) -> float:

@@ -23,6 +23,8 @@ from percute.pictures.fields import MOTION, SCALARS, STRESSES
 from percute.progress import shown
 from percute.verifying import Verification
 
+HDF5 = b"\x89HDF\r\n\x1a\n"
+"""The first bytes of histories and estimate files."""
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 KINDS = {
@@ -34,7 +36,7 @@ KINDS = {
     "pressure": "the contact pressure along the surface over time",
     "field": "a field on the deformed body",
     "animation": "a field on the moving body (.gif or .mp4)",
-    "convergence": "the document of `percute verify --json`: errors and contact over the element size",
+    "convergence": "errors and contact over the element size; FILE is the document of `percute verify CASE --json`, no case and no history",
 }
 OPTIONS = {"quantity": ("field", "animation"), "step": ("field",), "scale": ("map", "field", "animation"), "plane": ("pressure",), "frames": ("animation",)}
 """Options that belong to some kinds only."""
@@ -49,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         "percute plot", description=text, epilog=f"kinds:\n{kinds}", allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("file", type=Path, metavar="FILE", help="a history, an estimate file or a case; for --kind convergence a document of `percute verify --json`")
+    parser.add_argument("file", type=Path, metavar="FILE", help="a history, an estimate file or a case; for --kind convergence only the document of `percute verify CASE --json` (to run a case and draw this: `percute verify CASE --picture FILE`)")
     parser.add_argument("--kind", choices=list(KINDS), default="map", metavar="KIND", help="what is drawn, see below [default: map]")
     parser.add_argument("--save", "-o", "--output", type=Path, metavar="FILE", help="the picture (.svg, .png or .pdf) [default: FILE-KIND.png in this folder]")
     quantities = [*MOTION, *SCALARS, "stress", *STRESSES]
@@ -68,7 +70,7 @@ def _subject(given: argparse.Namespace, tell: Any) -> History | Estimate:
     """Read or compute the subject of a picture."""
     file: Path = given.file
     with canvas.reading(str(file)), file.open("rb") as stream:
-        binary = stream.read(8) == b"\x89HDF\r\n\x1a\n" or file.suffix.lower() == ".vtkhdf"
+        binary = stream.read(len(HDF5)) == HDF5 or file.suffix.lower() == ".vtkhdf"
     found = open_file(file) if binary else run(file, overwrite=given.force, progress=tell)
     if isinstance(found, History):
         return estimate(found, force=given.accept_inconsistent, progress=tell) if given.kind in OF_THE_ERROR else found
@@ -82,9 +84,10 @@ def _verification(file: Path) -> Verification:
     try:
         return Verification._of(json.loads(content), "")
     except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+        kind = "a history or an estimate file" if content.startswith(HDF5) else "a case" if file.suffix.lower() == ".toml" else "another file"
         raise InputError(
-            f"{str(file)!r} is not the document of `percute verify CASE --json`, which this picture shows; "
-            "`percute verify CASE --picture FILE` runs a case and draws it"
+            f"{str(file)!r} is {kind}; --kind convergence draws the document of `percute verify CASE --json` and nothing else; "
+            "`percute verify CASE --picture FILE` runs a case on finer meshes and draws this"
         ) from None
 
 

@@ -1,62 +1,106 @@
-"""Pictures of a verification: errors, effectivity index and contact over the element size."""
+"""Pictures of a verification, as `percute verify --picture` draws them: errors, effectivity index and contact over the element size."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from percute import _percute
 from percute.checks import wrong
-from percute.pictures.canvas import pyplot, root, save_figure, writable
+from percute.errors import InputError
+from percute.pictures.canvas import Floats, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from percute.verifying import Verification
 
-MEASURES = (("mean", "#2f79c8"), ("sup", "#da6228"))
-CONTACT = (("peak_force", "peak force", "#2f79c8"), ("impulse", "impulse", "#da6228"), ("rebound", "rebound velocity", "#24966e"))
+DASHED = (0, (3.3, 1.7))
+ERRORS: tuple[tuple[str, str, int, Any], ...] = (
+    ("estimate_mean", "estimate, mean", 0, "-"),
+    ("estimate_sup", "estimate, sup", 1, "-"),
+    ("error_mean", "true error against the finest mesh, mean", 0, DASHED),
+    ("error_sup", "true error against the finest mesh, sup", 1, DASHED),
+)
+INDICES = (("effectivity_mean", "of the mean", 0, "-"), ("effectivity_sup", "of the sup", 1, "-"))
+CONTACT = (("peak_force", "peak force", 0, "-"), ("impulse", "impulse", 1, "-"), ("rebound", "rebound velocity", 2, "-"))
+"""Quantities with their names, the numbers of their colours, and their lines."""
+BAND = 2
+"""The colour of the range that the verdict expects."""
+BESIDE, AROUND, PADDING = 1.1, 1.25, 0.1
+"""Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their range."""
 
 
 def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
     """Draw the three plots, one above the other."""
     file = writable("save", save, overwrite)
+    sizes = verification.size
+    if len(sizes) < 2 or not np.any(_values(verification, ERRORS) > 0.0):
+        raise InputError("there is no picture without errors on two meshes")
     plots = _axes(axes)
     errors, indices, contact = plots
-    for name, colour in MEASURES:
-        estimate, error = getattr(verification, f"estimate_{name}"), getattr(verification, f"error_{name}")
-        errors.plot(verification.size, estimate, "o-", color=colour, label=f"estimate, {name}")
-        errors.plot(verification.size, error, "s--", color=colour, label=f"true error against the finest, {name}")
-        indices.plot(verification.size, getattr(verification, f"effectivity_{name}"), "o-", color=colour, label=name)
-    if np.any(np.concatenate([verification.estimate_sup, verification.estimate_mean]) > 0.0):
-        errors.set_yscale("log")
-        errors.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(1, 0.5)))
-    indices.axhspan(*verification.expected, color="#24966e", alpha=0.15, label="expected on the first mesh")
-    for name, label, colour in CONTACT:
-        values = getattr(verification, name)
-        if np.isfinite(values[-1]) and values[-1] != 0.0:
-            contact.plot(verification.size, values / values[-1], "o-", color=colour, label=label)
-    for each, label in zip(plots, ("error (J$^{1/2}$)", "effectivity index", "over the finest"), strict=True):
-        each.set_xscale("log")
-        ticks = list(verification.size)
-        each.set_xticks(ticks, [f"1/{round(1 / size)}" if size < 1 else "1" for size in ticks])
+    values = _values(verification, ERRORS)
+    positive = values[values > 0.0]
+    errors.set(yscale="log", ylim=(positive.min() / AROUND, positive.max() * AROUND))
+    errors.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(1, 0.5)))
+    indices.axhspan(*verification.expected, color=_percute.SERIES[BAND], alpha=0.2, linewidth=0.0, label="expected by the verdict on the first mesh")
+    for each, quantities in ((errors, ERRORS), (indices, INDICES), (contact, CONTACT)):
+        for name, label, colour, line in quantities:
+            shown = _shown(getattr(verification, name), each is contact)
+            if np.any(shown > 0.0 if each is errors else np.isfinite(shown)):
+                each.plot(sizes, shown, marker="o", markersize=5, linestyle=line, color=_percute.SERIES[colour], label=label)
+    _pad(indices, [*_values(verification, INDICES), *verification.expected], "the error is zero to rounding")
+    _pad(contact, [value for name, *_ in CONTACT for value in _shown(getattr(verification, name), True)], "nothing touches")
+    for each, label, columns in zip(plots, ("error (J$^{1/2}$)", "effectivity index", "over the finest"), (2, 3, 3), strict=True):
+        each.set(xscale="log", xlim=(sizes[-1] / BESIDE, BESIDE), ylabel=label)
+        each.set_xticks(list(sizes), [f"1/{round(1 / size)}" if size < 1 else "1" for size in sizes])
         each.set_xticks([], minor=True)
-        each.set_ylabel(label)
         each.grid(alpha=0.3)
-        if each.lines:
-            each.legend(frameon=False, fontsize="small")
-    for each in plots[1:]:
-        each.axhline(1.0, color="black", linewidth=0.8)
+        _legend(each, columns)
     contact.set_xlabel("element size over that of the first mesh")
     save_figure(root(errors), file)
     return plots
 
 
+def _values(verification: Verification, quantities: Sequence[tuple[str, str, int, Any]]) -> Floats:
+    """Give all values of some quantities that are numbers."""
+    values: Floats = np.concatenate([getattr(verification, name) for name, *_ in quantities])
+    return values[np.isfinite(values)]
+
+
+def _shown(values: Floats, over_the_finest: bool) -> Floats:
+    """Give the values, or those over the finest; without that they are not drawn."""
+    if not over_the_finest:
+        return values
+    return np.asarray(values / values[-1] if values[-1] != 0.0 else np.full_like(values, np.nan))
+
+
+def _pad(axes: Axes, values: Sequence[float], none: str) -> None:
+    """Set limits around values and 1, and mark 1; without lines, say why."""
+    finite = [1.0, *(value for value in values if np.isfinite(value))]
+    low, high = min(finite), max(finite)
+    room = PADDING * max(high - low, 0.05)
+    axes.set_ylim(low - room, high + room)
+    if not axes.lines:
+        axes.text(0.5, 0.5, none, transform=axes.transAxes, ha="center", color="#6e6e78")
+    axes.axhline(1.0, color="#6e6e78", linewidth=1.0, linestyle=(0, (4, 3)), zorder=1.5)
+
+
+def _legend(axes: Axes, columns: int) -> None:
+    """Put the legend above the axes, column by column, the shaded range last."""
+    handles, labels = axes.get_legend_handles_labels()
+    order = sorted(range(len(labels)), key=lambda k: labels[k].startswith("expected"))
+    if order:
+        entries = [handles[k] for k in order], [labels[k] for k in order]
+        axes.legend(*entries, ncols=columns, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize="small", borderpad=0.2)
+
+
 def _axes(axes: Sequence[Axes] | None) -> list[Axes]:
     """Give the axes of an argument, by default three new ones."""
     plt = pyplot()
-    given = list(plt.subplots(3, 1, sharex=True, layout="constrained", figsize=(6.4, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
+    given = list(plt.subplots(3, 1, layout="constrained", figsize=(7.2, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
     if len(given) != 3 or not all(isinstance(each, plt.Axes) for each in given):
         raise wrong("axes", axes, "three axes of matplotlib, such as `plt.subplots(3)[1]`")
     return given

@@ -24,12 +24,15 @@ pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> R
 }
 
 fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
-    let found = kind(file)?;
-    match found {
+    if file.is_dir() {
+        let told = "this is a folder; name a case, a mesh (.msh), a history or an estimate file in it";
+        return Err(Failure::Argument(format!("{}: {told}", file.display())));
+    }
+    match kind(file)? {
         Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => {
             return of_gmsh(file, console);
         }
-        Kind::Other => return of_text(file, console),
+        Kind::Other => return Ok(each_dimension!(case(file)?, case => with_warnings(&case, console)?)),
         Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
         // The reader of histories says what a stranger holds instead.
         Kind::History | Kind::OtherHdf5 => {}
@@ -75,16 +78,6 @@ fn of_gmsh(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
     let info = of_mesh(file, &mesh);
     console.warn(&info.warnings);
     Ok(Info::Mesh(Box::new(info)))
-}
-
-/// A case, unless it is no text at all.
-fn of_text(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
-    let text = std::fs::read(file).is_ok_and(|bytes| std::str::from_utf8(&bytes).is_ok());
-    if !text {
-        let file = file.display();
-        return Err(Failure::Argument(format!("{file}: this is neither a case file nor a history or estimate file")));
-    }
-    Ok(each_dimension!(case(file)?, case => with_warnings(&case, console)?))
 }
 
 /// A case, with its warnings on standard error.

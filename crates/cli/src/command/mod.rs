@@ -19,7 +19,7 @@ use crate::progress::Watch;
 use clap::Parser;
 use percute_io::{FileError, is_hdf5};
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf, Source, parse};
+use percute_workflow::case::{Case, CaseOf, Source, parse, stranger};
 use percute_workflow::message::hint;
 use percute_workflow::report::Warning;
 use percute_workflow::run::{located, resolved as search};
@@ -182,6 +182,9 @@ fn read(file: &Path) -> Result<Source, Failure> {
     File::open(file).and_then(|file| file.take(MOST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
     if bytes.len() as u64 > MOST {
         return Err(Failure::Argument(format!("{name}: a case file has at most 1 GiB; name a mesh file in the case")));
+    }
+    if let Some(told) = stranger(file, &bytes) {
+        return Err(Failure::Argument(format!("{name}: {told}")));
     }
     let folder = file.parent().unwrap_or(file);
     String::from_utf8(bytes).map(|text| Source::new(&name, text).in_folder(folder)).map_err(|error| {

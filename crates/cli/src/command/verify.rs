@@ -33,8 +33,8 @@ fn verify_case<const D: usize, const N: usize>(
     case.check_run(true, Long::asked(long, "--long"))?;
     console.warn_about(case, quiet);
     let Some(case) = &resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
-    let prepared = prepare(&case.problem, &case.times, levels, Long::asked(long, "--long"))?;
     let options = Options { threads, ..case.options };
+    let prepared = prepare(&case.problem, &case.times, &options, (levels, Long::asked(long, "--long")))?;
     if !quiet {
         console.say(&announced(&cost(&prepared, &options)));
     }

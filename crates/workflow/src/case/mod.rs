@@ -37,6 +37,7 @@ mod plausibility_warnings;
 mod problem;
 mod source;
 mod statement;
+mod stranger;
 mod support;
 mod syntax;
 mod text;
@@ -48,6 +49,7 @@ pub use output::{Instants, Output};
 pub(crate) use source::At;
 pub use source::{CaseError, Source};
 pub use statement::{NotRepresentable, problem_from, statement};
+pub use stranger::stranger;
 
 use crate::effort::{Effort, Long};
 use crate::report::Subject;

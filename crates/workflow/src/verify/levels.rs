@@ -30,7 +30,7 @@ pub struct Level {
     pub peak_force: Option<f64>,
     /// Normal impulse of all planes (N s).
     pub impulse: Option<f64>,
-    /// Normal velocity of the centre of mass after contact (m/s); none if contact has not ended.
+    /// Normal velocity of the centre of mass after contact (m/s); none without a coefficient of restitution.
     pub rebound: Option<f64>,
     /// Whether the estimate is zero to rounding.
     #[serde(skip)]
@@ -141,7 +141,11 @@ impl Level {
             expected: report.verdict.effectivity,
             peak_force: contact.map(|contact| contact.peak_normal_force),
             impulse: contact.map(|contact| contact.obstacles.iter().zip(&report.problem.obstacles).map(impulse).sum()),
-            rebound: report.rebound.as_ref().and_then(|rebound| rebound.normal_after),
+            rebound: report
+                .rebound
+                .as_ref()
+                .filter(|found| found.restitution.is_some())
+                .and_then(|found| found.normal_after),
             exact: e.is_zero(),
         }
     }

@@ -24,7 +24,7 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion};
-use percute_estimator::{EstimateError, Options, RunError, Sampling};
+use percute_estimator::{EstimateError, Options, RunError};
 
 /// The most refinements: each has eight times the work of the one before.
 pub const MOST_LEVELS: usize = 5;
@@ -37,7 +37,7 @@ pub struct Prepared<const D: usize, const N: usize> {
     critical_step: f64,
 }
 
-/// The problem on its mesh and on `levels` refinements.
+/// The problem on its mesh and on so many refinements, which may be long.
 ///
 /// # Errors
 /// A number of refinements out of range or with much work that was not asked for, a problem that the case language cannot say, a mesh
@@ -45,13 +45,13 @@ pub struct Prepared<const D: usize, const N: usize> {
 pub fn prepare<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
-    levels: usize,
-    long: Long,
+    options: &Options,
+    (levels, long): (usize, Long),
 ) -> Result<Vec<Prepared<D, N>>, Failure> {
     if !(1..=MOST_LEVELS).contains(&levels) {
         return Err(Failure::Argument(format!("`levels` is {levels}; give 1 to {MOST_LEVELS} refinements")));
     }
-    if let Some(told) = Effort::of(problem, times, Sampling::Auto).refined(D, levels).refusal_of_levels(levels, long) {
+    if let Some(told) = Effort::of(problem, times, options.every).refined(D, levels).refusal_of_levels(levels, long) {
         return Err(Failure::Argument(told));
     }
     let stated = Source::new("the refined problem", statement(problem, None)?);

@@ -1,0 +1,182 @@
+//! What an estimate is made of.
+
+use crate::run::Run;
+use crate::{bridge, contact, errors};
+use percute_core::contact::ContactResults;
+use percute_core::dynamics::{Simulation, critical_time_step};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::{Estimate, Options};
+use percute_io::estimate_file::EstimateContents;
+use percute_io::{Case, Overwrite, estimate_file};
+use percute_workflow::Failure;
+use percute_workflow::case::statement;
+use percute_workflow::foreign::Checked;
+use percute_workflow::outline::Outline;
+use percute_workflow::report::{Report, Subject, Warning, warnings_of};
+use percute_workflow::run::Results;
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The layout of a pickle is that of the version that wrote it.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// An estimate, with what it is the estimate of.
+pub(crate) struct Made<const D: usize, const N: usize> {
+    pub(crate) problem: Arc<Problem<D, N>>,
+    /// The instants planned.
+    pub(crate) times: TimeGrid,
+    pub(crate) options: Options,
+    pub(crate) estimate: Estimate<D>,
+    pub(crate) report: ReportSource<D>,
+    /// What was found about a history of another program.
+    pub(crate) checked: Option<Checked>,
+    /// The case file that was run.
+    pub(crate) case: Option<Case>,
+}
+
+/// Where the report comes from.
+pub(crate) enum ReportSource<const D: usize> {
+    /// It is made when it is asked for.
+    Now {
+        /// What the simulation did.
+        simulation: Simulation,
+        /// What contact did.
+        contact: Arc<ContactResults<D>>,
+        /// The outline of a plane body at the last step.
+        outline: Option<Box<Outline>>,
+        /// Number of instants, of a stored history.
+        held: Option<usize>,
+        /// How long the estimate took (s).
+        seconds: f64,
+    },
+    /// It was made before: its text.
+    Before(String),
+}
+
+impl<const D: usize, const N: usize> Made<D, N> {
+    /// An estimate from its state.
+    pub(crate) fn restored(py: Python<'_>, problem: &Arc<Problem<D, N>>, state: &[u8]) -> PyResult<Self> {
+        let refused =
+            || errors::percute_error(py, "the estimate was pickled by another version of percute, or is damaged");
+        type State<const D: usize> = (Vec<f64>, Options, Estimate<D>, String);
+        let (version, rest) = postcard::take_from_bytes::<&str>(state).map_err(|_| refused())?;
+        if version != VERSION {
+            return Err(refused());
+        }
+        let (times, options, estimate, report) = postcard::from_bytes::<State<D>>(rest).map_err(|_| refused())?;
+        let times = TimeGrid::from_instants(times).map_err(|_| refused())?;
+        Ok(Self {
+            problem: problem.clone(),
+            times,
+            options,
+            estimate,
+            report: ReportSource::Before(report),
+            checked: None,
+            case: None,
+        })
+    }
+
+    /// The state of the estimate, with its report.
+    pub(crate) fn state(&self, report: &str) -> Result<Vec<u8>, postcard::Error> {
+        let Self { times, options, estimate, .. } = self;
+        postcard::to_stdvec(&(VERSION, times.instants(), options, estimate, report))
+    }
+
+    /// The estimate of a run, or of a stored history with `held` instants, that took so many seconds.
+    pub(crate) fn new(
+        problem: Arc<Problem<D, N>>,
+        times: TimeGrid,
+        options: Options,
+        results: Results<D>,
+        held: Option<usize>,
+        seconds: f64,
+    ) -> Self {
+        let Results { simulation, estimate, contact, outline } = results;
+        let report =
+            ReportSource::Now { simulation, contact: Arc::new(contact), outline: outline.map(Box::new), held, seconds };
+        Self { problem, times, options: options.filled(D), estimate, report, checked: None, case: None }
+    }
+
+    /// The document of `percute run --json`.
+    pub(crate) fn report(&self, name: &str) -> Result<String, String> {
+        self.document(name, Report::to_json)
+    }
+
+    /// The same for files.
+    pub(crate) fn stored_report(&self, name: &str) -> Result<String, String> {
+        self.document(name, Report::to_stored_json)
+    }
+
+    /// Warnings that only the result shows, and those that a run is told of before; none if the report was made before.
+    pub(crate) fn warnings(&self) -> [Vec<Warning>; 2] {
+        let Self { problem, times, options, estimate, report, checked, .. } = self;
+        let ReportSource::Now { simulation, held, .. } = report else { return Default::default() };
+        // Equal steps need no critical step.
+        let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
+        let subject = Subject { name: "", problem, times, critical_step, held: *held, checked: checked.as_ref() };
+        warnings_of(&subject, *options, &simulation.balance, estimate)
+    }
+
+    /// A document made from the report; if that is there as a text only, this text, which has all of it.
+    pub(crate) fn document(
+        &self,
+        name: &str,
+        text: fn(&Report) -> Result<String, std::io::Error>,
+    ) -> Result<String, String> {
+        let Self { problem, times, options, estimate, report, checked, .. } = self;
+        match report {
+            ReportSource::Before(text) => Ok(text.clone()),
+            ReportSource::Now { simulation, contact, outline, held, seconds } => {
+                let critical_step = critical_time_step(problem);
+                let checked = checked.as_ref();
+                let subject = Subject { name, problem, times, critical_step, held: *held, checked };
+                let outline = outline.as_deref();
+                let report = Report::new(&subject, *options, simulation, estimate, contact, outline, *seconds);
+                text(&report).map_err(|error| error.to_string())
+            }
+        }
+    }
+
+    fn save(
+        &self,
+        path: &Path,
+        overwrite: Overwrite,
+        name: &str,
+        contact: Option<&ContactResults<D>>,
+    ) -> Result<(), Failure> {
+        let Self { problem, estimate, case, .. } = self;
+        let (report, case) = (&self.stored_report(name).map_err(Failure::Argument)?, case.as_ref());
+        let statement = &statement(problem, Some(&self.options))?;
+        let contents = EstimateContents { problem, estimate, contact, statement, case, report };
+        Ok(estimate_file::write(path, overwrite, &contents)?)
+    }
+
+    /// The contact results of all nodes at all instants, its own or those of its history if that is there.
+    pub(crate) fn contact_steps(
+        &self,
+        py: Python<'_>,
+        history: Option<&Arc<Run<D, N>>>,
+    ) -> PyResult<Option<Arc<ContactResults<D>>>> {
+        match &self.report {
+            ReportSource::Now { contact, .. } if contact.steps.is_some() => Ok(Some(contact.clone())),
+            _ => history.map(|run| contact::of_run(py, run)).transpose(),
+        }
+    }
+
+    /// Writes an estimate file, with the contact results of its history if that is there.
+    pub(crate) fn saved(
+        self: &Arc<Self>,
+        py: Python<'_>,
+        path: PathBuf,
+        overwrite: Overwrite,
+        name: String,
+        history: Option<&Arc<Run<D, N>>>,
+    ) -> PyResult<()> {
+        let contact = self.contact_steps(py, history)?;
+        let made = self.clone();
+        let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
+        bridge::blocking(py, None, work)?.map_err(|error| errors::failure(py, &error))
+    }
+}

@@ -1,0 +1,59 @@
+//! Files that are no cases, by their first bytes and their names.
+
+use std::path::Path;
+
+/// How files of other kinds begin.
+const BEGINNINGS: [(&[u8], &str); 8] = [
+    (b"\x89PNG", "a picture (PNG), not a case"),
+    (b"GIF8", "a picture (GIF), not a case"),
+    (b"\xff\xd8\xff", "a picture (JPEG), not a case"),
+    (b"%PDF", "a PDF document, not a case"),
+    (b"PK\x03\x04", "a ZIP archive, not a case"),
+    (b"\x1f\x8b", "a compressed file (gzip), not a case; unpack it first"),
+    (b"$MeshFormat", "a mesh of Gmsh, not a case; name it in a case, as `mesh.file`"),
+    (b"<", "XML, such as an SVG picture, an HTML page or a VTU file, not a case"),
+];
+
+/// What a file is, if it is no case: of another kind, or by its name a history or an estimate file.
+#[must_use]
+pub fn stranger(file: &Path, content: &[u8]) -> Option<String> {
+    let begins = content.trim_ascii_start();
+    let known = BEGINNINGS.iter().find(|(beginning, _)| begins.starts_with(beginning)).map(|(_, kind)| *kind);
+    let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let hdf5 = matches!(ending.as_deref(), Some("vtkhdf" | "h5" | "hdf5"));
+    let found = match known {
+        Some(kind) => kind.to_string(),
+        None if begins.is_empty() && hdf5 => "an empty file, no history and no estimate file".to_string(),
+        // The reader of cases says what is missing.
+        None if begins.is_empty() => return None,
+        None if begins[0] == b'{' => {
+            "a JSON document, not a case; cases are TOML: `percute new block` prints one".to_string()
+        }
+        None if hdf5 => "not an HDF5 file in spite of its name: no history and no estimate file".to_string(),
+        None => return None,
+    };
+    Some(format!("this is {found}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strangers_are_named_and_cases_are_not() {
+        let of = |name: &str, content: &[u8]| stranger(Path::new(name), content);
+        for (name, content, says) in [
+            ("a.vtkhdf", &b""[..], "an empty file, no history"),
+            ("a.VTKHDF", b"hello", "not an HDF5 file in spite of its name"),
+            ("a.json", b"\n{\"levels\": []}", "a JSON document"),
+            ("a.svg", b"<svg/>", "an SVG picture"),
+            ("a.vtkhdf", b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
+            ("a.msh", b"$MeshFormat\n", "a mesh of Gmsh"),
+        ] {
+            assert!(of(name, content).is_some_and(|told| told.contains(says)), "{name}");
+        }
+        for case in [&b""[..], b"[mesh]", b"# A case\n[mesh]", b"mesh = {}", b"hello", b"\xef\xbb\xbf[mesh]"] {
+            assert_eq!(of("a.toml", case), None);
+        }
+    }
+}
