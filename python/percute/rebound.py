@@ -28,7 +28,9 @@ class Rebound:
     normal_after: float | None
     """Normal component of ``velocity_after`` (m/s)."""
     restitution: float | None
-    """Coefficient of restitution −V′·n / V·n; None if contact has not ended, or if the body does not arrive."""
+    """Coefficient of restitution −V′·n / V·n, from 0 on."""
+    no_restitution: str | None
+    """Why there is none: contact has not ended, supports change the velocity, or the body does not arrive, or still does."""
     first_touch: float
     """The first instant at which a node touches (s)."""
     release: float | None
@@ -43,6 +45,8 @@ class Rebound:
         """Make it from its JSON object."""
         if found is None:
             return None
+        # Estimate files of earlier versions have no reason.
+        found = {"no_restitution": None, **found}
         after = found["velocity_after"]
         vectors = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
         return cls(**{name: vectors.get(name, found[name]) for name in cls.__dataclass_fields__})

@@ -1,6 +1,9 @@
 """The rebound of a body against exact solutions."""
 
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import percute as pc
@@ -66,6 +69,49 @@ def test_contact_that_lasts_and_a_body_that_never_touches() -> None:
         document = json.loads(pc.estimate(history).to_json())
         assert (document["rebound"] is None) != touches
         assert document["verdict"]["touches"] == ("edge" if touches else "none")
+
+
+def summary(history: pc.History) -> str:
+    """What the command prints about a history in a file."""
+    assert history.path is not None
+    return subprocess.run([sys.executable, "-m", "percute", "estimate", history.path], capture_output=True, text=True, check=True).stdout
+
+
+def test_a_body_that_still_arrives_has_no_restitution(tmp_path: Path) -> None:
+    """A block strikes with a corner and turns: its centre still moves to the plane when the corner leaves, and it touches again."""
+    mesh = pc.Mesh.rectangle(0.05, 0.02, nx=10, ny=4)
+    material = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    normal = np.array([np.sin(np.radians(20.0)), np.cos(np.radians(20.0))])
+    plane = pc.Plane(point=-1e-4 * normal, normal=normal, friction=0.0)
+    problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=-50.0 * normal)
+    history = pc.simulate(problem, end=60e-6, courant=0.9, store=tmp_path / "turns.vtkhdf")
+    rebound = history.rebound
+    assert rebound is not None and rebound.ended and rebound.release is not None and rebound.normal_after is not None
+    assert rebound.normal_after < 0.0 and rebound.restitution is None
+    assert rebound.no_restitution is not None and "still moves towards the plane" in rebound.no_restitution
+    longer = pc.simulate(problem, end=400e-6, courant=0.9)
+    again = (longer.contact.resultants.normal_force > 0.0) & (longer.time > rebound.release)
+    assert again.any(), "the reason says that it touches again"
+    assert "motion    from -50 to" in summary(history)
+    assert np.isnan(pc.verify(problem, end=60e-6, courant=0.9, levels=1).rebound[0])
+
+
+def test_a_body_with_supports_does_not_rebound(tmp_path: Path) -> None:
+    """Supports take a part of its momentum; the free bar has a coefficient of restitution and no reason."""
+    mesh = pc.Mesh.bar(0.1, elements=20)
+    material = pc.Elastic(young=70e9, density=2700.0, section=0.02)
+    plane = pc.Plane(point=-1e-3, normal=1.0)
+    reasons = []
+    for supports in ([], [pc.Support(group="end", components="x", velocity=[-400.0, -400.0], time=[0.0, 1.0])]):
+        problem = pc.Problem(mesh, material=material, obstacles=[plane], supports=supports, initial_velocity=-400.0)
+        history = pc.simulate(problem, end=80e-6, courant=0.9, store=tmp_path / f"{len(supports)}.vtkhdf")
+        rebound, told = history.rebound, summary(history)
+        assert rebound is not None and (rebound.restitution is None) == bool(supports)
+        assert ("\nmotion    " in told) == bool(supports) == ("\nrebound   " not in told)
+        # A bar has no edges.
+        assert "An end of the bar touches" in " ".join(told.split()) and "edge" not in told
+        reasons.append(rebound.no_restitution)
+    assert reasons == [None, "supports change the velocity, too"]
 
 
 RUBBER = """

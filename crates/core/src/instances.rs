@@ -3,10 +3,8 @@
 
 use crate::dynamics::{critical_time_step, replay, simulate_threaded};
 
-/// Names the instances, so that they are compiled.
-#[doc(hidden)]
-#[must_use]
-pub fn instances() -> [*const (); 6] {
+#[used]
+static INSTANCES: fn() -> [*const (); 6] = || {
     [
         simulate_threaded::<1, 2> as *const (),
         simulate_threaded::<2, 3> as *const (),
@@ -15,4 +13,4 @@ pub fn instances() -> [*const (); 6] {
         critical_time_step::<1, 2> as *const (),
         critical_time_step::<2, 3> as *const (),
     ]
-}
+};

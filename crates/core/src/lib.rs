@@ -27,6 +27,4 @@ pub mod simplex;
 pub mod time;
 pub mod variable_steps;
 
-#[cfg(debug_assertions)]
-pub use instances::instances;
 pub use ratio::ratio;

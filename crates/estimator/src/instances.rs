@@ -4,10 +4,8 @@
 use crate::reference::Comparison;
 use crate::{estimate, memory};
 
-/// Names the instances, so that they are compiled.
-#[doc(hidden)]
-#[must_use]
-pub fn instances() -> [*const (); 10] {
+#[used]
+static INSTANCES: fn() -> [*const (); 10] = || {
     [
         estimate::<1, 2> as *const (),
         estimate::<2, 3> as *const (),
@@ -20,4 +18,4 @@ pub fn instances() -> [*const (); 10] {
         Comparison::<1, 2>::finish as *const (),
         Comparison::<2, 3>::finish as *const (),
     ]
-}
+};

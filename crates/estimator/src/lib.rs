@@ -46,8 +46,6 @@ mod wide;
 
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
-#[cfg(debug_assertions)]
-pub use instances::instances;
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};
 pub use pipeline::{Estimator, memory};

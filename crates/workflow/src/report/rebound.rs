@@ -19,8 +19,10 @@ pub struct Rebound {
     pub normal_before: f64,
     /// Normal component of `velocity_after` (m/s).
     pub normal_after: Option<f64>,
-    /// Coefficient of restitution; none if contact has not ended, if the body does not arrive, or if it has supports.
+    /// Coefficient of restitution, from 0 on.
     pub restitution: Option<f64>,
+    /// Why there is none.
+    pub no_restitution: Option<&'static str>,
     /// First instant at which a node touches (s).
     pub first_touch: f64,
     /// Last instant at which a node touches (s); none if contact has not ended.
@@ -31,7 +33,16 @@ pub struct Rebound {
     pub ended: bool,
 }
 
+/// The reason that a longer run takes away.
+const NOT_ENDED: &str = "contact has not ended";
+
 impl Rebound {
+    /// Whether it is the rebound of a body, be it complete or not: else contact is not all that moves the body.
+    #[must_use]
+    pub fn is_rebound(&self) -> bool {
+        self.no_restitution.is_none_or(|reason| reason == NOT_ENDED)
+    }
+
     /// The rebound of a run; none without contact.
     #[must_use]
     pub fn new<const D: usize, const N: usize>(
@@ -51,9 +62,14 @@ impl Rebound {
         let time = |n: usize| contact.instants[n.min(steps - 1)];
         let after = ended.then(|| velocity(last + 1));
         let (normal_before, normal_after) = (frame.split(&before).0, after.map(|v| frame.split(&v).0));
-        // A support changes the momentum, too.
-        let free = problem.prescribed().is_empty() && normal_before < 0.0;
-        let restitution = normal_after.filter(|_| free).map(|v| -v / normal_before);
+        let no_restitution = match normal_after {
+            _ if !problem.prescribed().is_empty() => Some("supports change the velocity, too"),
+            None => Some(NOT_ENDED),
+            _ if normal_before >= 0.0 => Some("the body does not fly towards the plane"),
+            Some(after) if after < 0.0 => Some("the body still moves towards the plane, which it will touch again"),
+            Some(_) => None,
+        };
+        let restitution = normal_after.filter(|_| no_restitution.is_none()).map(|v| -v / normal_before);
         let (first_touch, release) = (time(first + 1), time(last + 1));
         Some(Self {
             velocity_before: before.to_vec(),
@@ -61,6 +77,7 @@ impl Rebound {
             normal_before,
             normal_after,
             restitution,
+            no_restitution,
             first_touch,
             release: ended.then_some(release),
             time_in_contact: release - first_touch,

@@ -47,7 +47,8 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(report.consistency.as_ref().map(|found| ("history", consistency(found))));
     lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
-    lines.extend(report.rebound.as_ref().map(|rebound| ("rebound", returned(rebound))));
+    let label = |rebound: &Rebound| if rebound.is_rebound() { "rebound" } else { "motion" };
+    lines.extend(report.rebound.as_ref().map(|rebound| (label(rebound), returned(rebound))));
     lines.extend(warnings(report));
     lines
 }
@@ -214,7 +215,10 @@ fn returned(rebound: &Rebound) -> String {
             let (after, restitution) = (trimmed(after, 4), trimmed(restitution, 3));
             format!("from {before} to {after} m/s, restitution {restitution}, {time} s in contact")
         }
-        (Some(after), None) => format!("from {before} to {} m/s, {time} s in contact", trimmed(after, 4)),
+        (Some(after), None) => {
+            let (after, reason) = (trimmed(after, 4), rebound.no_restitution.unwrap_or_default());
+            format!("from {before} to {after} m/s, {time} s in contact; no restitution: {reason}")
+        }
         _ => format!("contact has not ended after {time} s; it began with {before} m/s"),
     }
 }

@@ -56,6 +56,7 @@ pub(super) fn sentences(
 
 fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     let touches = match facts.contact.touches {
+        Touches::Edge if facts.dimension == 1 => "An end of the bar touches",
         Touches::Edge => "An edge touches",
         Touches::End => "An edge beside an inclined side touches",
         Touches::Curve => "A curve touches",
