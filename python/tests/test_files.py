@@ -96,7 +96,6 @@ def test_files_of_other_kinds(tmp_path: Path) -> None:
         ("report.json", b'{"error": 1}', "a JSON document, not a case"),
         ("map.svg", b"<svg></svg>", "XML, such as an SVG picture"),
         ("map.png", b"\x89PNG\r\n\x1a\n\x00\xff", "a picture (PNG), not a case"),
-        ("body.vtkhdf", b"$MeshFormat\n4.1 0 8\n", "a mesh of Gmsh, not a case"),
     ],
 )
 def test_the_kind_of_a_file_comes_first(name: str, content: bytes, says: str, tmp_path: Path) -> None:
