@@ -20,8 +20,8 @@ pub fn wall() -> Duration {
     START.get_or_init(Instant::now).elapsed()
 }
 
-/// Processor time of all threads. On one thread of a quiet machine it is the time on the wall; on a busy one it does not contain
-/// the time of others.
+/// Processor time of all threads. On one thread of a quiet machine it is the time on the wall; on a busy one it does
+/// not contain the time of others.
 #[must_use]
 pub fn processor() -> Duration {
     let time = clock_gettime(ClockId::ProcessCPUTime);

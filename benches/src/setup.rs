@@ -10,8 +10,8 @@ use std::hint::black_box;
 /// Steps of the run that is set up.
 const STEPS: usize = 1000;
 
-/// Does again what a run of this block does before its first step: mesh, problem, critical step, local order, operators of the
-/// integrator and, with options, the estimator.
+/// Does again what a run of this block does before its first step: mesh, problem, critical step, local order, operators
+/// of the integrator and, with options, the estimator.
 ///
 /// # Errors
 /// A mesh or options that are refused.

@@ -1,7 +1,7 @@
 //! One stage of the work, so many times, for a counter of instructions: `instructions STAGE COUNT`.
 //!
-//! `benches/instructions.py` runs it with two counts; the difference has no start-up and no setup. All stages run on one thread and
-//! in the portable instruction set (feature `portable`).
+//! `benches/instructions.py` runs it with two counts; the difference has no start-up and no setup. All stages run on
+//! one thread and in the portable instruction set (feature `portable`).
 
 use percute_benches::{Block, Failure, Motion, Order, estimated, problem, simulated, steps, wall};
 use percute_core::dynamics::critical_time_step;

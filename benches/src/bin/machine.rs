@@ -1,7 +1,8 @@
 //! What one core of the machine can do, for the roofline of `benches/roofline.py`.
 //!
-//! `machine` answers `triad BYTES`, a line of standard input, with nanoseconds per byte of a + s b over arrays that have this size together,
-//! and `peak` with the most floating-point operations per nanosecond, of the instruction set of the build and of the widest one.
+//! `machine` answers `triad BYTES`, a line of standard input, with nanoseconds per byte of a + s b over arrays that
+//! have this size together, and `peak` with the most floating-point operations per nanosecond, of the instruction set
+//! of the build and of the widest one.
 
 #![allow(clippy::print_stdout, reason = "the answers are its purpose")]
 

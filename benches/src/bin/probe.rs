@@ -1,10 +1,10 @@
-//! Runs of the block for `benches/peers`, one for each line of standard input, so that other programs can be measured in
-//! between. Times are processor times, with `--wall` those on the wall.
+//! Runs of the block for `benches/peers`, one for each line of standard input, so that other programs can be measured
+//! in between. Times are processor times, with `--wall` those on the wall.
 //!
-//! `probe NX NY [--order NAME] [--free] [--estimate NAME] [--every K] [--threads N] [--wall]` answers `mesh FILE` (points and elements),
-//! `setup`, `run STEPS`, `product COUNT` (of K·u), `memory STEPS` (predicted, in bytes, of the estimate), `samples STEPS` (number of
-//! sampled steps), `displacement STEPS FILE` and `parts STEPS FILE` (kinetic and elastic part of each sample). Numbers in files are raw, of 8
-//! bytes each.
+//! `probe NX NY [--order NAME] [--free] [--estimate NAME] [--every K] [--threads N] [--wall]` answers `mesh FILE`
+//! (points and elements), `setup`, `run STEPS`, `product COUNT` (of K·u), `memory STEPS` (predicted, in bytes, of the
+//! estimate), `samples STEPS` (number of sampled steps), `displacement STEPS FILE` and `parts STEPS FILE` (kinetic and
+//! elastic part of each sample). Numbers in files are raw, of 8 bytes each.
 
 #![allow(clippy::print_stdout, reason = "the answers are its purpose")]
 

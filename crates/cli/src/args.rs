@@ -13,15 +13,17 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of the completed steps is still printed).";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of \
+    the completed steps is still printed).";
 
 /// The remedy for `percute reproduce` without the Python package.
-pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the source folder. \
-    Its command `percute` computes the evidence";
+pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the \
+    source folder. Its command `percute` computes the evidence";
 
 /// The remedy for `percute plot` without the Python package.
-pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or pip install \".[plot]\" \
-    in the source folder. Its command `percute` draws the pictures. `percute run` draws the error map with --picture, without Python";
+pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or \
+    pip install \".[plot]\" in the source folder. Its command `percute` draws the pictures. \
+    `percute run` draws the error map with --picture, without Python";
 
 /// Simulates elastic impacts and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]
@@ -53,9 +55,11 @@ pub enum Command {
     Export(ExportArguments),
     /// Finish the history file of a run that was killed
     Recover(RecoverArguments),
-    /// Draw a picture of a case, a history or an estimate file (with the Python package): error, energies, contact, fields, animations
+    /// Draw a picture of a case, a history or an estimate file (with the Python package): error, energies, contact,
+    /// fields, animations
     Plot(PlotArguments),
-    /// Compute the evidence again (with the Python package): the paper's tables and figures, exact solutions, effectivity indices
+    /// Compute the evidence again (with the Python package): the paper's tables and figures, exact solutions,
+    /// effectivity indices
     Reproduce(ReproduceArguments),
 }
 
@@ -130,10 +134,12 @@ pub struct EstimateArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Reconstruction of the admissible contact force [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>, help = named("Reconstruction of the admissible contact force", Reconstruction::ALL))]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Reconstruction>)]
+    #[arg(help = named("Reconstruction of the admissible contact force", Reconstruction::ALL))]
     pub reconstruction: Option<Reconstruction>,
     /// Choice of the admissible acceleration [default: as stored in the history]
-    #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>, help = named("Choice of the admissible acceleration", Acceleration::ALL))]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>)]
+    #[arg(help = named("Choice of the admissible acceleration", Acceleration::ALL))]
     pub acceleration: Option<Acceleration>,
     /// Sample the error at every k-th step, or at those that "auto" chooses [default: as stored in the history]
     #[arg(long, value_name = "K", value_parser = sampling)]
@@ -206,8 +212,8 @@ pub struct InfoArguments {
     /// Print one JSON document
     #[arg(long)]
     pub json: bool,
-    /// Write tables of a history or an estimate file: forces, energies and error over time in a file (.csv), or all tables
-    /// in a folder
+    /// Write tables of a history or an estimate file: forces, energies and error over time in a file (.csv), or all
+    /// tables in a folder
     #[arg(long, value_name = "FILE|FOLDER")]
     pub csv: Option<PathBuf>,
     /// Replace existing tables
@@ -263,8 +269,8 @@ pub struct PrintArguments {
     /// Write a page with verdict, figures and tables (.html)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
-    /// Write tables: forces, energies and error over time in a file (.csv), or these and tables of elements and contact nodes
-    /// in a folder
+    /// Write tables: forces, energies and error over time in a file (.csv), or these and tables of elements and contact
+    /// nodes in a folder
     #[arg(long, value_name = "FILE|FOLDER")]
     pub csv: Option<PathBuf>,
 }

@@ -11,17 +11,17 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// Whether the command has seen that it was asked to stop.
 static HEARD: AtomicBool = AtomicBool::new(false);
 
-/// How long a command may take to see it; what does not look up, such as the set-up of a large mesh or a pipe without a writer,
-/// is ended then.
+/// How long a command may take to see it; what does not look up, such as the set-up of a large mesh or a pipe without a
+/// writer, is ended then.
 const PATIENCE: Duration = Duration::from_millis(300);
 const PAUSE: Duration = Duration::from_millis(10);
 
 /// Runs the command with these arguments, the program's name first, on the standard output and
 /// error of this process, and returns its exit code.
 ///
-/// From here on Ctrl-C is the command's, not the caller's: the first asks for a clean stop, and ends the process if the command
-/// is not at its steps; a second one ends the process; so do SIGTERM and SIGHUP, with which batch systems and terminals end
-/// what they run. Where no handler can be set, the first ends it.
+/// From here on Ctrl-C is the command's, not the caller's: the first asks for a clean stop, and ends the process if the
+/// command is not at its steps; a second one ends the process; so do SIGTERM and SIGHUP, with which batch systems and
+/// terminals end what they run. Where no handler can be set, the first ends it.
 pub fn process<I>(arguments: I) -> u8
 where
     I: IntoIterator,

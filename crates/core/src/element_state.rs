@@ -66,7 +66,8 @@ impl<const D: usize> ElementState<D> {
     }
 }
 
-/// Kinetic energy of an element (J) for these velocities of all nodes (m/s), with its share of their lumped masses, eq. \[35\].
+/// Kinetic energy of an element (J) for these velocities of all nodes (m/s), with its share of their lumped masses, eq.
+/// \[35\].
 #[must_use]
 pub fn kinetic_energy<const D: usize, const N: usize>(
     problem: &Problem<D, N>,

@@ -1,5 +1,6 @@
-//! The integrator for bars and plane bodies, compiled with this crate. Builds with little optimisation share such instances: crates that
-//! call it need not compile it anew. Optimised builds do not share them, so they are left out there.
+//! The integrator for bars and plane bodies, compiled with this crate. Builds with little optimisation share such
+//! instances: crates that call it need not compile it anew. Optimised builds do not share them, so they are left out
+//! there.
 
 use crate::dynamics::{critical_time_step, replay, simulate_threaded};
 

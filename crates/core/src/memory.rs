@@ -1,7 +1,7 @@
 //! Whether memory can be had, asked before it is needed: Rust ends a process that gets none.
 
-/// Whether so many bytes can be allocated now. Linux promises more than the machine has, but neither more than its memory and swap
-/// together nor more than a limit of the process (`ulimit -v`).
+/// Whether so many bytes can be allocated now. Linux promises more than the machine has, but neither more than its
+/// memory and swap together nor more than a limit of the process (`ulimit -v`).
 #[must_use]
 pub fn can_be_had(bytes: u64) -> bool {
     usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())

@@ -11,8 +11,8 @@ const SLACK: f64 = 1e-6;
 /// An end agrees with the sum of steps if they differ by no more than this, relatively.
 const AGREES: f64 = 1e-9;
 
-/// Steps that differ by less than this, relatively, are equal but for rounding. Differences of 1e-6 at each of 5 000 steps
-/// still amplify vibrations by less than 1 %.
+/// Steps that differ by less than this, relatively, are equal but for rounding. Differences of 1e-6 at each of 5 000
+/// steps still amplify vibrations by less than 1 %.
 const EQUAL: f64 = 1e-9;
 
 /// Whether a step (s) is at most the critical one (s), but for the digits that a printed one lacks.
@@ -57,7 +57,8 @@ pub enum TimeError {
     Lost { index: usize, step: f64, time: f64 },
     /// More steps than any run can have.
     #[error(
-        "an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps, but at most 1e8 are possible; are both in seconds?"
+        "an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps, but at most 1e8 are possible; are both \
+         in seconds?"
     )]
     TooMany { end: f64, step: f64, count: f64 },
 }

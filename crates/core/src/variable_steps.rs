@@ -1,19 +1,23 @@
-//! What steps of different lengths do to vibrations: below the critical step, too, their changes can amplify them without
-//! bound, by parametric resonance (Skeel, *Variable step size destabilizes the Störmer/leapfrog/Verlet method*, BIT 33, 1993).
+//! What steps of different lengths do to vibrations: below the critical step, too, their changes can amplify them
+//! without bound, by parametric resonance (Skeel, *Variable step size destabilizes the Störmer/leapfrog/Verlet method*,
+//! BIT 33, 1993).
 //!
-//! Each mode of frequency ω obeys the scheme by itself. In the coordinates P = c^½ v_{n+½} and Q = c^{−½} ω ū, where ū is the
-//! displacement in the middle of step n and c = (1 − (ωΔt_n/2)²)^½, a step of the length of the one before is a rotation. Slow
-//! changes of the step keep P² + Q² (the adiabatic invariant), and the map of any steps has the determinant 1. Its largest
-//! singular value is the amplification.
+//! Each mode of frequency ω obeys the scheme by itself. In the coordinates P = c^½ v_{n+½} and Q = c^{−½} ω ū, where ū
+//! is the displacement in the middle of step n and c = (1 − (ωΔt_n/2)²)^½, a step of the length of the one before is a
+//! rotation. Slow changes of the step keep P² + Q² (the adiabatic invariant), and the map of any steps has the
+//! determinant 1. Its largest singular value is the amplification.
 
 use crate::time::TimeGrid;
 
-/// Amplification of which a run is warned. In flat impacts of a bar on random, alternating and swinging steps, up to 40 did not
-/// change the drift of the energy (0.5 %); vibrations that are in the body from the start gain more than half of its energy.
+/// Amplification of which a run is warned. In flat impacts of a bar on random, alternating and swinging steps, up to 40
+/// did not change the drift of the energy (0.5 %); vibrations that are in the body from the start gain more than half
+/// of its energy.
 const NOTABLE: f64 = 10.0;
-/// Amplification that is refused. From 300 on, the energy of such impacts drifted by 10 % and more, from 9 000 on by 99 %.
+/// Amplification that is refused. From 300 on, the energy of such impacts drifted by 10 % and more, from 9 000 on by 99
+/// %.
 const REFUSED: f64 = 1000.0;
-/// Frequencies up to the critical one. Four times as many find the same sum of resonances to a factor of 3 in 1 000 steps.
+/// Frequencies up to the critical one. Four times as many find the same sum of resonances to a factor of 3 in 1 000
+/// steps.
 const FREQUENCIES: usize = 256;
 /// Fewest of them, and the products of steps and frequencies that take about 0.1 s.
 const FEWEST: usize = 16;
@@ -34,8 +38,8 @@ impl Amplification {
     /// Of steps that do not change.
     const NONE: Self = Self { factor: 1.0, step: 0 };
 
-    /// Of all modes up to the critical frequency 2/Δt_c on these steps; `critical` is Δt_c (s). Beyond the factor that is
-    /// refused the steps are not looked at any more.
+    /// Of all modes up to the critical frequency 2/Δt_c on these steps; `critical` is Δt_c (s). Beyond the factor that
+    /// is refused the steps are not looked at any more.
     #[must_use]
     pub fn of(times: &TimeGrid, critical: f64) -> Self {
         let count = times.step_count();
@@ -131,8 +135,8 @@ mod tests {
         (0..count).map(|n| if n % 2 == 0 { a } else { b }).collect()
     }
 
-    /// Steps a, b, a, b, …: a drift of a, a kick, a drift of b and a kick make a matrix of the determinant 1 with the trace
-    /// 2 − 2(a + b)p + ab p², p = ω²(a + b)/2. Its eigenvalue is the growth of a pair of steps.
+    /// Steps a, b, a, b, …: a drift of a, a kick, a drift of b and a kick make a matrix of the determinant 1 with the
+    /// trace 2 − 2(a + b)p + ab p², p = ω²(a + b)/2. Its eigenvalue is the growth of a pair of steps.
     #[test]
     fn alternating_steps_grow_as_their_eigenvalue() {
         let (a, b) = (0.8, 0.9);

@@ -1,5 +1,5 @@
-//! Time per element and step of the estimate, less that of the integrator in the same iteration: with every step sampled, and between
-//! samples. criterion prints elements per second; its inverse is the time per element and step.
+//! Time per element and step of the estimate, less that of the integrator in the same iteration: with every step
+//! sampled, and between samples. criterion prints elements per second; its inverse is the time per element and step.
 
 #![allow(missing_docs, clippy::expect_used)]
 

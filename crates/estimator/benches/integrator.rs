@@ -1,5 +1,5 @@
-//! Time per element and step of the integrator and of its internal forces, beside one product K·u in compressed sparse rows: in one
-//! run, on one thread. criterion prints elements per second; its inverse is the time per element and step.
+//! Time per element and step of the integrator and of its internal forces, beside one product K·u in compressed sparse
+//! rows: in one run, on one thread. criterion prints elements per second; its inverse is the time per element and step.
 
 #![allow(missing_docs, clippy::expect_used)]
 

@@ -1,7 +1,8 @@
-//! Blocks of elements or stars that are worked on at a time, each with the nodes and elements that it needs under numbers of its own.
+//! Blocks of elements or stars that are worked on at a time, each with the nodes and elements that it needs under
+//! numbers of its own.
 //!
-//! The fields of these nodes at some levels then lie side by side in a small part of the cache. Blocks do not depend on the number of
-//! threads.
+//! The fields of these nodes at some levels then lie side by side in a small part of the cache. Blocks do not depend on
+//! the number of threads.
 
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::{Mesh, Strips};
@@ -206,7 +207,8 @@ mod tests {
     use percute_core::mesh::TriangleMesh;
     use percute_testkit::random_rectangle;
 
-    /// Parts hold all blocks and strips once, in order, and the stars that their elements need come with them or before.
+    /// Parts hold all blocks and strips once, in order, and the stars that their elements need come with them or
+    /// before.
     fn check(mesh: &TriangleMesh, fewest: usize) -> usize {
         let strips = Strips::with_fewest(mesh.cells(), fewest);
         let parts = parts(mesh, &strips);

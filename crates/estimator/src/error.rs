@@ -40,7 +40,8 @@ pub enum EstimateError {
     StartVelocity { node: usize },
     /// A node that is said to touch at t = 0, but does not rest on its plane.
     #[error(
-        "node {node} touches at step 0, but its gap is {gap:e} m and its normal velocity {speed:e} m/s; both must be zero"
+        "node {node} touches at step 0, but its gap is {gap:e} m and its normal velocity {speed:e} m/s; both must be \
+         zero"
     )]
     StartsTouching { node: usize, gap: f64, speed: f64 },
     /// Numbers too large to be squared and summed.
@@ -59,8 +60,9 @@ pub enum EstimateError {
     Scratch(#[from] ScratchError),
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
-        "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the history are too long \
-         for its central differences (the longest is {longest_step:.4e} s); estimate this history with reconstruction = \"consistent\", or store shorter steps"
+        "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the \
+         history are too long for its central differences (the longest is {longest_step:.4e} s); estimate this history \
+         with reconstruction = \"consistent\", or store shorter steps"
     )]
     AuxiliarySolution { step: usize, time: f64, longest_step: f64 },
 }

@@ -107,7 +107,8 @@ pub struct Estimate<const D: usize> {
     pub residuals: Residuals,
     /// Normal impulse of the admissible contact force over that of the simulation; `None` without contact.
     pub kept_impulse: Option<f64>,
-    /// Nodes at which the auxiliary solution has had a contact of its own. With any, the kept impulse need not be near 1.
+    /// Nodes at which the auxiliary solution has had a contact of its own. With any, the kept impulse need not be near
+    /// 1.
     pub own_contacts: usize,
     /// Where velocities and accelerations came from.
     pub given: Given,

@@ -4,7 +4,8 @@ use crate::lanes::{LANES, Lanes, Value, load};
 use crate::simd::Registers;
 use crate::wide::Wide;
 
-/// Takes the values of a nodal field at these nodes into their records, at each level that has the field; at the others, any values.
+/// Takes the values of a nodal field at these nodes into their records, at each level that has the field; at the
+/// others, any values.
 #[inline(always)]
 pub(crate) fn gather<'f, R: Registers, P, const D: usize>(
     like: Wide<R>,

@@ -4,7 +4,8 @@ use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
 use percute_core::ids::NodeId;
 
-/// The integral in the middle of a step of this length (s), from that at its end and the field at its start and its end (m/s²).
+/// The integral in the middle of a step of this length (s), from that at its end and the field at its start and its end
+/// (m/s²).
 #[inline(always)]
 pub(crate) fn half_way<T: Value, const D: usize>(length: T, last: &[T; D], [start, end]: [&[T; D]; 2]) -> [T; D] {
     let mut middle = *last;

@@ -7,8 +7,8 @@ use crate::options::Acceleration;
 ///
 /// All choices balance the resultant and the moment of the equilibrated tractions. These do the lumped work
 /// ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. With `mixed` they do the work ∫ρ ã_h·u + ρ|E|/(D+1) Σ o_i·u_i, o the
-/// lumping difference: ρ ã_h lacks only the resultant and the moment of o. As the map is linear, it turns the time integrals
-/// of ã and o into ∫Γ_DA/ρ dt as well.
+/// lumping difference: ρ ã_h lacks only the resultant and the moment of o. As the map is linear, it turns the time
+/// integrals of ã and o into ∫Γ_DA/ρ dt as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
@@ -76,7 +76,8 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         Self { choice, rotations }
     }
 
-    /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã and the lumping difference, which `mixed` has, or from theirs.
+    /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã and the lumping difference, which `mixed` has, or from
+    /// theirs.
     #[inline(always)]
     pub(crate) fn apply<T: Value>(
         &self,
@@ -205,9 +206,9 @@ mod tests {
 
     const LUMPING: [[f64; 2]; 3] = [[0.3, 1.0], [-2.0, 0.4], [0.9, -0.1]];
 
-    /// `mixed` gives, of all linear fields that do the work of the consistent mass on ã and of the lumped mass on o on rigid
-    /// motions, the nearest to ã: the solution g of the least-squares problem |g − ã|² → min, Bg = f with a multiplier for
-    /// each rigid motion.
+    /// `mixed` gives, of all linear fields that do the work of the consistent mass on ã and of the lumped mass on o on
+    /// rigid motions, the nearest to ã: the solution g of the least-squares problem |g − ã|² → min, Bg = f with a
+    /// multiplier for each rigid motion.
     #[test]
     fn mixed_solves_the_least_squares_problem() {
         let arms = arms(&POINTS);

@@ -1,5 +1,6 @@
-//! The estimator for bars and plane bodies, compiled with this crate. Builds with little optimisation share such instances: crates that
-//! call it need not compile it anew. Optimised builds do not share them, so they are left out there.
+//! The estimator for bars and plane bodies, compiled with this crate. Builds with little optimisation share such
+//! instances: crates that call it need not compile it anew. Optimised builds do not share them, so they are left out
+//! there.
 
 use crate::reference::Comparison;
 use crate::{estimate, memory};

@@ -1,8 +1,9 @@
 //! Numbers at several time levels side by side.
 //!
-//! The maps of elements and stars do not change in time. A formula that is written over [`Value`] takes a number at one level, an `f64`, or
-//! at [`LANES`] levels at once: the map is then read once for all of them. [`Lanes`] are such numbers in memory, [`Wide`](crate::wide::Wide)
-//! in registers. No lane depends on another, and all forms do the same operations in the same order: the bits are the same.
+//! The maps of elements and stars do not change in time. A formula that is written over [`Value`] takes a number at one
+//! level, an `f64`, or at [`LANES`] levels at once: the map is then read once for all of them. [`Lanes`] are such
+//! numbers in memory, [`Wide`](crate::wide::Wide) in registers. No lane depends on another, and all forms do the same
+//! operations in the same order: the bits are the same.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

@@ -1,6 +1,7 @@
 //! Nodal fields whose memory is used again.
 //!
-//! Each step needs a dozen fields for a short time. New memory from the operating system would cost more than the work on it.
+//! Each step needs a dozen fields for a short time. New memory from the operating system would cost more than the work
+//! on it.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -16,8 +16,8 @@ pub const MOST_THREADS: usize = 1024;
 #[serde(rename_all = "lowercase")]
 pub enum Reconstruction {
     /// No reaction is dropped: the densities hold all reactions, those that brake a node before contact included. The
-    /// normal contact law is measured where they act off contact. An auxiliary solution with less dispersion is balanced,
-    /// with tractions of least energy.
+    /// normal contact law is measured where they act off contact. An auxiliary solution with less dispersion is
+    /// balanced, with tractions of least energy.
     #[default]
     Corrected,
     /// On each interval, on the edges that touch throughout it, statically equivalent to the
@@ -38,8 +38,8 @@ pub enum Acceleration {
     Rigid,
     /// The linear one that does the lumped work on each shape function.
     Weak,
-    /// The one nearest to ρ ã_h if the tractions balance the consistent mass term and, lumped, by how much lumping changes
-    /// the acceleration. For `corrected` only.
+    /// The one nearest to ρ ã_h if the tractions balance the consistent mass term and, lumped, by how much lumping
+    /// changes the acceleration. For `corrected` only.
     Mixed,
 }
 
@@ -81,8 +81,8 @@ pub enum Ablation {
     /// All parts.
     #[default]
     None,
-    /// The simulation's own displacements are balanced, with accelerations that take up the difference between the nodal
-    /// forces of the density and the reactions.
+    /// The simulation's own displacements are balanced, with accelerations that take up the difference between the
+    /// nodal forces of the density and the reactions.
     AuxiliarySolution,
     /// An auxiliary solution with the dispersion of the simulation.
     Correction,
@@ -163,8 +163,8 @@ pub struct UnknownName {
 /// A choice of Γ_DA that the reconstruction cannot be combined with.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error(
-    "is \"{acceleration}\"; with reconstruction = \"{reconstruction}\" it must be one of \"closest\", \"rigid\", \"weak\" \
-     (\"{acceleration}\" needs reconstruction = \"corrected\")"
+    "is \"{acceleration}\"; with reconstruction = \"{reconstruction}\" it must be one of \"closest\", \"rigid\", \
+     \"weak\" (\"{acceleration}\" needs reconstruction = \"corrected\")"
 )]
 pub struct UnsuitableAcceleration {
     /// The choice of Γ_DA.

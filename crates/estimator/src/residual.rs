@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 /// body rather than strain it. Rounding leaves some 1e-13; anything above 1e-10 means that a field is
 /// not admissible. All are taken at every sampled instant, but for those of stresses that are
 /// a constant linear map of tractions and Γ_DA (`divergence`, `edge_tractions`, `inner_tractions`): each
-/// element is checked in its turn, in one interval of 16 at contact and at one instant of 64 or more elsewhere. `hat_resultants`
-/// and `hat_stress` are those of unit hats, taken once for each star in use.
+/// element is checked in its turn, in one interval of 16 at contact and at one instant of 64 or more elsewhere.
+/// `hat_resultants` and `hat_stress` are those of unit hats, taken once for each star in use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// u_CA = u₀ and u̇_CA = v₀ at t = 0, eq. \[6\], \[7\].

@@ -6,11 +6,12 @@ use std::num::NonZeroUsize;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// With `auto`, so many elements for each step from sample to sample: on a mesh of few elements η fluctuates from step to step. The
-/// sup and the mean of all cases of the evidence then differ by less than 1 % from those of all steps (docs/speed.md).
+/// With `auto`, so many elements for each step from sample to sample: on a mesh of few elements η fluctuates from step
+/// to step. The sup and the mean of all cases of the evidence then differ by less than 1 % from those of all steps
+/// (docs/speed.md).
 const ELEMENTS: usize = 1400;
-/// With `auto`, the most steps from sample to sample are the root of the number of elements over this. A wave crosses a plane mesh
-/// of that many elements in a number of steps near this root.
+/// With `auto`, the most steps from sample to sample are the root of the number of elements over this. A wave crosses a
+/// plane mesh of that many elements in a number of steps near this root.
 const CROSSING: f64 = 6.0;
 /// With `auto`, a run has at least so many intervals between samples, as far as it has steps.
 const INTERVALS: usize = 32;
@@ -20,11 +21,12 @@ const AUTO: &str = "auto";
 /// At which steps the error is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
-    /// Around onset, release and peaks of the contact force, and between them as sparsely as keeps the mean: at each step
-    /// on small meshes, at about one in 30 on 40 000 elements.
+    /// Around onset, release and peaks of the contact force, and between them as sparsely as keeps the mean: at each
+    /// step on small meshes, at about one in 30 on 40 000 elements.
     #[default]
     Auto,
-    /// At every half-step instant if 1, else at t_0, t_k, t_2k, … and at the end, so that the mean covers the whole run.
+    /// At every half-step instant if 1, else at t_0, t_k, t_2k, … and at the end, so that the mean covers the whole
+    /// run.
     Every(usize),
 }
 

@@ -12,8 +12,9 @@ const PIECE: usize = 4096;
 /// Why numbers could not wait in a file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error(
-    "a temporary file of {bytes} bytes in {} failed: {cause}. It holds the motion of contact nodes, and the elements around them, until \
-     the next contact is known. Set TMPDIR to a folder that exists, can be written and has space, or sample fewer steps with `every`",
+    "a temporary file of {bytes} bytes in {} failed: {cause}. It holds the motion of contact nodes, and the elements \
+     around them, until the next contact is known. Set TMPDIR to a folder that exists, can be written and has space, \
+     or sample fewer steps with `every`",
     folder.display()
 )]
 pub struct ScratchError {
@@ -34,7 +35,8 @@ pub(crate) struct ScratchFile {
     folder: Option<PathBuf>,
 }
 
-/// The folder of temporary files: that of `TMPDIR`. Without one it is `/var/tmp`, which is on a disk, while `/tmp` may be memory.
+/// The folder of temporary files: that of `TMPDIR`. Without one it is `/var/tmp`, which is on a disk, while `/tmp` may
+/// be memory.
 fn folder() -> PathBuf {
     let lasting = Path::new("/var/tmp");
     match std::env::var_os("TMPDIR").filter(|folder| !folder.is_empty()) {

@@ -1,13 +1,14 @@
 //! The sources of η: what a finer mesh or a shorter step would change.
 //!
-//! D = ½(u − u_A)·K(u − u_A) + ½(v − v_A)·M_c(v − v_A) is the energy of the difference of the simulation and the auxiliary
-//! solution. Its contact part is its product with the difference that the contact forces alone make, the rest is dispersion
-//! that has accumulated. An element is near if one of its nodes may touch.
+//! D = ½(u − u_A)·K(u − u_A) + ½(v − v_A)·M_c(v − v_A) is the energy of the difference of the simulation and the
+//! auxiliary solution. Its contact part is its product with the difference that the contact forces alone make, the rest
+//! is dispersion that has accumulated. An element is near if one of its nodes may touch.
 
 use crate::difference::Difference;
 use serde::{Deserialize, Serialize};
 
-/// The sources of η (J). Their sum is η. A source may be slightly negative, because D is not orthogonal to the other misfits.
+/// The sources of η (J). Their sum is η. A source may be slightly negative, because D is not orthogonal to the other
+/// misfits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sources {
     /// At the contact surface: friction, ∫F_n gap, the contact part of D, and the misfit of the near elements beyond D.
@@ -94,8 +95,8 @@ pub struct Separation {
 }
 
 impl Separation {
-    /// The mean error expected with elements and steps half as long (J^½); `None` where the sources do not separate: where the
-    /// mean of one is below −20 % of η, as on bars near the critical step.
+    /// The mean error expected with elements and steps half as long (J^½); `None` where the sources do not separate:
+    /// where the mean of one is below −20 % of η, as on bars near the critical step.
     #[must_use]
     pub fn mean_with_half_size(&self) -> Option<f64> {
         self.expected(self.half_size.total())
@@ -128,22 +129,25 @@ pub(crate) fn half_size(mean: &Sources, difference: &Difference) -> Sources {
     ])
 }
 
-/// The part of η by which a source may be negative: 0.9 of the critical step has 0.17 on bars, the critical step itself 2.
+/// The part of η by which a source may be negative: 0.9 of the critical step has 0.17 on bars, the critical step itself
+/// 2.
 const NEGATIVE: f64 = 0.2;
 /// The mass of the surface layer, which arrives at full speed, falls like h.
 const FRONT: f64 = 0.5;
-/// The misfit of interpolation falls like h² in smooth fields. Waves that the finer mesh carries anew add as much at most.
+/// The misfit of interpolation falls like h² in smooth fields. Waves that the finer mesh carries anew add as much at
+/// most.
 const SMOOTH: f64 = 0.25;
-/// The error at the surface without concentrated forces: between the layer of a front (½) and smooth fields (¼). Measured 0.26
-/// to 0.39.
+/// The error at the surface without concentrated forces: between the layer of a front (½) and smooth fields (¼).
+/// Measured 0.26 to 0.39.
 const FLAT: f64 = 0.325;
 /// A force that acts on less than an edge has an energy linear in the halvings from the edge to its width. Its excess
-/// in the simulation falls with them as well, and so does the misfit of the stress: about the third power of halvings + 4.
-/// Measured on corners, discs and crowned blocks at 4 and 40 m/s.
+/// in the simulation falls with them as well, and so does the misfit of the stress: about the third power of halvings +
+/// 4. Measured on corners, discs and crowned blocks at 4 and 40 m/s.
 const SURFACE: f64 = 2.7;
 
-/// The factor of D behind a jump. Its spectrum is k⁻², its waves are late by a phase ∝ k³h²t. A solution with a quarter of the
-/// dispersion has q D: q depends on t/h alone, and so does the factor. This is a fit of both integrals over time, within 5 %.
+/// The factor of D behind a jump. Its spectrum is k⁻², its waves are late by a phase ∝ k³h²t. A solution with a quarter
+/// of the dispersion has q D: q depends on t/h alone, and so does the factor. This is a fit of both integrals over
+/// time, within 5 %.
 fn jump(kept: f64) -> f64 {
     0.655 + 0.0125 / (kept - 0.054).max(0.0093)
 }

@@ -1,8 +1,9 @@
 //! The fields of one time level t_n, in the states in which they become known.
 //!
-//! The motion comes first ([`MotionKnown`]), then the contact force over the step that ends at t_n ([`ForcesBefore`]), then
-//! that over the step that begins there ([`ForcesKnown`]). Stress and tractions make it an
-//! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying them.
+//! The motion comes first ([`MotionKnown`]), then the contact force over the step that ends at t_n ([`ForcesBefore`]),
+//! then that over the step that begins there ([`ForcesKnown`]). Stress and tractions make it an
+//! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying
+//! them.
 
 use crate::contact_density::{Densities, LevelDensities, OffContact};
 use crate::increment::Increment;
@@ -23,7 +24,8 @@ pub(crate) struct SurfaceStep<const D: usize> {
     pub(crate) reaction: Vec<[f64; D]>,
     /// The forces of which densities are made (N).
     pub(crate) force: Vec<[f64; D]>,
-    /// The densities of this instant, until the step that begins here has them; `None` where they depend on other instants.
+    /// The densities of this instant, until the step that begins here has them; `None` where they depend on other
+    /// instants.
     pub(crate) densities: Option<LevelDensities<D>>,
     pub(crate) touching: Vec<bool>,
     /// Gaps of the simulation (m).

@@ -1,7 +1,7 @@
 //! Numbers at several time levels side by side, in registers.
 //!
-//! [`Lanes`](crate::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in memory too, and moves
-//! three numbers for each operation. In registers a formula moves those that do not fit.
+//! [`Lanes`](crate::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in
+//! memory too, and moves three numbers for each operation. In registers a formula moves those that do not fit.
 
 use crate::lanes::{LANES, Lanes, Value};
 use crate::simd::Registers;

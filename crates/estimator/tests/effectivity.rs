@@ -137,7 +137,8 @@ impl Impact {
             .unwrap()
     }
 
-    /// e_sup/e_ref and e_mean/e_ref on a mesh, with two choices of options, against that of which each cell is cut into 16.
+    /// e_sup/e_ref and e_mean/e_ref on a mesh, with two choices of options, against that of which each cell is cut into
+    /// 16.
     fn effectivities(&self, level: usize, options: [Options; 2]) -> [[f64; 2]; 2] {
         let (problem, fine) = (self.problem(level), self.problem(level + 2));
         let times = grid(&problem, self.end);
@@ -168,9 +169,9 @@ const FLAT: Impact = Impact {
     range: [0.9, 1.5],
 };
 
-/// The ranges that the default was built to meet: 0.9 to 1.5 on flat impacts, to 1.7 on tilted and curved bodies; measured
-/// are 1.0 to 1.2 and 1.1 to 1.6. It must not grow with the refinement either; 2 % are left to the instants of impact, which
-/// lie elsewhere in the steps, and 10 % where the zone of contact grows from a corner or a point.
+/// The ranges that the default was built to meet: 0.9 to 1.5 on flat impacts, to 1.7 on tilted and curved bodies;
+/// measured are 1.0 to 1.2 and 1.1 to 1.6. It must not grow with the refinement either; 2 % are left to the instants of
+/// impact, which lie elsewhere in the steps, and 10 % where the zone of contact grows from a corner or a point.
 #[test]
 fn the_default_is_near_the_true_error() {
     let corner = Impact {

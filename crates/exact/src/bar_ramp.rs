@@ -2,8 +2,8 @@
 
 /// A uniform bar on [0, L], clamped at x = 0, undeformed and at rest, with a traction rt (Pa) on its end from t = 0 on.
 ///
-/// Sources: the modal series is that of Timoshenko, *Vibration Problems in Engineering*, longitudinal vibrations under a force at the end:
-/// with k_n = (n − ½)π/L and ω_n = k_n c,
+/// Sources: the modal series is that of Timoshenko, *Vibration Problems in Engineering*, longitudinal vibrations under
+/// a force at the end: with k_n = (n − ½)π/L and ω_n = k_n c,
 ///
 /// u = rtx/E − Σ (2r (−1)ⁿ⁺¹/(ρLω_n³)) sin(k_n x) sin(ω_n t).
 ///

@@ -3,8 +3,8 @@
 /// A uniform bar, undeformed on [0, L] at t = 0 and at rest, that falls under gravity g in −x onto a rigid plane at
 /// x = −h, and returns to its initial state periodically.
 ///
-/// Source: the second benchmark of Doyen, Ern and Piperno (2011), *Time-integration schemes for the finite element dynamic
-/// Signorini problem*, SIAM J. Sci. Comput. 33(1), 223–249. The closed form is d'Alembert's, derived here.
+/// Source: the second benchmark of Doyen, Ern and Piperno (2011), *Time-integration schemes for the finite element
+/// dynamic Signorini problem*, SIAM J. Sci. Comput. 33(1), 223–249. The closed form is d'Alembert's, derived here.
 ///
 /// With the instant of impact as τ = 0, w the displacement from there, v₀ = √(2gh), c = √(E/ρ) and D = 2L/c:
 ///
@@ -31,9 +31,9 @@ pub struct BouncingBar {
 type State = (f64, f64, f64);
 
 impl BouncingBar {
-    /// A bar of length L (m), Young's modulus E (Pa), density ρ (kg/m³), section S (m²) under gravity g (m/s²), dropped from
-    /// the height h (m). `None` unless the flight 2v₀/g is a whole number k of periods 2L/c, to a relative 1e-9, and k > 2:
-    /// with k = 2 or less the bar cannot leave after 2L/c, because its end would move back into the plane.
+    /// A bar of length L (m), Young's modulus E (Pa), density ρ (kg/m³), section S (m²) under gravity g (m/s²), dropped
+    /// from the height h (m). `None` unless the flight 2v₀/g is a whole number k of periods 2L/c, to a relative 1e-9,
+    /// and k > 2: with k = 2 or less the bar cannot leave after 2L/c, because its end would move back into the plane.
     #[must_use]
     pub fn new(length: f64, young: f64, density: f64, section: f64, gravity: f64, height: f64) -> Option<Self> {
         let bar = Self { length, young, density, section, gravity, height };
@@ -103,7 +103,8 @@ impl BouncingBar {
         if (0.0..=self.contact_duration()).contains(&tau) { -self.normal_force(0.0, t) } else { 0.0 }
     }
 
-    /// The time since the first impact, folded by period and symmetry into [−v₀/g, D + v₀/g], and the sign of the velocity there.
+    /// The time since the first impact, folded by period and symmetry into [−v₀/g, D + v₀/g], and the sign of the
+    /// velocity there.
     fn folded(&self, t: f64) -> (f64, f64) {
         let fall = self.impact_time();
         let phase = t.rem_euclid(self.period());
@@ -211,8 +212,8 @@ mod tests {
         }
     }
 
-    /// u is continuous in time through all changes of phase, and so is v but where a front passes. The largest velocity is
-    /// 20 m/s: 1e-9 s before and after.
+    /// u is continuous in time through all changes of phase, and so is v but where a front passes. The largest velocity
+    /// is 20 m/s: 1e-9 s before and after.
     #[test]
     fn the_phases_fit_together() {
         let bar = bar();
@@ -226,8 +227,8 @@ mod tests {
         }
     }
 
-    /// Kinetic, strain and potential energy are conserved, and the momentum changes by weight and contact force. Midpoint
-    /// sums of pieces of parabolas that fronts cut: 1e-3 of the energy with 4 000 cells.
+    /// Kinetic, strain and potential energy are conserved, and the momentum changes by weight and contact force.
+    /// Midpoint sums of pieces of parabolas that fronts cut: 1e-3 of the energy with 4 000 cells.
     #[test]
     fn energy_and_momentum_balance() {
         let (bar, n) = (bar(), 4000);

@@ -4,12 +4,14 @@
 /// displaced from the obstacle, u₀ = (1 − x/L) d with d > 0, and released at rest.
 ///
 /// Source: a benchmark of Dabaghi, Petrov, Pousin and Renard, *A robust finite element redistribution approach for
-/// elastodynamic contact problems*, Appl. Numer. Math. 103 (2016), with L = E = ρ = 1 and d = ½. The closed form by d'Alembert:
-/// with c = √(E/ρ), a = L/c and a wave of velocity w = dc/L,
+/// elastodynamic contact problems*, Appl. Numer. Math. 103 (2016), with L = E = ρ = 1 and d = ½. The closed form by
+/// d'Alembert: with c = √(E/ρ), a = L/c and a wave of velocity w = dc/L,
 ///
-/// - release, 0 … a: the unloading wave runs from x = 0 to the clamp; behind it the rod is unstrained with the velocity −w;
-/// - contact, a … 2a: all of the rod arrives unstrained at −w; waves run in from both ends, stop it, compress it at the obstacle and
-///   stretch it at the clamp, and meet; behind the second ones it is unstrained with velocity w. The contact force is ESd/L;
+/// - release, 0 … a: the unloading wave runs from x = 0 to the clamp; behind it the rod is unstrained with the velocity
+///   −w;
+/// - contact, a … 2a: all of the rod arrives unstrained at −w; waves run in from both ends, stop it, compress it at the
+///   obstacle and stretch it at the clamp, and meet; behind the second ones it is unstrained with velocity w. The
+///   contact force is ESd/L;
 /// - return, 2a … 3a: the wave from the clamp stops it, compressed as at the start.
 ///
 /// The period is 3a; its second half is the time reverse of the first.
@@ -141,8 +143,8 @@ mod tests {
         assert_eq!([0.9, 2.1].map(|t| rod.contact_force(t)), [0.0, 0.0]);
     }
 
-    /// Slopes of u are v and N/(ES) in all phases of two periods: u is piecewise linear, so only rounding of the difference
-    /// remains, 1e-16·u/step; points and instants are away from fronts.
+    /// Slopes of u are v and N/(ES) in all phases of two periods: u is piecewise linear, so only rounding of the
+    /// difference remains, 1e-16·u/step; points and instants are away from fronts.
     #[test]
     fn velocity_and_force_are_the_slopes_of_the_displacement() {
         let h = 1e-4;
@@ -169,8 +171,8 @@ mod tests {
         }
     }
 
-    /// u is continuous, and across each front [N] = ∓ρSc[v]: the energy does not change. Midpoint sums are exact where the fronts lie
-    /// between two cells: at multiples of 1/12 of the passage with 12 cells.
+    /// u is continuous, and across each front [N] = ∓ρSc[v]: the energy does not change. Midpoint sums are exact where
+    /// the fronts lie between two cells: at multiples of 1/12 of the passage with 12 cells.
     #[test]
     fn energy() {
         for i in 0..72 {

@@ -1,10 +1,10 @@
 //! Closed-form elastodynamic fields with their sources, as references for simulations and for estimates
 //! of their errors.
 //!
-//! [`BarImpact`] is the impact of a bar on a rigid plane, [`BouncingBar`] the periodic impact under gravity, [`ClampedRod`] a rod that
-//! springs back against an obstacle; [`BarRamp`] is a bar under a growing traction;
-//! [`BarMode`] and [`BlockMode`] are standing waves of a bar and of a rectangle on rollers; [`RigidSlide`] is a rigid block with dry friction.
-//! All units are SI. The crate has no dependencies, so it shares no error with the simulation.
+//! [`BarImpact`] is the impact of a bar on a rigid plane, [`BouncingBar`] the periodic impact under gravity,
+//! [`ClampedRod`] a rod that springs back against an obstacle; [`BarRamp`] is a bar under a growing traction;
+//! [`BarMode`] and [`BlockMode`] are standing waves of a bar and of a rectangle on rollers; [`RigidSlide`] is a rigid
+//! block with dry friction. All units are SI. The crate has no dependencies, so it shares no error with the simulation.
 
 mod bar_impact;
 mod bar_mode;

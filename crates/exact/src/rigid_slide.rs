@@ -13,17 +13,18 @@ struct Piece {
     dissipated: f64,
 }
 
-/// A rigid block on a plane, at rest at t = 0, that a force P(t), piecewise linear in time, pushes along the plane against dry friction
-/// of at most F = μN (N) with a constant normal force N. It
+/// A rigid block on a plane, at rest at t = 0, that a force P(t), piecewise linear in time, pushes along the plane
+/// against dry friction of at most F = μN (N) with a constant normal force N. It
 ///
 /// - sticks while |P| ≤ F: the friction is −P;
 /// - else slides, mẍ = P − F sgn ẋ, until its velocity is zero again.
 ///
-/// Its motion is a cubic between the changes, whose instants are roots of linear and quadratic equations. A block on a plane tilted by θ
-/// is the case P = mg sin θ, F = μmg cos θ: it sticks if tan θ ≤ μ, else slides with g sin θ − μg cos θ.
+/// Its motion is a cubic between the changes, whose instants are roots of linear and quadratic equations. A block on a
+/// plane tilted by θ is the case P = mg sin θ, F = μmg cos θ: it sticks if tan θ ≤ μ, else slides with g sin θ − μg cos
+/// θ.
 ///
-/// Source: Coulomb's law, eq. \[2\], for a point mass; den Hartog (1931), *Forced vibrations with combined Coulomb and viscous friction*,
-/// has the same pieces.
+/// Source: Coulomb's law, eq. \[2\], for a point mass; den Hartog (1931), *Forced vibrations with combined Coulomb and
+/// viscous friction*, has the same pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidSlide {
     mass: f64,
@@ -32,8 +33,9 @@ pub struct RigidSlide {
 }
 
 impl RigidSlide {
-    /// A block of `mass` (kg), a friction of at most `limit` (N) and a push (N) at instants (s), from 0 on and increasing, straight between
-    /// them and constant after the last. `None` if the mass is not positive, the limit negative or the instants are not so.
+    /// A block of `mass` (kg), a friction of at most `limit` (N) and a push (N) at instants (s), from 0 on and
+    /// increasing, straight between them and constant after the last. `None` if the mass is not positive, the limit
+    /// negative or the instants are not so.
     #[must_use]
     pub fn new(mass: f64, limit: f64, push: &[(f64, f64)]) -> Option<Self> {
         let increasing = push.windows(2).all(|w| w[0].0 < w[1].0) && push.first().is_some_and(|p| p.0 == 0.0);
@@ -185,8 +187,8 @@ mod tests {
         assert_eq!(slides.dissipated(4.0), 12.0);
     }
 
-    /// By hand: P = 4t and F = 2, m = 1 slide from ½ s on with v = 2(t − ½)², ½ at 1 s; then P falls, v = ½ + 2θ − 2θ² is zero after
-    /// ½(1 + √2) s.
+    /// By hand: P = 4t and F = 2, m = 1 slide from ½ s on with v = 2(t − ½)², ½ at 1 s; then P falls, v = ½ + 2θ − 2θ²
+    /// is zero after ½(1 + √2) s.
     #[test]
     fn a_triangle_by_hand() {
         let slide = RigidSlide::new(1.0, 2.0, &triangle(4.0)[..3]).unwrap();

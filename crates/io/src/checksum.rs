@@ -2,8 +2,8 @@
 
 use percute_core::mesh::Mesh;
 
-/// A checksum of what was added to it. Each step maps its 64 bits one to one, so that a change of one number always changes it, and
-/// of more with all but a probability of 2⁻⁶⁴.
+/// A checksum of what was added to it. Each step maps its 64 bits one to one, so that a change of one number always
+/// changes it, and of more with all but a probability of 2⁻⁶⁴.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Checksum(u64);
 

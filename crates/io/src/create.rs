@@ -90,7 +90,8 @@ impl Unnamed {
         let own = temporary.as_file().try_clone().map_err(|source| FileCause::Create { source })?;
         let held = Held::shared(own)?;
         loop {
-            // A file is replaced only by the one that holds the lock on it: of two runs that begin together, one is refused.
+            // A file is replaced only by the one that holds the lock on it: of two runs that begin together, one is
+            // refused.
             let put = match old.as_ref().is_some_and(|old| old.is_at(&path)) {
                 true => temporary.persist(&path),
                 false => temporary.persist_noclobber(&path),
@@ -129,8 +130,8 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."))
 }
 
-/// Makes sure that files can be created in the folder of one that is not there. The name is left alone: another run may be
-/// creating it.
+/// Makes sure that files can be created in the folder of one that is not there. The name is left alone: another run may
+/// be creating it.
 ///
 /// # Errors
 /// Whatever the system reports.

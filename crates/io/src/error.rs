@@ -45,8 +45,8 @@ pub enum FileCause {
     Write { step: usize, source: io::Error },
     /// The file could not be completed.
     #[error(
-        "the file could not be completed: {detail}; {steps} instants were written to it: if it is whole, `percute recover` \
-         completes it"
+        "the file could not be completed: {detail}; {steps} instants were written to it: if it is whole, `percute \
+         recover` completes it"
     )]
     Finish { detail: String, steps: usize },
     /// The file of a run that was killed before its first step.
@@ -87,8 +87,8 @@ pub enum FileCause {
     OlderLayout { found: i64, known: i64 },
     /// Numbers that are not those written.
     #[error(
-        "`{name}` does not have its checksum{}: the file was damaged or changed after its run; simulate again, or delete \
-         `percute/checksum` and `percute/checksums` from a file that was changed on purpose",
+        "`{name}` does not have its checksum{}: the file was damaged or changed after its run; simulate again, or \
+         delete `percute/checksum` and `percute/checksums` from a file that was changed on purpose",
         step.map_or(String::new(), |step| format!(" at instant {step}"))
     )]
     Checksum { name: String, step: Option<usize> },
@@ -106,9 +106,9 @@ pub enum FileCause {
     Value { name: String, detail: String },
     /// A history that keeps a part of its run only.
     #[error(
-        "the file keeps {held} of {of} instants{reactions}; the estimate, the energies (`balance`), the contact results, the true \
-         error and motion by the scheme need all steps: run again without `every`, `times` and `fields` of the history, or \
-         take the estimate that `percute run` makes during the run, which uses all steps"
+        "the file keeps {held} of {of} instants{reactions}; the estimate, the energies (`balance`), the contact \
+         results, the true error and motion by the scheme need all steps: run again without `every`, `times` and \
+         `fields` of the history, or take the estimate that `percute run` makes during the run, which uses all steps"
     )]
     Thinned { held: usize, of: usize, reactions: &'static str },
     /// A shape that the stored bytes cannot fill.

@@ -33,8 +33,8 @@ impl Held {
         (mine.dev(), mine.ino()) == (there.dev(), there.ino())
     }
 
-    /// The path of the file: `path`, or where it has been moved to. None if it was removed or replaced, or if the system does
-    /// not tell.
+    /// The path of the file: `path`, or where it has been moved to. None if it was removed or replaced, or if the
+    /// system does not tell.
     pub(crate) fn place(&self, path: &Path) -> Option<PathBuf> {
         let moved = || std::fs::read_link(format!("/proc/self/fd/{}", self.0.as_raw_fd())).ok();
         if self.is_at(path) { Some(path.to_path_buf()) } else { moved().filter(|now| self.is_at(now)) }

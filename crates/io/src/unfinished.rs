@@ -29,8 +29,8 @@ impl Drop for Unfinished {
     }
 }
 
-/// Removes the files of this process that are of no use yet: those without their names, and histories without a step. For use
-/// before the process ends early.
+/// Removes the files of this process that are of no use yet: those without their names, and histories without a step.
+/// For use before the process ends early.
 pub fn remove_unfinished() {
     for path in all().drain(..) {
         // One that cannot be removed stays; nothing more can be done.

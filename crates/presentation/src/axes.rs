@@ -63,7 +63,8 @@ impl Plot {
     }
 }
 
-/// Draws a bar of colours with marks on its right; `less` says that values below a logarithmic scale have its lowest colour.
+/// Draws a bar of colours with marks on its right; `less` says that values below a logarithmic scale have its lowest
+/// colour.
 pub(crate) fn colour_bar(svg: &mut Svg, corner: [f64; 2], size: [f64; 2], scale: &Scale, (label, less): (&str, bool)) {
     const SHADES: usize = 64;
     let ([left, top], [width, height]) = (corner, size);

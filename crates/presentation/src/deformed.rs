@@ -131,9 +131,8 @@ mod tests {
             format!("[{:?}, {:?}]", q[0] - p[0], q[1] - p[1])
         };
         let rows = (0..4).map(row).collect::<Vec<_>>().join(", ");
-        let text = format!(
-            r#"{{"error": {{"sup": 1}}, "outline": {{"time": 1.3e-5, "node": [0, 1, 2, 3], "displacement": [{rows}]}}}}"#
-        );
+        let outline = format!(r#"{{"time": 1.3e-5, "node": [0, 1, 2, 3], "displacement": [{rows}]}}"#);
+        let text = format!(r#"{{"error": {{"sup": 1}}, "outline": {outline}}}"#);
         Deformed::new(&body, &Document::parse(&text).unwrap()).unwrap()
     }
 

@@ -1,5 +1,5 @@
-//! Pictures of an estimated simulation, and the page that hands it over: SVG, PNG and HTML from the JSON report, the mesh
-//! and the contact results, be they of a run or of an estimate file. Nothing here prints.
+//! Pictures of an estimated simulation, and the page that hands it over: SVG, PNG and HTML from the JSON report, the
+//! mesh and the contact results, be they of a run or of an estimate file. Nothing here prints.
 
 mod axes;
 mod body;

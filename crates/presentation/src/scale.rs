@@ -152,7 +152,8 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// Components below this part of the largest are left over from zero: sums of thousands of steps and nodes have roundings of 1e-13.
+/// Components below this part of the largest are left over from zero: sums of thousands of steps and nodes have
+/// roundings of 1e-13.
 const ROUNDING: f64 = 1e-12;
 /// Units that get no prefix.
 const PLAIN: [&str; 3] = ["m/s", "kg", ""];

@@ -145,7 +145,8 @@ impl Svg {
     pub(crate) fn transparent(&self) -> String {
         let [w, h] = self.size.map(px);
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n{}</svg>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} \
+             {h}\">\n{}</svg>\n",
             self.body
         )
     }

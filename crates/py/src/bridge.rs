@@ -2,8 +2,9 @@
 //!
 //! Each task runs in a thread of its own and owns its data. The calling thread waits without the GIL, so that
 //! other Python threads run. Every 50 ms it takes the GIL, checks for signals and reports progress. Ctrl-C thus
-//! works during any task; a task that cannot stop at once gets the order to stop and ends later. A task that writes a file is
-//! waited for until the file is closed, so that it is complete before the exception is raised and before the interpreter ends.
+//! works during any task; a task that cannot stop at once gets the order to stop and ends later. A task that writes a
+//! file is waited for until the file is closed, so that it is complete before the exception is raised and before the
+//! interpreter ends.
 
 use crate::errors::percute_error;
 use percute_core::observer::{Observer, Progress};
@@ -53,7 +54,8 @@ pub(crate) struct Task {
     progress: Mutex<Option<Progress>>,
 }
 
-/// Tasks that write a file, with their process: a forked one does not have them. The end of the interpreter waits for them.
+/// Tasks that write a file, with their process: a forked one does not have them. The end of the interpreter waits for
+/// them.
 static WRITERS: Mutex<Vec<(u32, Weak<Task>)>> = Mutex::new(Vec::new());
 
 /// The time during which a task writes a file; it ends when this is dropped.

@@ -34,7 +34,8 @@ impl CaseData {
         Ok(Self { case: case.map_err(|error| errors::input(py, error))? })
     }
 
-    /// The case with the end of its run, that of one which ends with the rebound is looked for; with a warning if contact does not end.
+    /// The case with the end of its run, that of one which ends with the rebound is looked for; with a warning if
+    /// contact does not end.
     fn resolved(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<(Self, Option<String>)> {
         let case = self.case.clone();
         let work = move |mut watch: bridge::Watch| -> Result<Option<(Case, Option<Warning>)>, Failure> {
@@ -69,7 +70,8 @@ impl CaseData {
 
     /// The import warnings of its mesh.
     fn import_warnings(&self) -> Vec<String> {
-        each_dimension!(&self.case, case => case.problem.mesh().import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
+        let warnings = each_dimension!(&self.case, case => case.problem.mesh().import_warnings());
+        warnings.iter().map(|warning| warning.message.clone()).collect()
     }
 
     /// The files of a run, checked before any work: the history in `store` or as the case says, and the estimate,

@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 /// Numbers of one element, from the rows of all nodes at an instant.
 type Numbers<const D: usize, const N: usize> = fn(&Problem<D, N>, ElementId, &[[f64; D]], &mut Vec<f64>);
 
-/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, D, D). `nodal` are velocities
-/// (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, D).
+/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, D, D). `nodal` are
+/// velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, D).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,
@@ -28,7 +28,8 @@ pub(crate) fn element_field<'py>(
         let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
         let dimension = problem.mesh().points()[0].len();
         if (shape[1], shape[2]) != (nodes, dimension) {
-            return Err(errors::input(py, format!("the field has the shape {shape:?}; it must be (instants, {nodes}, {dimension})")));
+            return Err(errors::input(py, format!("the field has the shape {shape:?}; it must be (instants, {nodes}, \
+                {dimension})")));
         }
         let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
         let work = move |watch: Watch| over_time(&problem, &rows, numbers, watch);

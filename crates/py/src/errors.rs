@@ -77,12 +77,13 @@ pub(crate) fn argument(place: Place, groups: &[Option<String>]) -> String {
 fn cause(cause: &Cause) -> String {
     match cause {
         Cause::TwoPlanes { node, first } => format!(
-            "node {node} could touch obstacles[{}] as well as this one; name for each plane a `group` so that no node lies in two",
+            "node {node} could touch obstacles[{}] as well as this one; name for each plane a `group` so that no node \
+             lies in two",
             first - 1
         ),
         Cause::ConflictingSupports { node, component, first } => format!(
-            "component {component} of node {node} is already prescribed by supports[{}] with another motion; make the two \
-             agree, or take the node out of one of the groups",
+            "component {component} of node {node} is already prescribed by supports[{}] with another motion; make the \
+             two agree, or take the node out of one of the groups",
             first - 1
         ),
         Cause::NotFree { by, .. } | Cause::AllHeld { by, .. } => {
@@ -97,7 +98,8 @@ fn cause(cause: &Cause) -> String {
             format!("element {element} already has a material; the groups of materials must not overlap")
         }
         Cause::NoMaterial { element, count } => format!(
-            "element {element} has no material ({count} such elements); give one material, or one for each group of elements"
+            "element {element} has no material ({count} such elements); give one material, or one for each group of \
+             elements"
         ),
         other => other.to_string(),
     }

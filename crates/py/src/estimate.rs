@@ -53,7 +53,8 @@ pub(crate) fn estimate(
     let ablation = ablation.parse().map_err(|error: UnknownName| errors::input(py, format!("`_ablation`: {error}")))?;
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, &every)? };
     let instants = instants.map(Instants::from);
-    let made = map_dimension!(&history.run, run => estimate_one(py, run, options, (instants.as_ref(), fields), accept, progress)?);
+    let maps = (instants.as_ref(), fields);
+    let made = map_dimension!(&history.run, run => estimate_one(py, run, options, maps, accept, progress)?);
     Ok(EstimateData { made })
 }
 
@@ -139,7 +140,8 @@ impl EstimateData {
         view::columns(py, each_dimension!(&self.made, m => &m.estimate.over_time), &PARTS)
     }
 
-    /// The sources of η, each as its four numbers, but over time an array for each; `None` without an auxiliary solution.
+    /// The sources of η, each as its four numbers, but over time an array for each; `None` without an auxiliary
+    /// solution.
     fn sources<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(separation) = each_dimension!(&self.made, m => m.estimate.sources.as_ref()) else { return Ok(None) };
         let numbers = PyDict::new(py);
@@ -153,7 +155,9 @@ impl EstimateData {
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.made, m => view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()]))
+        each_dimension!(&self.made, m => {
+            view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()])
+        })
     }
 
     fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -170,8 +174,8 @@ impl EstimateData {
         (given.velocity, given.acceleration)
     }
 
-    /// The warnings of the command, each with whether it doubts the result: those that only the result shows; with `options`,
-    /// those about the options of the estimate; with `input`, those about the problem.
+    /// The warnings of the command, each with whether it doubts the result: those that only the result shows; with
+    /// `options`, those about the options of the estimate; with `input`, those about the problem.
     fn warnings(&self, options: bool, input: bool) -> Vec<(String, bool)> {
         let told = |warning: &Warning| {
             let of_options = warning.name == "few_samples";

@@ -146,8 +146,8 @@ fn impact([length, young, density, section, speed, gap]: [f64; 6]) -> BarImpact 
     BarImpact { length, young, density, section, speed, gap }
 }
 
-/// The true error of a history of a bar that strikes a plane: sup, mean, and time, kinetic and elastic part at each instant.
-/// The bar is that of [`ExactData::bar_impact`].
+/// The true error of a history of a bar that strikes a plane: sup, mean, and time, kinetic and elastic part at each
+/// instant. The bar is that of [`ExactData::bar_impact`].
 #[pyfunction]
 pub(crate) fn true_error_of_bar_impact<'py>(
     py: Python<'py>,

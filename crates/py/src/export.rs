@@ -13,7 +13,8 @@ use percute_workflow::history::lacks;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Writes fields of a history; the first file returned is the one to open. `choice` has steps, every k-th step or times (s).
+/// Writes fields of a history; the first file returned is the one to open. `choice` has steps, every k-th step or times
+/// (s).
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn export(

@@ -103,7 +103,8 @@ impl MeshData {
 
     /// What was reported when it was read.
     fn import_warnings(&self) -> Vec<String> {
-        each_dimension!(&self.mesh, mesh => mesh.import_warnings().iter().map(|import_warning| import_warning.message.clone()).collect())
+        let warnings = each_dimension!(&self.mesh, mesh => mesh.import_warnings());
+        warnings.iter().map(|warning| warning.message.clone()).collect()
     }
 
     #[getter]
@@ -116,7 +117,9 @@ impl MeshData {
 
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.mesh, mesh => view::view(py, mesh, |m| m.points().as_flattened(), &[mesh.node_count(), self.dimension()]))
+        each_dimension!(&self.mesh, mesh => {
+            view::view(py, mesh, |m| m.points().as_flattened(), &[mesh.node_count(), self.dimension()])
+        })
     }
 
     #[getter]

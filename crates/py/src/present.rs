@@ -79,7 +79,8 @@ type Marks = Vec<(f64, String)>;
 /// Points (m) of some lines.
 type Lines = Vec<Vec<[f64; 2]>>;
 
-/// Colours of values that are not negative: both ends, whether they are logarithmic, and about so many marks with labels.
+/// Colours of values that are not negative: both ends, whether they are logarithmic, and about so many marks with
+/// labels.
 #[pyfunction]
 pub(crate) fn colour_scale(values: PyReadonlyArray1<'_, f64>, count: usize) -> PyResult<(f64, f64, bool, Marks)> {
     let ColourScale { ends: [low, high], logarithmic, marks } =

@@ -136,22 +136,30 @@ impl ProblemData {
 
     /// Arguments of the planes.
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => p.obstacles().iter().map(|plane| statement::plane_arguments(py, plane)).collect())
+        each_dimension!(&self.problem, p => {
+            p.obstacles().iter().map(|plane| statement::plane_arguments(py, plane)).collect()
+        })
     }
 
     /// Arguments of the supports.
     fn supports<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => p.statement().supports.iter().map(|s| statement::support_arguments(py, s)).collect())
+        each_dimension!(&self.problem, p => {
+            p.statement().supports.iter().map(|s| statement::support_arguments(py, s)).collect()
+        })
     }
 
     /// Arguments of the tractions.
     fn tractions<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => p.statement().tractions.iter().map(|t| statement::traction_arguments(py, t)).collect())
+        each_dimension!(&self.problem, p => {
+            p.statement().tractions.iter().map(|t| statement::traction_arguments(py, t)).collect()
+        })
     }
 
     /// Arguments of the body forces.
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => p.statement().body_forces.iter().map(|f| statement::body_force_arguments(py, f)).collect())
+        each_dimension!(&self.problem, p => {
+            p.statement().body_forces.iter().map(|f| statement::body_force_arguments(py, f)).collect()
+        })
     }
 }
 

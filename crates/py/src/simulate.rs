@@ -57,8 +57,8 @@ fn keep_of(py: Python<'_>, (every, wanted, fields): Kept, times: &TimeGrid) -> P
     Ok(Keep { steps, fields })
 }
 
-/// Simulates; with a warning if energy appears or is lost. What is raised on the way has what was done as its `history`: the
-/// data, or the file.
+/// Simulates; with a warning if energy appears or is lost. What is raised on the way has what was done as its
+/// `history`: the data, or the file.
 #[pyfunction]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -166,7 +166,8 @@ fn run_one<const D: usize, const N: usize>(
     Ok((history, Arc::new(made)))
 }
 
-/// The end (s) of a run that ends with the rebound, by a pass of the integrator alone, and a warning if contact does not end in time.
+/// The end (s) of a run that ends with the rebound, by a pass of the integrator alone, and a warning if contact does
+/// not end in time.
 #[pyfunction]
 pub(crate) fn rebound_end(
     py: Python<'_>,
@@ -210,7 +211,8 @@ pub(crate) fn plausibility_warnings(
     let times = time::grid(py, end, courant, step, steps, critical)?;
     let (plausibility_warnings, needed, names) = each_dimension!(&problem.problem, problem => {
         let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
-        (percute_core::problem::plausibility_warnings(problem, &times), memory::of_run(problem, &times).saturating_add(history), groups(problem))
+        let needed = memory::of_run(problem, &times).saturating_add(history);
+        (percute_core::problem::plausibility_warnings(problem, &times), needed, groups(problem))
     });
     let told = plausibility_warnings.into_iter().map(|plausibility_warning| {
         format!("`{}`: {}", errors::argument(plausibility_warning.place, &names), plausibility_warning.message)
@@ -220,8 +222,8 @@ pub(crate) fn plausibility_warnings(
     Ok(told.chain(varying).chain(scarce).collect())
 }
 
-/// Refuses a start that the simulation would refuse, a run for which there is no memory, and a long one unless `long` says so, before
-/// warnings and any work.
+/// Refuses a start that the simulation would refuse, a run for which there is no memory, and a long one unless `long`
+/// says so, before warnings and any work.
 #[pyfunction]
 pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, long: bool) -> PyResult<()> {
     let (end, courant, step, steps) = times;

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 /// The instants from 0 to `end`: by the ratio to the critical step, by the step, or step by step (s).
 ///
 /// # Errors
-/// Not exactly one of the three, no end, a step above the critical one, or steps that change so that the run would be unstable.
+/// Not exactly one of the three, no end, a step above the critical one, or steps that change so that the run would be
+/// unstable.
 pub(crate) fn grid(
     py: Python<'_>,
     end: Option<f64>,
@@ -64,8 +65,8 @@ fn below(py: Python<'_>, name: &str, step: f64, critical: f64) -> PyResult<()> {
         return Ok(());
     }
     let message = format!(
-        "`{name}` is {step:?} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is unstable: \
-         give less, or courant=0.9"
+        "`{name}` is {step:?} s; it must be at most the critical step of this mesh, {critical:.7e} s, or the run is \
+         unstable: give less, or courant=0.9"
     );
     Err(errors::input(py, message))
 }

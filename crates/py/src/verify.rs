@@ -15,8 +15,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The JSON document and the table.
 type Told = (String, String);
 
-/// Runs a problem on its mesh and on refinements. Returns the JSON document and the table; with `tell` this is called with the cost first.
-/// What is raised on the way has those of the levels that are done as its `verification`.
+/// Runs a problem on its mesh and on refinements. Returns the JSON document and the table; with `tell` this is called
+/// with the cost first. What is raised on the way has those of the levels that are done as its `verification`.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn verification(
@@ -44,7 +44,9 @@ pub(crate) fn verification(
         }
         let keep = so_far.clone();
         let work = move |mut watch: bridge::Watch| {
-            let mut keep = |done: &Verification| *keep.lock().unwrap_or_else(PoisonError::into_inner) = Some(done.clone());
+            let mut keep = |done: &Verification| {
+                *keep.lock().unwrap_or_else(PoisonError::into_inner) = Some(done.clone());
+            };
             verify(&prepared, options, &mut watch, &mut keep)
         };
         let done = bridge::blocking(py, progress, work);

@@ -40,8 +40,8 @@ where
     let memory = numbers(owner.as_ref());
     let shown = ArrayViewD::from_shape(shape, memory).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     let base = Bound::new(py, Owner { _memory: owner.clone() })?.into_any();
-    // SAFETY: `base` keeps a clone of `owner`, and `memory` is borrowed from what that holds: it stays where it is, as nobody
-    // can get at it but through shared references. The array is made read-only before anyone sees it.
+    // SAFETY: `base` keeps a clone of `owner`, and `memory` is borrowed from what that holds: it stays where it is, as
+    // nobody can get at it but through shared references. The array is made read-only before anyone sees it.
     let array = unsafe { PyArrayDyn::borrow_from_array(&shown, base) };
     array.readwrite().make_nonwriteable();
     Ok(array)

@@ -12,8 +12,8 @@ const MOST_SEEDS: u64 = 20;
 
 /// A rectangle [0, width] × [0, height] (m) in unstructured triangles, about `n` along its width.
 ///
-/// Points lie at random near those of a grid, also on the sides; the corners are exact. The sides are the groups `left`,
-/// `right`, `bottom`, `top`. No angle is below 10°: seeds after the given one are tried until this holds.
+/// Points lie at random near those of a grid, also on the sides; the corners are exact. The sides are the groups
+/// `left`, `right`, `bottom`, `top`. No angle is below 10°: seeds after the given one are tried until this holds.
 ///
 /// # Errors
 /// Sides that are not positive, no elements, or no suitable seed.

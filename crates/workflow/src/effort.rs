@@ -5,8 +5,8 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Sampling;
 
-/// Runs of more elements times steps than this must be asked for: 10⁸, times a factor of 100. A drop at 5 m/s of 10⁶ steps on
-/// 5000 elements has half of it; 13 s instead of 13 µs have more on 250 elements.
+/// Runs of more elements times steps than this must be asked for: 10⁸, times a factor of 100. A drop at 5 m/s of 10⁶
+/// steps on 5000 elements has half of it; 13 s instead of 13 µs have more on 250 elements.
 pub const MOST: u64 = 100 * 100_000_000;
 /// Duration of an element in a step of the simulation (s): 2.3 to 4.7 ns were measured, on one thread (docs/speed.md).
 const SIMULATION: f64 = 4e-9;
@@ -87,7 +87,8 @@ impl Effort {
         let (work, took, most) =
             (short(self.element_steps as f64, 2), duration(self.run_seconds), short(MOST as f64, 1));
         Some(format!(
-            "`levels` is {levels}, which makes {work} elements times steps in all, {took}; {way} allows more than {most}, or give fewer levels"
+            "`levels` is {levels}, which makes {work} elements times steps in all, {took}; {way} allows more than \
+             {most}, or give fewer levels"
         ))
     }
 

@@ -25,7 +25,10 @@ pub enum Failure {
     #[error("{0}")]
     Argument(String),
     /// A file that is not to be lost.
-    #[error("{what} {file}: the file exists already; give another name, or --force to replace it", file = .file.display())]
+    #[error(
+        "{what} {file}: the file exists already; give another name, or --force to replace it",
+        file = .file.display()
+    )]
     Exists {
         /// The argument or key that names it.
         what: &'static str,
@@ -41,7 +44,10 @@ pub enum Failure {
     #[error("{file}: {cause}", file = .file.display())]
     History { file: PathBuf, cause: EstimateError },
     /// A history of another program that contradicts itself or its problem.
-    #[error("{}; to estimate it as it is, give --accept-inconsistent", inconsistency(file.as_deref(), figure, cause.as_deref()))]
+    #[error(
+        "{}; to estimate it as it is, give --accept-inconsistent",
+        inconsistency(file.as_deref(), figure, cause.as_deref())
+    )]
     Inconsistent {
         /// Its file, if it is in one.
         file: Option<PathBuf>,

@@ -1,4 +1,5 @@
-//! The estimate of a history of another program: what it lacks is derived, its consistency is checked, its samples are filled.
+//! The estimate of a history of another program: what it lacks is derived, its consistency is checked, its samples are
+//! filled.
 
 use crate::failure::Failure;
 use crate::foreign::{Between, Checked, Completed, Lacks, Origin, Refusal, check};
@@ -21,8 +22,8 @@ pub struct Graded<const D: usize> {
     pub checked: Option<Checked>,
 }
 
-/// Derives the missing parts of a history of another program, checks its consistency, and analyses its steps. A history that
-/// is not consistent is refused, unless it is to be accepted.
+/// Derives the missing parts of a history of another program, checks its consistency, and analyses its steps. A history
+/// that is not consistent is refused, unless it is to be accepted.
 ///
 /// # Errors
 /// An inconsistent history; as [`run::estimate`].

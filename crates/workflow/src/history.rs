@@ -129,8 +129,8 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         Ok((contact, run::balance(&self.problem, &source).map_err(unread)?))
     }
 
-    /// Analyses the steps that the file holds. A history of another program is completed and checked before; `accept` an
-    /// inconsistent one.
+    /// Analyses the steps that the file holds. A history of another program is completed and checked before; `accept`
+    /// an inconsistent one.
     ///
     /// # Errors
     /// As [`grade::estimate`].

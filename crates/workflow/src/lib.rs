@@ -1,6 +1,6 @@
-//! From a case file to a report, for the command and for Python: the case language ([`case`]), runs ([`run`]), histories
-//! in files ([`history`]) and of other programs ([`foreign`], [`grade`]), the report and its JSON document ([`report`]), and the contents of files ([`info`]).
-//! Nothing here prints.
+//! From a case file to a report, for the command and for Python: the case language ([`case`]), runs ([`run`]),
+//! histories in files ([`history`]) and of other programs ([`foreign`], [`grade`]), the report and its JSON document
+//! ([`report`]), and the contents of files ([`info`]). Nothing here prints.
 
 pub mod case;
 pub mod choice;

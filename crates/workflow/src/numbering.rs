@@ -1,8 +1,8 @@
 //! The numbers of the solver and those of the user.
 //!
-//! Simulation and estimate work on the problem in a local order ([`Mesh::local_numbering`](percute_core::mesh::Mesh::local_numbering)).
-//! Histories, estimates, contact results and messages have the numbers of the problem that was stated. Nothing is copied if its
-//! order is local already.
+//! Simulation and estimate work on the problem in a local order
+//! ([`Mesh::local_numbering`](percute_core::mesh::Mesh::local_numbering)). Histories, estimates, contact results and
+//! messages have the numbers of the problem that was stated. Nothing is copied if its order is local already.
 
 use crate::failure::Failure;
 use percute_core::contact::ContactResults;

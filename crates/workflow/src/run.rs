@@ -1,6 +1,6 @@
-//! Runs: the simulation of a problem, with its estimate beside it or without, and the estimate of a history. The command
-//! and Python use the same functions. If the observer breaks, the results are those of the steps done. The problem is solved in
-//! a local order of its own; all results have the numbers of the problem that was stated.
+//! Runs: the simulation of a problem, with its estimate beside it or without, and the estimate of a history. The
+//! command and Python use the same functions. If the observer breaks, the results are those of the steps done. The
+//! problem is solved in a local order of its own; all results have the numbers of the problem that was stated.
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
@@ -95,8 +95,8 @@ impl Analysis {
 /// Simulates a problem.
 ///
 /// # Errors
-/// A start that the simulation refuses (its history file is removed), an unstable run, a step that cannot be stored; after
-/// these the file holds the steps done.
+/// A start that the simulation refuses (its history file is removed), an unstable run, a step that cannot be stored;
+/// after these the file holds the steps done.
 pub fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
@@ -106,7 +106,8 @@ pub fn simulate<const D: usize, const N: usize>(
     drive(&Ordered::new(problem), times, None, storage, &mut Discard, observer)
 }
 
-/// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the observer stops it.
+/// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the
+/// observer stops it.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -125,8 +126,8 @@ pub fn rebound<const D: usize, const N: usize>(
     if asked && left.is_none() { Ok(None) } else { until.found(left, touched).map(Some).map_err(refused) }
 }
 
-/// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact does not end
-/// in time; no case if the observer stops the search.
+/// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact
+/// does not end in time; no case if the observer stops the search.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -255,8 +256,8 @@ pub fn balance<const D: usize, const N: usize>(
     Ok(balancing.finish())
 }
 
-/// v_n (m/s) and a_n (m/s²) of all nodes at each step of a history, by the scheme or as the history brings them, each handed
-/// to `take`.
+/// v_n (m/s) and a_n (m/s²) of all nodes at each step of a history, by the scheme or as the history brings them, each
+/// handed to `take`.
 ///
 /// # Errors
 /// A step that cannot be read or does not fit.
@@ -285,8 +286,8 @@ impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send, const D: usize, const N: usi
     }
 }
 
-/// Hands chosen steps of a history, ascending, to `take`, in the numbers of the user. With `motion` they have v_n and a_n, by the
-/// scheme or as the history brings them.
+/// Hands chosen steps of a history, ascending, to `take`, in the numbers of the user. With `motion` they have v_n and
+/// a_n, by the scheme or as the history brings them.
 ///
 /// # Errors
 /// A step that cannot be read or does not fit, or what `take` returns.

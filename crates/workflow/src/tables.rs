@@ -183,8 +183,8 @@ impl Destination {
     /// The place of this name, and whether it can be written; `what` names the option.
     ///
     /// # Errors
-    /// A name that ends neither in `.csv` nor is a folder; an existing file, unless `force` replaces it; an input; a folder
-    /// that is missing or not writable.
+    /// A name that ends neither in `.csv` nor is a folder; an existing file, unless `force` replaces it; an input; a
+    /// folder that is missing or not writable.
     pub fn check(what: &'static str, path: &Path, inputs: &[(&str, &Path)], force: bool) -> Result<Self, Failure> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let found = match (path.is_dir(), ending.as_deref()) {

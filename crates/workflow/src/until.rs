@@ -10,7 +10,8 @@ use percute_core::time::{TimeError, TimeGrid};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// How long a run goes on after the last contact, over the time of a wave along the diagonal of the body, unless it is stated.
+/// How long a run goes on after the last contact, over the time of a wave along the diagonal of the body, unless it is
+/// stated.
 const AFTER: f64 = 2.0;
 
 /// A run that ends with the rebound of the body.
@@ -54,7 +55,8 @@ impl Until {
         TimeGrid::with_step(self.longest, self.step)
     }
 
-    /// The instants of the run, from the time (s) at which the first pass ended, if it did, and whether a plane was touched.
+    /// The instants of the run, from the time (s) at which the first pass ended, if it did, and whether a plane was
+    /// touched.
     pub(crate) fn found(&self, left: Option<f64>, touched: bool) -> Result<Found, TimeError> {
         let end = left.map_or(self.longest, |time| rounded_up(time).min(self.longest));
         let warning = left.is_none().then(|| self.not_ended(touched));

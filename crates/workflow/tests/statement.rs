@@ -186,7 +186,9 @@ proptest! {
     }
 
     #[test]
-    fn bars_come_back_bit_by_bit(length in 0.1..3.0_f64, elements in 2..9_usize, names in names(), seed in any::<u64>()) {
+    fn bars_come_back_bit_by_bit(
+        length in 0.1..3.0_f64, elements in 2..9_usize, names in names(), seed in any::<u64>(),
+    ) {
         let random = &mut Random::new(seed);
         let mesh = named(&BarMesh::uniform_bar(length, elements).unwrap(), &["start", "end"], &names);
         let problem = anything(mesh, &names, [-1.0], random);

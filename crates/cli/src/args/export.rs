@@ -13,7 +13,8 @@ pub struct ExportArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Steps to write, counted from 0 and separated by commas; negative ones count from the end [default: all]
-    #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["every", "times"])]
+    #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["every", "times"])]
     pub steps: Option<Vec<i64>>,
     /// Write every k-th step, and the last
     #[arg(long, value_name = "K", value_parser = steps, conflicts_with = "times")]
@@ -21,8 +22,8 @@ pub struct ExportArguments {
     /// Write the steps nearest to these times in s, separated by commas
     #[arg(long, value_name = "TIMES", value_parser = times)]
     pub times: Option<Times>,
-    /// Fields, separated by commas, of displacement, velocity, acceleration, reaction, stress, von_mises, pressure, error
-    /// [default: displacement, velocity, reaction, stress, von_mises, and error with --estimate]
+    /// Fields, separated by commas, of displacement, velocity, acceleration, reaction, stress, von_mises, pressure,
+    /// error [default: displacement, velocity, reaction, stress, von_mises, and error with --estimate]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub fields: Option<Vec<String>>,
     /// An estimate file of this history: adds the error of each element

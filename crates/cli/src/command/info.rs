@@ -47,8 +47,8 @@ fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
     match kind(file)? {
         Kind::History => each_dimension!(open(file)?, stored => {
             let (contact, balance) = stored.results()?;
-            let mesh = stored.problem.mesh();
-            place.write(&Results { mesh, contact: Some(&contact), balance: &balance, error: &[], by_element: &[] }, overwrite)
+            let (mesh, contact) = (stored.problem.mesh(), Some(&contact));
+            place.write(&Results { mesh, contact, balance: &balance, error: &[], by_element: &[] }, overwrite)
         }),
         Kind::Estimate => {
             let estimate = estimate_file::open(file)?;

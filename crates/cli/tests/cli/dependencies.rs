@@ -11,7 +11,8 @@ fn read(path: impl AsRef<Path>) -> String {
     std::fs::read_to_string(root().join(path)).unwrap()
 }
 
-/// core ← estimator ← io ← workflow ← presentation ← cli ← py, with exact at the side: no crate uses one further down the chain.
+/// core ← estimator ← io ← workflow ← presentation ← cli ← py, with exact at the side: no crate uses one further down
+/// the chain.
 #[test]
 fn dependencies_never_point_back() {
     let before_cli = ["percute-core", "percute-estimator", "percute-exact", "percute-io", "percute-workflow"];

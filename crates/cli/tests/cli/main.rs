@@ -11,6 +11,7 @@ mod examples;
 mod history;
 #[cfg(target_os = "linux")]
 mod interrupt;
+mod lines;
 #[cfg(target_os = "linux")]
 mod lost;
 #[cfg(target_os = "linux")]

@@ -6,8 +6,8 @@ use crate::history::{SinkError, State, StateSink};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
-/// Keeps the balance of energy and impulse of a history, as the integrator does beside its loop: the integrator's steps give
-/// its own numbers, bit by bit.
+/// Keeps the balance of energy and impulse of a history, as the integrator does beside its loop: the integrator's steps
+/// give its own numbers, bit by bit.
 #[derive(Clone, Debug)]
 pub struct Balancing<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

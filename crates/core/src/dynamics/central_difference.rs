@@ -24,8 +24,8 @@ pub enum SimulationError {
     #[error(
         "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the \
          energy exceeds ten times the sum of the initial energy and the work of loads and supports; take smaller time \
-         steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), or steps that do not jump \
-         from one to the next"
+         steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), or steps that do not \
+         jump from one to the next"
     )]
     Unstable {
         /// The step.
@@ -44,7 +44,8 @@ pub enum SimulationError {
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
         "node {node} starts {gap:.6e} m from its plane at {speed} m/s and touches in the first step of {step:.4e} s, \
-         too near to come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most {largest_step:.4e} s"
+         too near to come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most \
+         {largest_step:.4e} s"
     )]
     StartsTooNear {
         /// The node.
@@ -100,8 +101,9 @@ pub fn simulate<const D: usize, const N: usize>(
     run(&Dynamics::new(problem, times), sink, observer)
 }
 
-/// The same on so many threads, by default one for each core. The result does not depend on their number. A mesh that is
-/// too small for threads to pay runs on one, and so does one whose order has no strips, or if threads cannot be started.
+/// The same on so many threads, by default one for each core. The result does not depend on their number. A mesh that
+/// is too small for threads to pay runs on one, and so does one whose order has no strips, or if threads cannot be
+/// started.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -32,9 +32,9 @@ pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N
 
 /// Largest ω² of any element alone with its lumped mass (1/s²): a bound on that of the mesh.
 ///
-/// The eigenvalues of an element are those of Cᴷ Q Cᴷ on strains, Cᴷ the root of the law and Q = Σ∇φ_i ∇φ_iᵀ. In 2D, with
-/// the strains 1, diag(1, −1) and the shear over √2, they are those of a matrix of two rows and one more, which is not the
-/// largest: m = ½ tr Q and r, half the difference of the eigenvalues of Q, couple volume and shear.
+/// The eigenvalues of an element are those of Cᴷ Q Cᴷ on strains, Cᴷ the root of the law and Q = Σ∇φ_i ∇φ_iᵀ. In 2D,
+/// with the strains 1, diag(1, −1) and the shear over √2, they are those of a matrix of two rows and one more, which is
+/// not the largest: m = ½ tr Q and r, half the difference of the eigenvalues of Q, couple volume and shear.
 fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     let shape = problem.mesh().simplex().shape();
     let of_element = |element: ElementId| {

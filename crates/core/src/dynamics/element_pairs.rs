@@ -6,8 +6,8 @@ use crate::mesh::Strips;
 use crate::problem::Problem;
 use std::ops::Range;
 
-/// A sweep goes over so many pairs at a time. Few of them let the elements of a chunk hide the time in which the nodes of
-/// the next come from memory; fewer have more work at their ends.
+/// A sweep goes over so many pairs at a time. Few of them let the elements of a chunk hide the time in which the nodes
+/// of the next come from memory; fewer have more work at their ends.
 const CHUNK: usize = 32;
 
 /// Nodes are handled so many at a time, the numbers of a cache line.

@@ -8,8 +8,8 @@ use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepError, St
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
-/// Checks the steps of a history and computes their states, with the functions of the integrator in their order: its own
-/// steps give its own bits.
+/// Checks the steps of a history and computes their states, with the functions of the integrator in their order: its
+/// own steps give its own bits.
 #[derive(Clone, Debug)]
 pub struct Evaluation<'p, const D: usize, const N: usize> {
     dynamics: Dynamics<'p, D, N>,

@@ -22,12 +22,13 @@ pub(super) enum Motion<'a, const D: usize> {
         /// u_{n+1} (m).
         displacement: &'a [[f64; D]],
     },
-    /// u ← a M⁻¹f + b v + c u with these factors: a step of Lanczos. The kinetic energy is ½ u·M u instead, and there is no
-    /// momentum.
+    /// u ← a M⁻¹f + b v + c u with these factors: a step of Lanczos. The kinetic energy is ½ u·M u instead, and there
+    /// is no momentum.
     Combine([f64; 3]),
 }
 
-/// The sums over the nodes and elements of a strip, in lanes: component c of node i of a run has lane D i + c, modulo 8.
+/// The sums over the nodes and elements of a strip, in lanes: component c of node i of a run has lane D i + c, modulo
+/// 8.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sums<const D: usize> {
     /// Twice the strain energy (J).

@@ -60,8 +60,8 @@ impl<'a, const D: usize> Fields<'a, D> {
 }
 
 impl<const D: usize, const N: usize> Pass<'_, D, N> {
-    /// Moves all nodes, computes F_n − K u_n, and sums up nodes and elements; `fields` has one sum for each strip, those of
-    /// even strips first.
+    /// Moves all nodes, computes F_n − K u_n, and sums up nodes and elements; `fields` has one sum for each strip,
+    /// those of even strips first.
     pub(super) fn run(&self, fields: Fields<'_, D>) -> Sums<D> {
         let strips = self.stiffness.strips.count();
         let even = strips.div_ceil(2);

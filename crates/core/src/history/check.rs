@@ -31,7 +31,10 @@ pub enum StepError {
         needed: usize,
     },
     /// A field that some steps have and others have not.
-    #[error("step {step}: {field} is {}; give it at all steps or at none", if *.there { "there, but not at step 0" } else { "missing" })]
+    #[error(
+        "step {step}: {field} is {}; give it at all steps or at none",
+        if *.there { "there, but not at step 0" } else { "missing" }
+    )]
     Partly {
         /// The step.
         step: usize,

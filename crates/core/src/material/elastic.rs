@@ -200,8 +200,8 @@ mod tests {
             }
         }
 
-        /// Stress is the derivative of the strain energy, and the tangent that of the stress. A central difference is exact
-        /// for a quadratic and a linear function.
+        /// Stress is the derivative of the strain energy, and the tangent that of the stress. A central difference is
+        /// exact for a quadratic and a linear function.
         #[test]
         fn stress_and_tangent_are_derivatives(entries in proptest::array::uniform8(-1e-3..1e-3)) {
             let [a, b, c, d, e, f, g, h] = entries;
@@ -215,7 +215,8 @@ mod tests {
                 let scale = law.strain_energy(&after) + law.strain_energy(&before);
                 let slope = law.strain_energy(&after) - law.strain_energy(&before);
                 proptest::prop_assert!((slope - work).abs() <= 1e-13 * scale);
-                let (tangent, after, before) = (law.tangent(&gradient, &change), law.stress(&after), law.stress(&before));
+                let [after, before] = [after, before].map(|gradient| law.stress(&gradient));
+                let tangent = law.tangent(&gradient, &change);
                 for i in 0..2 {
                     for j in 0..2 {
                         let difference = after[i][j] - before[i][j];

@@ -44,30 +44,38 @@ pub enum MeshError {
     #[error("node {first} belongs to no element ({count} in all); remove it from the points, or name it in a cell")]
     UnusedNodes { first: usize, count: usize },
     /// Two nodes at the same place.
-    #[error("nodes {first} and {second} lie at one place ({} m apart): merge duplicate nodes into one", short(*.distance))]
+    #[error(
+        "nodes {first} and {second} lie at one place ({} m apart): merge duplicate nodes into one",
+        short(*.distance)
+    )]
     DuplicateNodes { first: usize, second: usize, distance: f64 },
     /// An element without volume.
     #[error(
-        "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a diameter of {} m); move one of \
-         them, or leave the element out", short(*.volume), short(*.diameter)
+        "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a \
+         diameter of {} m); move one of them, or leave the element out", short(*.volume), short(*.diameter)
     )]
     Degenerate { element: usize, nodes: Vec<usize>, volume: f64, diameter: f64 },
     /// A facet shared by more than two elements.
     #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), numbers(.elements))]
     NonManifoldFacet { nodes: Vec<usize>, elements: Vec<usize> },
     /// Two elements on the same side of a facet.
-    #[error("elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave one out", .elements[0], .elements[1])]
+    #[error(
+        "elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave \
+         one out",
+        .elements[0], .elements[1]
+    )]
     Overlap { elements: [usize; 2] },
     /// Two parts of the mesh that touch or overlap without a common node.
     #[error(
-        "elements {} and {} touch or overlap, but the parts of the mesh they belong to share no node: each would move through the other; \
-         let them share the nodes where they meet (mesh them as one, merge the nodes), or keep them apart", .elements[0], .elements[1]
+        "elements {} and {} touch or overlap, but the parts of the mesh they belong to share no node: each would move \
+         through the other; let them share the nodes where they meet (mesh them as one, merge the nodes), or keep them \
+         apart", .elements[0], .elements[1]
     )]
     PartsTouch { elements: [usize; 2] },
     /// A node where parts of the body touch at a point only.
     #[error(
-        "at node {node} the body is connected by a point only ({reached} of its {elements} elements are joined by edges); \
-         split the node or fill the gap"
+        "at node {node} the body is connected by a point only ({reached} of its {elements} elements are joined by \
+         edges); split the node or fill the gap"
     )]
     NonManifoldNode {
         node: usize,
@@ -78,8 +86,8 @@ pub enum MeshError {
     },
     /// A group refers to a facet that does not exist.
     #[error(
-        "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) of the \
-         boundary, nodes are counted from 0", facet(.nodes)
+        "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) \
+         of the boundary, nodes are counted from 0", facet(.nodes)
     )]
     NoSuchFacet { group: String, nodes: Vec<usize> },
     /// A group refers to an element that does not exist.

@@ -1,17 +1,17 @@
 //! An order of nodes and elements in which neighbours lie close together in memory.
 //!
-//! A sweep over the elements reads and writes their nodes. In a local order these are the nodes of a narrow front that stays in
-//! the cache; the elements of a strip touch consecutive nodes.
+//! A sweep over the elements reads and writes their nodes. In a local order these are the nodes of a narrow front that
+//! stays in the cache; the elements of a strip touch consecutive nodes.
 
 use super::Mesh;
 use crate::ids::{ElementId, NodeId};
 
-/// A front of so many nodes is always local: a nodal vector of theirs at eight levels takes 32 kB, as much as the first cache
-/// holds. In a shuffled mesh of 357 nodes a step takes 4 % longer than in order and the estimate 16 %.
+/// A front of so many nodes is always local: a nodal vector of theirs at eight levels takes 32 kB, as much as the first
+/// cache holds. In a shuffled mesh of 357 nodes a step takes 4 % longer than in order and the estimate 16 %.
 const SMALL: usize = 256;
 
-/// A front of 4√n of n nodes is local too: 180 kB to 500 kB for 655 thousand to 5 million elements, which the second-level
-/// cache holds. Rectangles in rows of up to 16 to 1 are within.
+/// A front of 4√n of n nodes is local too: 180 kB to 500 kB for 655 thousand to 5 million elements, which the
+/// second-level cache holds. Rectangles in rows of up to 16 to 1 are within.
 const FRONT: f64 = 4.0;
 
 /// Passes in search of a node at the periphery: the second or third finds no farther one on usual meshes.
@@ -66,8 +66,8 @@ impl Numbering {
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
-    /// A local numbering: nodes by breadth-first levels from the periphery of each part (Cuthill and McKee 1969), elements by
-    /// their nodes. `None` if the present order is local enough.
+    /// A local numbering: nodes by breadth-first levels from the periphery of each part (Cuthill and McKee 1969),
+    /// elements by their nodes. `None` if the present order is local enough.
     #[must_use]
     pub fn local_numbering(&self) -> Option<Numbering> {
         if self.is_local() {
@@ -84,8 +84,8 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         Some(Numbering { nodes, elements: elements.into_iter().map(|e| ElementId::new(e as usize)).collect() })
     }
 
-    /// Whether the nodes of each element are close together, and elements that follow each other too: no element has a node
-    /// further than a front behind its highest, or behind the lowest node of an element before.
+    /// Whether the nodes of each element are close together, and elements that follow each other too: no element has a
+    /// node further than a front behind its highest, or behind the lowest node of an element before.
     #[must_use]
     pub fn is_local(&self) -> bool {
         let front = SMALL.max((FRONT * (self.node_count() as f64).sqrt()) as usize);
@@ -106,8 +106,8 @@ pub(super) fn inverse(order: &[NodeId]) -> Vec<u32> {
     place
 }
 
-/// The numbers below `count` sorted by these ascending nodes: by the first in one sweep over all, then each few of the same
-/// first by the others. Those of the same nodes keep their order.
+/// The numbers below `count` sorted by these ascending nodes: by the first in one sweep over all, then each few of the
+/// same first by the others. Those of the same nodes keep their order.
 pub(super) fn sorted<const M: usize>(count: usize, node_count: usize, nodes: impl Fn(usize) -> [u32; M]) -> Vec<u32> {
     let mut end = vec![0_u32; node_count + 1];
     (0..count).for_each(|i| end[nodes(i)[0] as usize + 1] += 1);

@@ -4,12 +4,12 @@ use super::{ElementGroups, FacetGroups, Mesh, MeshError};
 use crate::simplex::Child;
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
-    /// The mesh with each element cut by the middles of its edges, a bar into two elements and a triangle into four, for
-    /// true errors against a nested mesh.
+    /// The mesh with each element cut by the middles of its edges, a bar into two elements and a triangle into four,
+    /// for true errors against a nested mesh.
     ///
-    /// Nodes keep their numbers, and the middles of the edges follow in the order of the nodes of these edges; element e of n
-    /// new ones each becomes the elements n e to n e + n − 1; groups name the same facets and elements as before. A
-    /// polygon stays the polygon it was.
+    /// Nodes keep their numbers, and the middles of the edges follow in the order of the nodes of these edges; element
+    /// e of n new ones each becomes the elements n e to n e + n − 1; groups name the same facets and elements as
+    /// before. A polygon stays the polygon it was.
     ///
     /// # Errors
     /// A mesh so fine that middles cannot be told from corners, or with more nodes than there are numbers.
@@ -41,7 +41,8 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         Self::checked(self.simplex, points, &cells, &facets, &elements)
     }
 
-    /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the nodes of this mesh.
+    /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the
+    /// nodes of this mesh.
     #[must_use]
     pub fn prolonged(&self, nodal: &[[f64; D]]) -> Vec<[f64; D]> {
         let middle = |[a, b]: [usize; 2]| std::array::from_fn(|c| 0.5 * (nodal[a][c] + nodal[b][c]));

@@ -1,8 +1,8 @@
 //! Nested meshes that are finer in some places, by bisection of the longest edges.
 //!
-//! M.-C. Rivara, Algorithms for refining triangular grids suitable for adaptive and multigrid techniques, Int. J. Numer. Meth.
-//! Eng. 20 (1984) 745–756: the smallest angle of a triangle is at least half of that of the triangle it was cut from, however
-//! often it is refined.
+//! M.-C. Rivara, Algorithms for refining triangular grids suitable for adaptive and multigrid techniques, Int. J.
+//! Numer. Meth. Eng. 20 (1984) 745–756: the smallest angle of a triangle is at least half of that of the triangle it
+//! was cut from, however often it is refined.
 
 use super::{ElementGroups, FacetGroups, Mesh, MeshError};
 use crate::ids::ElementId;
@@ -18,12 +18,12 @@ struct Cuts {
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
-    /// The mesh with each chosen element cut by the middles of its edges, a bar into two elements and a triangle into four, and as
-    /// many other elements as a conforming mesh needs.
+    /// The mesh with each chosen element cut by the middles of its edges, a bar into two elements and a triangle into
+    /// four, and as many other elements as a conforming mesh needs.
     ///
-    /// An element is cut at its longest edge first, and its parts at the others. Nodes keep their numbers, and the middles of the
-    /// edges follow in the order of the nodes of these edges. The parts of an element take its place in the order of the elements.
-    /// Groups name the same facets and elements as before.
+    /// An element is cut at its longest edge first, and its parts at the others. Nodes keep their numbers, and the
+    /// middles of the edges follow in the order of the nodes of these edges. The parts of an element take its place in
+    /// the order of the elements. Groups name the same facets and elements as before.
     ///
     /// # Errors
     /// As for [`Mesh::refined`].
@@ -86,7 +86,8 @@ impl Cuts {
         pairs.filter_map(|pair| self.edges.binary_search(&pair).ok())
     }
 
-    /// Cuts the longest edge of each element that is cut. Edges become longer from element to element, so that this ends.
+    /// Cuts the longest edge of each element that is cut. Edges become longer from element to element, so that this
+    /// ends.
     fn close(&self, of_cells: &[&[usize]], cut: &mut [bool]) {
         let mut changed = true;
         while changed {
@@ -180,7 +181,8 @@ mod tests {
         }
     }
 
-    /// The parts of an element lie in it and fill it; nodes keep their numbers; a group covers the same edges and elements.
+    /// The parts of an element lie in it and fill it; nodes keep their numbers; a group covers the same edges and
+    /// elements.
     #[test]
     fn parts_are_nested() {
         let coarse = fan();
@@ -222,8 +224,8 @@ mod tests {
     fn few_other_elements_are_cut() {
         let coarse = TriangleMesh::rectangle(1.0, 1.0, 8, 8).unwrap();
         let fine = coarse.refined_where(|e| e.index() == 54).unwrap();
-        // Its own 3 new parts, the 2 at its short sides cut in 3 each, at their hypotenuse and then at the side, which are the
-        // longest edges of 2 more elements; the one at its hypotenuse in 2.
+        // Its own 3 new parts, the 2 at its short sides cut in 3 each, at their hypotenuse and then at the side, which
+        // are the longest edges of 2 more elements; the one at its hypotenuse in 2.
         assert_eq!(fine.element_count(), coarse.element_count() + 3 + 2 * 2 + 2 + 1);
     }
 

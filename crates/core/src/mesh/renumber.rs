@@ -37,8 +37,8 @@ impl NewNumbers {
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
-    /// The mesh under new numbers, and those by the old ones: as if it were made from the renumbered points, elements and
-    /// groups. Each element keeps the order of its nodes.
+    /// The mesh under new numbers, and those by the old ones: as if it were made from the renumbered points, elements
+    /// and groups. Each element keeps the order of its nodes.
     pub(crate) fn renumbered(&self, numbering: &Numbering) -> (Self, NewNumbers) {
         let (nodes, elements) = (numbering.nodes(), numbering.elements());
         let mut new = NewNumbers { node: inverse(nodes), element: vec![0; elements.len()], facet: Vec::new() };

@@ -58,8 +58,8 @@ impl Stars {
         self.links.len()
     }
 
-    /// The stars after renumbering, which keeps the order around each node: `nodes` has the old number of each new node. A
-    /// closed chain begins at its lowest element.
+    /// The stars after renumbering, which keeps the order around each node: `nodes` has the old number of each new
+    /// node. A closed chain begins at its lowest element.
     pub(super) fn renumbered(&self, nodes: &[NodeId], element: &[u32], facet: &[u32]) -> Self {
         let mut stars = Self {
             offsets: Vec::with_capacity(self.offsets.len()),

@@ -8,9 +8,9 @@ const FEWEST: usize = 2048;
 /// … and at least this fraction of them: more strips only have more common nodes.
 const MOST_STRIPS: usize = 64;
 
-/// A mesh in its present order, cut into strips: blocks of consecutive elements of which only neighbours share nodes, and
-/// whose nodes are ranges in ascending order. All even strips can be worked on at the same time, each on the slice of
-/// its nodes, and then all odd ones. The cut depends on the mesh alone. A mesh without such an order is one strip.
+/// A mesh in its present order, cut into strips: blocks of consecutive elements of which only neighbours share nodes,
+/// and whose nodes are ranges in ascending order. All even strips can be worked on at the same time, each on the slice
+/// of its nodes, and then all odd ones. The cut depends on the mesh alone. A mesh without such an order is one strip.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strips {
     /// First element of each strip, and the number of elements.
@@ -83,8 +83,8 @@ impl Strips {
         self.nodes[strip][0] as usize..self.nodes[strip][1] as usize
     }
 
-    /// The part of that range which lies in no range of a neighbour. Together with the ranges of all strips of the other
-    /// parity these parts hold each node once.
+    /// The part of that range which lies in no range of a neighbour. Together with the ranges of all strips of the
+    /// other parity these parts hold each node once.
     #[inline]
     #[must_use]
     pub fn own_nodes(&self, strip: usize) -> Range<usize> {

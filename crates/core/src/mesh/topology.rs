@@ -47,7 +47,8 @@ fn is_even<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeI
     let (cell, k) = (&cells[side.1.index()], usize::from(side.2));
     let node = |p: usize| cell[(k + 1 + p) % N];
     let inversions = (0..D).map(|p| (0..p).filter(|&q| node(q) > node(p)).count()).sum::<usize>();
-    // The nodes follow each other from k + 1 on: a rotation of the element's by k + 1 places, each of them D transpositions.
+    // The nodes follow each other from k + 1 on: a rotation of the element's by k + 1 places, each of them D
+    // transpositions.
     (inversions + k * D).is_multiple_of(2)
 }
 

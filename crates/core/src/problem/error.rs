@@ -67,8 +67,8 @@ pub enum Cause {
     EmptyGroup { name: String, of: GroupOf },
     /// Waves faster than light.
     #[error(
-        "is {density:?} kg/m³; with a Young's modulus of {} Pa waves would run at {speed:.3e} m/s, faster than light: did you \
-         mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa", short(*.young)
+        "is {density:?} kg/m³; with a Young's modulus of {} Pa waves would run at {speed:.3e} m/s, faster than light: \
+         did you mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa", short(*.young)
     )]
     FasterThanLight { density: f64, young: f64, speed: f64 },
     /// More materials or body forces than can be told apart.
@@ -76,7 +76,8 @@ pub enum Cause {
     TooMany { count: usize, most: usize },
     /// No material at all, or not on all elements.
     #[error(
-        "element {element} has no material ({count} such elements); give a material without a group, or one for each group"
+        "element {element} has no material ({count} such elements); give a material without a group, or one for each \
+         group"
     )]
     NoMaterial { element: usize, count: usize },
     /// Two materials on one element.
@@ -105,14 +106,14 @@ pub enum Cause {
     NoComponent,
     /// Nothing is left to move.
     #[error(
-        "the supports prescribe every component of every node; nothing is left to simulate: remove a support, name fewer of \
-         its components, or refine the mesh"
+        "the supports prescribe every component of every node; nothing is left to simulate: remove a support, name \
+         fewer of its components, or refine the mesh"
     )]
     NoFreedom,
     /// Two supports that disagree.
     #[error(
-        "component {component} of node {node} is already prescribed by support {first} with another motion; make the two \
-         agree, or take the node out of one of the groups"
+        "component {component} of node {node} is already prescribed by support {first} with another motion; make the \
+         two agree, or take the node out of one of the groups"
     )]
     ConflictingSupports {
         node: usize,
@@ -122,14 +123,14 @@ pub enum Cause {
     },
     /// The initial velocity disagrees with a support.
     #[error(
-        "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s by a support at t = 0; \
-         make the two agree, by the initial velocity or by the velocity of the support"
+        "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s by a support \
+         at t = 0; make the two agree, by the initial velocity or by the velocity of the support"
     )]
     InconsistentStart { node: usize, component: char, initial: f64, prescribed: f64 },
     /// A load on a supported component.
     #[error(
-        "the {} is loaded along {component}, where a support prescribes its motion; take it out of one of the two groups, or \
-         leave {component} to the load or to the support", facet(.nodes)
+        "the {} is loaded along {component}, where a support prescribes its motion; take it out of one of the two \
+         groups, or leave {component} to the load or to the support", facet(.nodes)
     )]
     LoadedSupport { component: char, nodes: Vec<usize> },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
@@ -147,14 +148,15 @@ pub enum Cause {
     },
     /// The nodes that face a plane cannot move towards it.
     #[error(
-        "nothing can touch the plane: supports prescribe the motion towards it of all nodes that face it, as of node {node}; \
-         leave that component free, or remove the plane"
+        "nothing can touch the plane: supports prescribe the motion towards it of all nodes that face it, as of node \
+         {node}; leave that component free, or remove the plane"
     )]
     HeldNodes { node: usize },
     /// A plane that nothing can touch.
     #[error(
-        "nothing in group \"{group}\" faces the plane: the outward normal of the group is {}, and the normal of the plane, from the plane to the body, \
-         is {}; groups that face the plane: {}", vector(.outward), vector(.normal), named(.facing)
+        "nothing in group \"{group}\" faces the plane: the outward normal of the group is {}, and the normal of the \
+         plane, from the plane to the body, is {}; groups that face the plane: {}",
+        vector(.outward), vector(.normal), named(.facing)
     )]
     NothingFaces { group: String, outward: Box<[f64]>, normal: Box<[f64]>, facing: Box<[String]> },
     /// A facet or node that could touch two planes.
@@ -175,14 +177,14 @@ pub enum Cause {
     Behind { node: usize, depth: f64, reversed: Vec<f64> },
     /// A node behind the plane.
     #[error(
-        "the plane cuts through the body: node {node} starts {} m behind it; move the plane by more than that against its \
-         normal, to {} or beyond", short(*.depth), vector(.clear)
+        "the plane cuts through the body: node {node} starts {} m behind it; move the plane by more than that against \
+         its normal, to {} or beyond", short(*.depth), vector(.clear)
     )]
     Penetrates { node: usize, depth: f64, clear: Vec<f64> },
     /// A node on the plane that moves into it.
     #[error(
-        "node {node} starts on the plane (gap {} m) and moves into it at {speed} m/s; leave a gap before the impact, of more than a \
-         quarter of this speed times the first time step", short(*.gap)
+        "node {node} starts on the plane (gap {} m) and moves into it at {speed} m/s; leave a gap before the impact, \
+         of more than a quarter of this speed times the first time step", short(*.gap)
     )]
     StrikesAtStart { node: usize, gap: f64, speed: f64 },
 }

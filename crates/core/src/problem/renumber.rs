@@ -4,8 +4,8 @@ use super::{BodyLoad, FacetLoad, PrescribedComponent, Problem};
 use crate::mesh::Numbering;
 
 impl<const D: usize, const N: usize> Problem<D, N> {
-    /// The problem on the renumbered mesh. The nodes of the contact surface keep their order, so that rows of reactions and
-    /// touching status are those of either problem.
+    /// The problem on the renumbered mesh. The nodes of the contact surface keep their order, so that rows of reactions
+    /// and touching status are those of either problem.
     #[must_use]
     pub fn renumbered(&self, numbering: &Numbering) -> Self {
         let (mesh, new) = self.mesh.renumbered(numbering);

@@ -9,7 +9,8 @@ pub enum ByDimension<B, P> {
     Plane(P),
 }
 
-/// Does the same with a [`ByDimension`](crate::simplex::ByDimension) in each dimension: `each_dimension!(any, it => it.count())`.
+/// Does the same with a [`ByDimension`](crate::simplex::ByDimension) in each dimension:
+/// `each_dimension!(any, it => it.count())`.
 #[macro_export]
 macro_rules! each_dimension {
     ($any:expr, $it:pat => $body:expr) => {

@@ -29,8 +29,8 @@ pub enum Shape {
     Triangle,
 }
 
-/// Corners of a child in a refined element: a pair of equal nodes is that node, a pair of different nodes the middle between
-/// them.
+/// Corners of a child in a refined element: a pair of equal nodes is that node, a pair of different nodes the middle
+/// between them.
 pub type Child<const N: usize> = [[usize; 2]; N];
 
 mod sealed {
@@ -63,8 +63,8 @@ pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send
     /// The facets that a facet is cut into by the middles of its edges.
     fn facet_children(&self) -> &'static [Child<D>];
 
-    /// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each piece on
-    /// which the linear `switch` with these nodal values keeps its sign.
+    /// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each
+    /// piece on which the linear `switch` with these nodal values keeps its sign.
     fn facet_mean(&self, switch: &[f64; D], quantity: &dyn Fn(&[f64; D]) -> f64) -> f64;
 
     /// Volume and gradients of the element with these corners, positively oriented.

@@ -154,7 +154,8 @@ proptest! {
         corners.sort_unstable();
         corners.dedup();
         prop_assume!(corners.len() == 3 * triangles.len());
-        let bodies: Vec<Body> = triangles.iter().map(|t| (t.map(|p| p.map(|x| x as f64)).to_vec(), vec![[0, 1, 2]])).collect();
+        let points = |t: &[[i64; 2]; 3]| t.map(|p| p.map(|x| x as f64)).to_vec();
+        let bodies: Vec<Body> = triangles.iter().map(|t| (points(t), vec![[0, 1, 2]])).collect();
         let meet = |i: usize, j: usize| intersect(&triangles[i], &triangles[j]);
         let expected = (0..triangles.len()).any(|j| (0..j).any(|i| meet(i, j)));
         match together(&bodies) {

@@ -84,8 +84,8 @@ fn the_exact_bar_is_pressed_by_rho_c_v_for_two_transits() {
     assert_eq!((node.friction_energy, node.impulse), (0.0, results.total[count].impulse));
 }
 
-/// A block that comes down askew on a tilted plane under steps that change all the time: the impulse is what its momentum
-/// changed by, at every t_n.
+/// A block that comes down askew on a tilted plane under steps that change all the time: the impulse is what its
+/// momentum changed by, at every t_n.
 #[test]
 fn the_impulse_is_the_change_of_momentum() {
     let problem = thrown(rotated(&random_rectangle(0.05, 0.04, 8, 3).unwrap(), 0.05).unwrap(), [200.0, -200.0], 0.3);
@@ -184,8 +184,8 @@ fn a_block_that_cannot_slide_sticks() {
     assert!(steps(&results).sliding_velocity.iter().all(|v| v[0].abs() < STILL));
 }
 
-/// The friction energies of the nodes add up to that of the balance; obstacles add up to the total; the areas to the sides
-/// that may touch.
+/// The friction energies of the nodes add up to that of the balance; obstacles add up to the total; the areas to the
+/// sides that may touch.
 #[test]
 fn the_parts_add_up() {
     let mesh = TriangleMesh::rectangle(0.05, 0.04, 6, 5).unwrap();
@@ -251,8 +251,8 @@ fn the_mirror_image_has_mirrored_results() {
     }
 }
 
-/// Half a body on its plane of symmetry: the whole has twice its forces, areas and energies. The node on that plane sticks in
-/// both.
+/// Half a body on its plane of symmetry: the whole has twice its forces, areas and energies. The node on that plane
+/// sticks in both.
 #[test]
 fn half_a_body_has_half_the_results() {
     let block = |width: f64, nx: usize| TriangleMesh::rectangle(width, 0.03, nx, 6).unwrap();

@@ -16,7 +16,8 @@ use percute_testkit::random_rectangle;
 const GRADIENT: [[f64; 2]; 2] = [[2e-4, -5e-4], [3e-4, -1e-4]];
 const TRANSLATION: [f64; 2] = [3.0, -2.0];
 
-/// Strains of a translated body lose the digits of the displacements: 3 m in 2e-16 over 2e-3 m of an element, over 1e-4.
+/// Strains of a translated body lose the digits of the displacements: 3 m in 2e-16 over 2e-3 m of an element, over
+/// 1e-4.
 const ROUNDING: f64 = 1e-8;
 
 fn linear(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
@@ -28,7 +29,8 @@ fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> impl Ite
     (0..problem.mesh().element_count()).map(ElementId::new)
 }
 
-/// Isotropic elasticity in three dimensions, with ε_zz = 0 in plane strain, and −ν/(1 − ν)(ε_xx + ε_yy) in plane stress.
+/// Isotropic elasticity in three dimensions, with ε_zz = 0 in plane strain, and −ν/(1 − ν)(ε_xx + ε_yy) in plane
+/// stress.
 fn in_space(young: f64, poisson: f64, strain: bool) -> [[f64; 3]; 3] {
     let [[xx, a], [b, yy]] = GRADIENT;
     let zz = if strain { 0.0 } else { -poisson / (1.0 - poisson) * (xx + yy) };

@@ -171,7 +171,8 @@ fn a_local_order_is_kept() {
     assert!(BarMesh::uniform_bar(1.0, 500).unwrap().local_numbering().is_none());
 }
 
-/// A shuffled square of 40×40 cells: levels are diagonals or rows of at most 41 nodes, and an element spans two of them.
+/// A shuffled square of 40×40 cells: levels are diagonals or rows of at most 41 nodes, and an element spans two of
+/// them.
 #[test]
 fn a_shuffled_mesh_becomes_local() {
     let mesh = TriangleMesh::rectangle(1.0, 1.0, 40, 40).unwrap();

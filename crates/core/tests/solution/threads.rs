@@ -11,7 +11,8 @@ use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use std::ops::ControlFlow;
 
-/// A block of 22 000 elements that strikes a plane with friction, held at its left and pulled down: every kind of force.
+/// A block of 22 000 elements that strikes a plane with friction, held at its left and pulled down: every kind of
+/// force.
 fn block() -> (TriangleProblem, TimeGrid) {
     let mesh = TriangleMesh::rectangle(0.05, 0.04, 110, 100).unwrap();
     assert!(Strips::new(mesh.cells()).count() > 8);

@@ -1,7 +1,7 @@
 //! The star of a boundary node, cut into sub-triangles that become smaller towards the node.
 //!
-//! Each element is cut at its centroid. The triangles between the node and the other points of the cut are cut into rings and
-//! a core. Rings of one ratio of radii are similar, and so are their sub-triangles.
+//! Each element is cut at its centroid. The triangles between the node and the other points of the cut are cut into
+//! rings and a core. Rings of one ratio of radii are similar, and so are their sub-triangles.
 
 /// The side of its layer on which facet 0 of a sub-triangle lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,20 +14,22 @@ pub(super) enum Arc {
     Inner,
 }
 
-/// A sub-triangle, counterclockwise. The sub-triangles of a ring or of the core form a chain: each has an edge in common with
-/// the one before (its left side), one with the next (its right side), and one with another layer (its arc).
+/// A sub-triangle, counterclockwise. The sub-triangles of a ring or of the core form a chain: each has an edge in
+/// common with the one before (its left side), one with the next (its right side), and one with another layer (its
+/// arc).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SubTriangle {
     /// Places from the node (m), in a layer of outer radius 1.
     pub(super) corners: [[f64; 2]; 3],
-    /// Position among the sectors between rays, of which an element has two; the first in a sub-triangle at the outline.
+    /// Position among the sectors between rays, of which an element has two; the first in a sub-triangle at the
+    /// outline.
     pub(super) sector: usize,
     pub(super) arc: Arc,
 }
 
 impl SubTriangle {
-    /// Its facets at its left and right side and at its arc, and whether they run against the direction of the edge, which is
-    /// that of the other sub-triangle there. At the outline: the arcs of two sectors, and the outline.
+    /// Its facets at its left and right side and at its arc, and whether they run against the direction of the edge,
+    /// which is that of the other sub-triangle there. At the outline: the arcs of two sectors, and the outline.
     pub(super) fn sides(&self) -> [(usize, bool); 3] {
         match self.arc {
             Arc::Outline => [(2, true), (1, true), (0, false)],

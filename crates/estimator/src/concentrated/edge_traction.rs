@@ -3,8 +3,8 @@
 use super::HATS;
 use nalgebra::DMatrix;
 
-/// A traction along an edge, from the node of a star (place 0) to the other node (place 1): linear between break points,
-/// zero before the first and after the last.
+/// A traction along an edge, from the node of a star (place 0) to the other node (place 1): linear between break
+/// points, zero before the first and after the last.
 ///
 /// Each break point is a place and the value there, times the length of the edge: its integral over places is its
 /// resultant. Where it jumps, two break points have one place.
@@ -25,8 +25,8 @@ impl EdgeTraction<2> {
 }
 
 impl<const P: usize> EdgeTraction<P> {
-    /// Moments with the shape functions of both nodes, the near one first. Their sum is the resultant; the second is the
-    /// moment about the node.
+    /// Moments with the shape functions of both nodes, the near one first. Their sum is the resultant; the second is
+    /// the moment about the node.
     pub(crate) fn moments(&self) -> [f64; 2] {
         let (mut resultant, mut far) = (0.0, 0.0);
         for span in self.0.windows(2) {
@@ -74,7 +74,8 @@ pub(super) fn radii<const P: usize>(tractions: &[OnEdge<P>]) -> Vec<f64> {
     radii
 }
 
-/// Forces of balanced tractions on a piece of the first and the last edge: two components at its inner and its outer end.
+/// Forces of balanced tractions on a piece of the first and the last edge: two components at its inner and its outer
+/// end.
 pub(super) fn forces<const P: usize>(piece: [f64; 2], tractions: &[OnEdge<P>]) -> [DMatrix<f64>; 2] {
     let mut forces = [(); 2].map(|()| DMatrix::zeros(4, 2 * tractions.len()));
     for (k, (edge, traction)) in tractions.iter().enumerate() {

@@ -178,8 +178,8 @@ pub(super) fn block(panel: &Panel, row: usize, column: usize) -> Matrix4<f64> {
 
 /// The factor of a pivot, with no displacement of the components that are held.
 ///
-/// In an almost incompressible or slender sub-triangle the pivot is almost singular: products with its inverse would lose twice as many
-/// digits as solutions with its factor.
+/// In an almost incompressible or slender sub-triangle the pivot is almost singular: products with its inverse would
+/// lose twice as many digits as solutions with its factor.
 #[derive(Clone, Debug)]
 struct Pivot {
     lower: Matrix4<f64>,

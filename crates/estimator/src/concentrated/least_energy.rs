@@ -1,7 +1,7 @@
 //! The tractions between sub-triangles that make the energy least.
 //!
-//! They are those of the displacements of all edges under which the tractions of both sides of each inner edge cancel. Each ring
-//! is first reduced to its arcs; then the arcs are eliminated from the node to the outline.
+//! They are those of the displacements of all edges under which the tractions of both sides of each inner edge cancel.
+//! Each ring is first reduced to its arcs; then the arcs are eliminated from the node to the outline.
 
 use super::cut_star::{Arc, CutStar};
 use super::layer::{Layer, LayerState, block};
@@ -185,8 +185,8 @@ fn factor(matrix: DMatrix<f64>) -> DMatrix<f64> {
     Cholesky::new(matrix).map_or_else(|| DMatrix::identity(size, size), Cholesky::unpack)
 }
 
-/// Adds the stiffness of the triangles at the outline, which is free. Springs hold the motions of the whole star in which
-/// nothing else does work; the loads balance, so that springs carry nothing.
+/// Adds the stiffness of the triangles at the outline, which is free. Springs hold the motions of the whole star in
+/// which nothing else does work; the loads balance, so that springs carry nothing.
 fn add_outline(stiffness: &mut DMatrix<f64>, outline: &[Panel], free: &[usize]) {
     for (k, panel) in outline.iter().enumerate() {
         let mut panel = panel.clone();

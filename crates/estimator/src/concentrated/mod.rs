@@ -18,8 +18,8 @@ pub(crate) use star_stress::{StarElement, StarResiduals, StarStress};
 /// Widths of narrow hats: a half of the edge, a quarter, …
 pub(crate) const HATS: usize = 10;
 
-/// The place of a component of a unit hat in the forms of a star; the width of the hat is that of the edge over two to the
-/// power of `halvings`.
+/// The place of a component of a unit hat in the forms of a star; the width of the hat is that of the edge over two to
+/// the power of `halvings`.
 pub(crate) fn place(edge: usize, halvings: usize, component: usize) -> usize {
     2 * (HATS * edge + halvings - 1) + component
 }

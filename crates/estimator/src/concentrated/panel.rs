@@ -11,8 +11,8 @@ pub(super) const LOADS: usize = 12;
 /// A square matrix of the loads of a sub-triangle.
 pub(super) type Square = SMatrix<f64, LOADS, LOADS>;
 
-/// A sub-triangle. Loads and displacements are side by side in the order of [`SubTriangle::sides`], and on each side in the
-/// direction of its edge. The displacement of a side is the dual of its loads: its product with them is their work.
+/// A sub-triangle. Loads and displacements are side by side in the order of [`SubTriangle::sides`], and on each side in
+/// the direction of its edge. The displacement of a side is the dual of its loads: its product with them is their work.
 #[derive(Clone, Debug)]
 pub(super) struct Panel {
     pub(super) triangle: SubTriangle,
@@ -92,7 +92,8 @@ pub(super) fn tractions(loads: &[f64; LOADS]) -> Loading<2, 3> {
     Loading { traction, volume: [[0.0; 2]; 3] }
 }
 
-/// The resultants of the loads on the facets of a triangle: two forces, and the moment about its first corner over its size.
+/// The resultants of the loads on the facets of a triangle: two forces, and the moment about its first corner over its
+/// size.
 fn resultants(corners: &[[f64; 2]; 3]) -> SMatrix<f64, 3, LOADS> {
     let size = (0..3).map(|k| (corners[k][0] - corners[(k + 1) % 3][0]).hypot(corners[k][1] - corners[(k + 1) % 3][1]));
     let size = size.fold(0.0, f64::max);

@@ -73,8 +73,8 @@ pub(crate) struct ShapeCosts<'a> {
 }
 
 impl<'a> ShapeCosts<'a> {
-    /// `direction` is the force over its normal part, `compliance` 1 over plane modulus and thickness (m/N), `energy` the form
-    /// ∫τ:K⁻¹τ over the star.
+    /// `direction` is the force over its normal part, `compliance` 1 over plane modulus and thickness (m/N), `energy`
+    /// the form ∫τ:K⁻¹τ over the star.
     pub(crate) fn new(
         direction: [f64; 2],
         compliance: f64,
@@ -97,8 +97,8 @@ impl<'a> ShapeCosts<'a> {
         Self { gaps, tributary, direction, energy, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
-    /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored shapes may
-    /// cost the same: rounding must not choose between them, and the best symmetric one is taken.
+    /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored
+    /// shapes may cost the same: rounding must not choose between them, and the best symmetric one is taken.
     pub(crate) fn shape(&self, normal: f64) -> TractionShape {
         let halvings = || 0..=HATS;
         if self.gaps.len() == 1 {
@@ -148,15 +148,15 @@ impl<'a> ShapeCosts<'a> {
         shape.iter().enumerate().map(product).sum()
     }
 
-    /// By how much the node is closer to its plane, of this normal, than the mean of its traction, with the local compliance
-    /// (m): from 0 on, which is at the narrowest traction.
+    /// By how much the node is closer to its plane, of this normal, than the mean of its traction, with the local
+    /// compliance (m): from 0 on, which is at the narrowest traction.
     pub(crate) fn approach(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
         let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
         self.gap(shape) - least * far(HATS) + normal * self.local(shape, plane, self.direction)
     }
 
-    /// Local compliance (m/N): displacement of a traction along a direction under a unit force along another one, beyond that of
-    /// its linear equivalent.
+    /// Local compliance (m/N): displacement of a traction along a direction under a unit force along another one,
+    /// beyond that of its linear equivalent.
     pub(crate) fn local(&self, shape: &TractionShape, along: [f64; 2], force: [f64; 2]) -> f64 {
         let narrow = || shape.iter().enumerate().filter(|(_, hat)| hat.halvings > 0);
         let pair = |(e, a): (usize, &Hat), (f, b): (usize, &Hat)| {

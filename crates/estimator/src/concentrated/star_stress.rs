@@ -1,9 +1,10 @@
 //! The stress of concentrated tractions in the star of a node, of least energy.
 //!
-//! The traction of a hat less the linear traction with the same resultant and moment balances itself. It is balanced in the
-//! whole star, on sub-triangles that carry the macro-element's stress: balanced in one element it would cost many times the
-//! energy. Unknown are the linear tractions on the edges between sub-triangles. They minimise the complementary energy under
-//! equilibrium of each sub-triangle. The same holds for any traction that is linear between break points.
+//! The traction of a hat less the linear traction with the same resultant and moment balances itself. It is balanced in
+//! the whole star, on sub-triangles that carry the macro-element's stress: balanced in one element it would cost many
+//! times the energy. Unknown are the linear tractions on the edges between sub-triangles. They minimise the
+//! complementary energy under equilibrium of each sub-triangle. The same holds for any traction that is linear between
+//! break points.
 
 use super::HATS;
 use super::cut_star::{CutStar, SubTriangle};
@@ -43,8 +44,8 @@ pub(crate) struct StarStress {
     energies: Vec<Symmetric>,
     /// Thickness of each element (m).
     extents: Vec<f64>,
-    /// ∫σ:K⁻¹τ in each element, one row for each load of the element, with σ the stress that balances it: tractions, then
-    /// Γ_DA − f_d.
+    /// ∫σ:K⁻¹τ in each element, one row for each load of the element, with σ the stress that balances it: tractions,
+    /// then Γ_DA − f_d.
     pub(crate) products: Vec<DMatrix<f64>>,
     /// How far they are from equilibrium, relative to the largest term.
     pub(crate) residuals: StarResiduals,
@@ -59,12 +60,13 @@ pub(crate) struct StarResiduals {
     pub(crate) stress: StressResiduals,
 }
 
-/// Rounding that one refinement can balance leaves less, at most 2e-13, and forms that are definite. From 1e-11 on, some energies are
-/// negative.
+/// Rounding that one refinement can balance leaves less, at most 2e-13, and forms that are definite. From 1e-11 on,
+/// some energies are negative.
 const BALANCED: f64 = 1e-12;
 
 impl StarResiduals {
-    /// Whether rounding leaves stresses that balance: the closer ν is to ½, and the more slender elements are, the more digits are lost.
+    /// Whether rounding leaves stresses that balance: the closer ν is to ½, and the more slender elements are, the more
+    /// digits are lost.
     pub(crate) fn balanced(&self) -> bool {
         let StressResiduals { divergence, edges, inner } = self.stress;
         [self.resultants, divergence, edges, inner].iter().all(|residual| *residual <= BALANCED)

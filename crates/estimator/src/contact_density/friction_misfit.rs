@@ -6,8 +6,8 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
 /// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
-/// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors are
-/// linear along the edge.
+/// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors
+/// are linear along the edge.
 pub(crate) fn misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     facet: &ContactFacet<D>,

@@ -1,4 +1,5 @@
-//! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact law.
+//! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact
+//! law.
 
 mod friction_misfit;
 mod hat;

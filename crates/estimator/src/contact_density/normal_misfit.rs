@@ -139,8 +139,8 @@ impl<const D: usize> OffContact<D> {
         Self { acting: NormalForces::new(problem, acting), sudden: NormalForces::new(problem, sudden) }
     }
 
-    /// Adds a step to those of an interval. Energies are measured at the ends of the interval and in the middle of its first step:
-    /// steps between do not need the acting force.
+    /// Adds a step to those of an interval. Energies are measured at the ends of the interval and in the middle of its
+    /// first step: steps between do not need the acting force.
     pub(crate) fn add_to(self, steps: &mut Vec<Self>) {
         if let [_, .., last] = &mut steps[..] {
             last.acting = NormalForces::NONE;

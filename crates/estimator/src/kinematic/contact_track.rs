@@ -9,8 +9,8 @@ use crate::scratch_file::ScratchError;
 
 /// Normal velocity (m/s) and gap (m) of a candidate node at the half-step instants known so far.
 ///
-/// They are stored with those of the other nodes. Since the last known instant the store has the target velocity instead, and
-/// the half step that ends there (s).
+/// They are stored with those of the other nodes. Since the last known instant the store has the target velocity
+/// instead, and the half step that ends there (s).
 #[derive(Clone, Debug)]
 pub(crate) struct ContactTrack {
     /// Its number in the store.
@@ -34,7 +34,8 @@ pub(crate) struct ContactTrack {
     between_instants: f64,
 }
 
-/// Instants of a window that ends with the run which are worked on at once; few in tests, so that their windows have some pieces.
+/// Instants of a window that ends with the run which are worked on at once; few in tests, so that their windows have
+/// some pieces.
 const PIECE: usize = if cfg!(test) { 3 } else { 4096 };
 
 /// A motion as it is stored.

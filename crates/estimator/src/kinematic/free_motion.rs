@@ -8,7 +8,8 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 
-/// u_CA and u̇_CA at all nodes at one half-step instant; the normal components at contact nodes are those of the simulation.
+/// u_CA and u̇_CA at all nodes at one half-step instant; the normal components at contact nodes are those of the
+/// simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct NodalMotion<const D: usize> {
     displacement: Arc<NodalField<D>>,
@@ -49,8 +50,8 @@ impl<const D: usize> FreeMotion<D> {
         Self { now: NodalMotion { displacement, velocity }, pool: pool.clone() }
     }
 
-    /// Advances over the half steps to t_{n−½} and t_n, and returns the velocity at the first (m/s) and the motion at the
-    /// second; at n = 0 there is no half step and the initial conditions are returned.
+    /// Advances over the half steps to t_{n−½} and t_n, and returns the velocity at the first (m/s) and the motion at
+    /// the second; at n = 0 there is no half step and the initial conditions are returned.
     pub(crate) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -89,7 +90,8 @@ impl<const D: usize> FreeMotion<D> {
     }
 }
 
-/// u_CA in the middle of a step of this length (s), from that at its end and the velocities in the middle and at the end.
+/// u_CA in the middle of a step of this length (s), from that at its end and the velocities in the middle and at the
+/// end.
 #[inline(always)]
 pub(super) fn half_way<T: Value, const D: usize>(
     length: T,

@@ -2,8 +2,8 @@
 //!
 //! [`FreeMotion`] carries the nodal values \[39\], \[40\], \[43\] of all nodes along the steps;
 //! [`ContactTrack`] replaces the normal component of a node that may touch by the solution of
-//! problem P_CA. Both end in an [`ElementMotion`]. Only this module makes one, so that no raw finite-element field can be
-//! measured.
+//! problem P_CA. Both end in an [`ElementMotion`]. Only this module makes one, so that no raw finite-element field can
+//! be measured.
 //!
 //! Half-step instant k of a run is t_{k/2}: t_n for k = 2n, the middle of a step for odd k.
 
@@ -69,7 +69,8 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
 }
 
 impl<const D: usize, const N: usize, T: Value> ElementMotion<D, N, T> {
-    /// The motion in the middle of the step of this length (s) that ends with this one, from the velocities in the middle (m/s).
+    /// The motion in the middle of the step of this length (s) that ends with this one, from the velocities in the
+    /// middle (m/s).
     #[inline(always)]
     pub(crate) fn half_way(&self, length: T, velocity: [[T; D]; N]) -> Self {
         let mut displacement = self.displacement;
@@ -148,7 +149,8 @@ impl<const D: usize> MotionLanes<D> {
         );
     }
 
-    /// Completes the motion in the middle of steps of these lengths (s), of which the velocity is known, from that at their ends.
+    /// Completes the motion in the middle of steps of these lengths (s), of which the velocity is known, from that at
+    /// their ends.
     #[inline(always)]
     pub(crate) fn complete_half_way<T: Value<Stored = Lanes>>(&mut self, length: T, end: &Self) {
         let [mid, now] = [load(length, &self.velocity), load(length, &end.velocity)];

@@ -1,7 +1,7 @@
 //! Two numbers of each candidate node at each half-step instant, from the earliest that is needed to the last one.
 //!
-//! The instants between two contacts may be as many as those of the run. Memory holds some chunks of consecutive instants; the others
-//! wait in a temporary file.
+//! The instants between two contacts may be as many as those of the run. Memory holds some chunks of consecutive
+//! instants; the others wait in a temporary file.
 
 use crate::scratch_file::{ScratchError, ScratchFile};
 use std::collections::VecDeque;

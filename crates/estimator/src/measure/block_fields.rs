@@ -26,7 +26,8 @@ pub(crate) struct BalanceNode<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BalanceFields<const D: usize> {
     nodes: Vec<BalanceNode<D>>,
-    /// The moments by which the stars of the nodes of some elements enter and leave them (N): those of a node follow each other.
+    /// The moments by which the stars of the nodes of some elements enter and leave them (N): those of a node follow
+    /// each other.
     moments: Vec<[[Lanes; D]; 2]>,
     mixed: bool,
     has_body_force: bool,

@@ -22,8 +22,8 @@ impl<const D: usize, const N: usize> ElementMeasure<'_, D, N> {
         (scale * 1e-12).max(balanced.terms * (self.element.volume / N as f64)) * (1.0 / self.law.extent())
     }
 
-    /// Residual of the balance of the element as a whole: resultant of tractions less Γ_DA − f_d, and their moments about the
-    /// centroid, one in each coordinate plane.
+    /// Residual of the balance of the element as a whole: resultant of tractions less Γ_DA − f_d, and their moments
+    /// about the centroid, one in each coordinate plane.
     #[inline(always)]
     pub(crate) fn resultant_residual<T: Value>(&self, balanced: &Balanced<D, N, T>, scale: T) -> T {
         let floor = self.floor(balanced, scale);

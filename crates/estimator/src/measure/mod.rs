@@ -106,7 +106,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         StressMap::new(self.problem.mesh().simplex(), &self.problem.mesh().cell_points(self.id), self.law)
     }
 
-    /// The fields of one level that tractions and Γ_DA are made of. `contact` gives the contact node at each local node.
+    /// The fields of one level that tractions and Γ_DA are made of. `contact` gives the contact node at each local
+    /// node.
     pub(crate) fn nodal_balance(
         &self,
         equilibration: &Equilibration<'_, D, N>,
@@ -207,8 +208,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         AdmissibleStress { mean, fluctuation: form.fluctuation(&balanced.loading) }
     }
 
-    /// The error at one sample, with ∫Γ_DA/ρ dt there; `beside` is the energy of other stresses beside σ_DA (J per unit of section
-    /// or thickness).
+    /// The error at one sample, with ∫Γ_DA/ρ dt there; `beside` is the energy of other stresses beside σ_DA (J per unit
+    /// of section or thickness).
     #[inline(always)]
     pub(crate) fn error<T: Value>(
         &self,
@@ -279,7 +280,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         &self.arms
     }
 
-    /// The loading of the stress beside which other stresses stand: that of σ_DA less the tractions of the constant σ_CA.
+    /// The loading of the stress beside which other stresses stand: that of σ_DA less the tractions of the constant
+    /// σ_CA.
     pub(crate) fn difference(&self, loading: &Loading<D, N>, motion: &ElementMotion<D, N>) -> Loading<D, N> {
         let stress = hooke(self.law, &self.element.gradient(motion.displacement()));
         let mut difference = *loading;

@@ -5,8 +5,8 @@ use percute_core::material::Elastic;
 use percute_core::problem::TriangleProblem;
 use percute_testkit::{Random, random_rectangle};
 
-/// Random tractions and Γ_DA on an element that balance: at each node, the moment on the edge that ends there makes the forces those of a
-/// random mean stress.
+/// Random tractions and Γ_DA on an element that balance: at each node, the moment on the edge that ends there makes the
+/// forces those of a random mean stress.
 fn random_balance(measure: &ElementMeasure<'_, 2, 3>, random: &mut Random) -> Balanced<2, 3> {
     let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));
     let mut fields = NodalBalance {
@@ -27,8 +27,8 @@ fn random_balance(measure: &ElementMeasure<'_, 2, 3>, random: &mut Random) -> Ba
     measure.balanced(&fields)
 }
 
-/// η of elements of a body that is not of unit thickness is the energy of the difference of the fields, and d twice that of their sum. The stress
-/// that balances a loading and the tractions of σ_CA is made in another way.
+/// η of elements of a body that is not of unit thickness is the energy of the difference of the fields, and d twice
+/// that of their sum. The stress that balances a loading and the tractions of σ_CA is made in another way.
 #[test]
 fn errors_are_energies_of_differences_and_sums() {
     let law = Elastic::plane_strain(3.0, 0.3, 2.0, 0.25).unwrap();

@@ -21,8 +21,8 @@ use percute_core::ids::ElementId;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in its turn: a
-/// check costs more than the measure itself.
+/// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in
+/// its turn: a check costs more than the measure itself.
 const CHECKS: usize = 64;
 
 /// Sums over far elements at the levels and in the middles between them.

@@ -42,15 +42,15 @@ const THREADED: usize = 20_000;
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
 /// Steps may come from the integrator as it runs or from a stored history. They are worked on in
-/// windows, and memory does not grow with their number, but for some 150 bytes of each step, 300 of each sample and the maps that were
-/// requested.
-/// Elements around candidate nodes of contact wait until the next contact of all these nodes is known, which may be the end of
-/// the run. Some kilobytes for each node wait in memory, and the rest in a temporary file, in the folder that `TMPDIR` names or in
-/// `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
+/// windows, and memory does not grow with their number, but for some 150 bytes of each step, 300 of each sample and the
+/// maps that were requested.
+/// Elements around candidate nodes of contact wait until the next contact of all these nodes is known, which may be the
+/// end of the run. Some kilobytes for each node wait in memory, and the rest in a temporary file, in the folder that
+/// `TMPDIR` names or in `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
 ///
-/// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it returns, and so
-/// does [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: about a second on one core for a
-/// million elements. [`Options::window`] makes it shorter.
+/// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it
+/// returns, and so does [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: about a
+/// second on one core for a million elements. [`Options::window`] makes it shorter.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
@@ -93,8 +93,8 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         Ok(Self { problem, times, every: options.every, pool, preparation, window })
     }
 
-    /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`] samples them for this: its sums then
-    /// have more samples. Otherwise no other number of the estimate changes.
+    /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`] samples them for this: its
+    /// sums then have more samples. Otherwise no other number of the estimate changes.
     ///
     /// # Errors
     /// Steps out of order, beyond the last or not sampled; more maps than memory can hold.

@@ -20,8 +20,8 @@ use crate::traction::EquilibratedLevel;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
-/// The pointwise equilibrium of σ_DA is checked in one interval of so many, more often than away from contact: with one of 4, checks
-/// took a sixth of the estimate on 640 elements.
+/// The pointwise equilibrium of σ_DA is checked in one interval of so many, more often than away from contact: with one
+/// of 4, checks took a sixth of the estimate on 640 elements.
 const CHECK: usize = 16;
 
 /// One such element.
@@ -158,7 +158,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         }
     }
 
-    /// Samples the next interval that was appended, between these steps, at its beginning, in the middle and at its end.
+    /// Samples the next interval that was appended, between these steps, at its beginning, in the middle and at its
+    /// end.
     pub(super) fn sample(
         &mut self,
         context: &ContactSampling<'_, '_, D, N>,

@@ -1,8 +1,8 @@
 //! All elements with a candidate node of contact, and their intervals that wait.
 //!
-//! The motion at a node is known when its next contact is, or at the end of the run. All near elements wait for the node of which it is
-//! known last: their samples can then be summed at once, in the order of the elements. Work is done in groups of blocks, in parallel
-//! within a group, so that memory holds one group at a time.
+//! The motion at a node is known when its next contact is, or at the end of the run. All near elements wait for the
+//! node of which it is known last: their samples can then be summed at once, in the order of the elements. Work is done
+//! in groups of blocks, in parallel within a group, so that memory holds one group at a time.
 
 use super::backlog::{self, Backlog};
 use super::maps::Maps;
@@ -23,7 +23,8 @@ use std::ops::Range;
 const BLOCK: usize = 16;
 const GROUP: usize = 16;
 
-/// The most bytes that near elements and their intervals take in memory, at so many samples, each so many steps after the one before.
+/// The most bytes that near elements and their intervals take in memory, at so many samples, each so many steps after
+/// the one before.
 pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, samples: usize, spacing: usize) -> usize {
     let (nodes, elements) = (problem.surface().nodes().len(), near_elements(problem).len());
     let interval = bytes_of_interval::<D, N>(spacing);

@@ -245,8 +245,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.tracks.finish(self.problem.contact_tolerance())
     }
 
-    /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities off
-    /// contact.
+    /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities
+    /// off contact.
     pub(super) fn next_ready(&mut self) -> Option<ForcesKnown<D>> {
         while let Some(mut level) = self.ready.pop_front() {
             level.off_contact.drain(..).for_each(|step| step.add_to(&mut self.off_contact));
@@ -258,7 +258,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         None
     }
 
-    /// Measures the difference of simulation and auxiliary solution at the last level, which has turned out to be sampled.
+    /// Measures the difference of simulation and auxiliary solution at the last level, which has turned out to be
+    /// sampled.
     fn differ_at_last(&mut self) {
         if let (Some(last), false) = (self.motions.back(), self.unmeasured.is_empty()) {
             self.reconstruction.differ([&self.unmeasured, last.now.velocity()]);

@@ -74,15 +74,16 @@ impl SampledInterval {
     }
 }
 
-/// η in the middle of a step differs from the mean of both ends by at most this part of it: where only the steps of an onset are
-/// intervals of their own, they stand for no others.
+/// η in the middle of a step differs from the mean of both ends by at most this part of it: where only the steps of an
+/// onset are intervals of their own, they stand for no others.
 const MOST_DEVIATION: f64 = 0.03;
 
-/// Gives the middles of longer intervals values, where some steps are intervals of their own: the mean of both ends, less or more by
-/// the part by which η in the middle of these steps differs from it on average. Returns the factor by which this changes ∫η dt.
+/// Gives the middles of longer intervals values, where some steps are intervals of their own: the mean of both ends,
+/// less or more by the part by which η in the middle of these steps differs from it on average. Returns the factor by
+/// which this changes ∫η dt.
 ///
-/// Half way between two instants the stress is the mean of both, and η is smaller by the energy of half their difference. Without
-/// this, the mean of a body that arrives gradually is up to 1 % larger.
+/// Half way between two instants the stress is the mean of both, and η is smaller by the energy of half their
+/// difference. Without this, the mean of a body that arrives gradually is up to 1 % larger.
 pub(super) fn estimate_middles(intervals: &mut [SampledInterval]) -> f64 {
     let total = |interval: &SampledInterval, k: usize| interval.samples[k].0.total();
     let sum = |intervals: &[SampledInterval]| -> f64 { intervals.iter().map(|i| i.integral(|k| total(i, k))).sum() };

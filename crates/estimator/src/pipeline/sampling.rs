@@ -207,7 +207,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         }
     }
 
-    /// The fields of the element in the middle of a step between two levels; `contact` gives the contact node at each local node.
+    /// The fields of the element in the middle of a step between two levels; `contact` gives the contact node at each
+    /// local node.
     pub(super) fn velocities_half_way(
         &self,
         [from, to]: [&EquilibratedLevel<'_, D>; 2],
@@ -242,8 +243,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         self.measure.balanced(&self.measure.nodal_balance(self.shared.equilibration, level, contact, side))
     }
 
-    /// Checks their resultants, and their stress if it is the turn of the element: the map that makes the stress is linear and the
-    /// same at all levels.
+    /// Checks their resultants, and their stress if it is the turn of the element: the map that makes the stress is
+    /// linear and the same at all levels.
     pub(super) fn check(
         &self,
         balanced: &Balanced<D, N>,
@@ -258,7 +259,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         }
     }
 
-    /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are wanted.
+    /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are
+    /// wanted.
     pub(super) fn sample(
         &self,
         interval: &ElementInterval<'_, D, N>,

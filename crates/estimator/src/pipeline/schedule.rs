@@ -1,16 +1,19 @@
 //! The steps that are sampled.
 //!
-//! With `auto` these are steps at equal distances, those around changes of contact, and peaks of the contact force. η jumps when
-//! contact begins or ends, and changes slowly between. A step is judged by the simulation alone, by the steps so far and one
-//! that follows: the schedule is that of any window, any number of threads and any later end of the run.
+//! With `auto` these are steps at equal distances, those around changes of contact, and peaks of the contact force. η
+//! jumps when contact begins or ends, and changes slowly between. A step is judged by the simulation alone, by the
+//! steps so far and one that follows: the schedule is that of any window, any number of threads and any later end of
+//! the run.
 
 use crate::options::{Options, Reconstruction};
 use crate::sampling::Sampling;
 
-/// With `corrected` a change of touching status counts once it affects one in so many of the nodes that touch, or when the body
-/// arrives or leaves: F_DA does not depend on this status. That of the other reconstructions begins with it, and each change counts.
+/// With `corrected` a change of touching status counts once it affects one in so many of the nodes that touch, or when
+/// the body arrives or leaves: F_DA does not depend on this status. That of the other reconstructions begins with it,
+/// and each change counts.
 const SHARE: usize = 4;
-/// A peak of the contact force rises from the valley before it by this part of the largest force so far: fluctuations do not count.
+/// A peak of the contact force rises from the valley before it by this part of the largest force so far: fluctuations
+/// do not count.
 const PROMINENCE: f64 = 0.05;
 
 /// Which levels a step makes samples.
@@ -51,7 +54,8 @@ impl Schedule {
         self.requested = steps.to_vec();
     }
 
-    /// Takes in step n, with the touching status of the contact nodes and the normal force on them (N). Steps come in order.
+    /// Takes in step n, with the touching status of the contact nodes and the normal force on them (N). Steps come in
+    /// order.
     pub(super) fn advance(&mut self, n: usize, touching: &[bool], force: f64) -> Decision {
         let around = self.contact.as_mut().map(|contact| contact.advance(touching, force)).unwrap_or_default();
         let before = around.before && n > 0 && !self.is_sampled(n - 1);

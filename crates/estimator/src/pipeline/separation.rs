@@ -4,7 +4,8 @@ use super::sampled_interval::SampledInterval;
 use crate::difference::Difference;
 use crate::sources::{Separation, Sources, half_size};
 
-/// The sources of a run whose η is largest at one time and that ends at another (s), with the differences at all levels.
+/// The sources of a run whose η is largest at one time and that ends at another (s), with the differences at all
+/// levels.
 pub(super) fn separation(
     intervals: &[SampledInterval],
     differences: &[Difference],

@@ -56,8 +56,8 @@ impl StateSink<2> for Watched<'_> {
     }
 }
 
-/// Four times as many steps take the same memory within 10 %; without the limit they take almost four times as much, and both
-/// estimates have the same bits.
+/// Four times as many steps take the same memory within 10 %; without the limit they take almost four times as much,
+/// and both estimates have the same bits.
 #[test]
 fn memory_does_not_grow_with_the_steps() {
     let problem = rebound();

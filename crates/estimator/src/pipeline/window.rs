@@ -207,8 +207,8 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         self.catch_up(preparation)
     }
 
-    /// Samples all elements at some levels, each part of the mesh as soon as its tractions are there. Returns the contributions
-    /// of far elements to maps.
+    /// Samples all elements at some levels, each part of the mesh as soon as its tractions are there. Returns the
+    /// contributions of far elements to maps.
     fn sample(
         &mut self,
         levels: &mut EquilibratedLevels<D>,

@@ -4,8 +4,8 @@ use super::{StepDensities, SurfaceSteps};
 use crate::residual::{Residuals, worse};
 use percute_core::problem::Problem;
 
-/// Checks that the densities of a step are in the cone and, unless they may act `off_contact`, act only where both nodes
-/// of a facet touch throughout the step.
+/// Checks that the densities of a step are in the cone and, unless they may act `off_contact`, act only where both
+/// nodes of a facet touch throughout the step.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     steps: &SurfaceSteps<'_, D>,

@@ -5,8 +5,9 @@ use crate::contact_density::Densities;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
-/// The reconstruction whose densities of a step balance R = B F at both its ends, B the consistent mass matrix of the facets
-/// whose nodes touch at both ends. They are projected into the cone. Where these facets change, the densities jump.
+/// The reconstruction whose densities of a step balance R = B F at both its ends, B the consistent mass matrix of the
+/// facets whose nodes touch at both ends. They are projected into the cone. Where these facets change, the densities
+/// jump.
 #[derive(Debug)]
 pub(super) struct Consistent<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

@@ -1,7 +1,9 @@
-//! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are balanced.
+//! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are
+//! balanced.
 //!
-//! A density lives on the candidate facets, linear on each and linear in time inside each step. A [`ReconstructionMethod`]
-//! makes it, and decides on all that goes with it. [`new`] is the one place where a choice becomes its reconstruction.
+//! A density lives on the candidate facets, linear on each and linear in time inside each step. A
+//! [`ReconstructionMethod`] makes it, and decides on all that goes with it. [`new`] is the one place where a choice
+//! becomes its reconstruction.
 
 mod admissibility;
 mod consistent;
@@ -90,8 +92,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         Ok(())
     }
 
-    /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the reconstruction
-    /// has its own.
+    /// Takes in a step and returns the fields that are balanced there: those of the simulation, unless the
+    /// reconstruction has its own.
     fn advance(
         &mut self,
         dynamics: &Dynamics<'_, D, N>,
@@ -104,8 +106,9 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         BalancedFields { displacement, force, contact, densities: None, lumping_difference: None }
     }
 
-    /// Measures the difference of the simulation and the auxiliary solution at the level that `advance` has taken in last, from the
-    /// displacement (m) and u̇_CA (m/s) of the simulation. At most once for a level; the others have a difference of 0.
+    /// Measures the difference of the simulation and the auxiliary solution at the level that `advance` has taken in
+    /// last, from the displacement (m) and u̇_CA (m/s) of the simulation. At most once for a level; the others have a
+    /// difference of 0.
     fn differ(&mut self, _simulated: [&[[f64; D]]; 2]) {}
 
     /// F_DA over a step.
@@ -126,8 +129,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         NormalMisfit::default()
     }
 
-    /// The friction part of η on each candidate facet (J), up to the middle and the end of the step from `now` to `next`;
-    /// `length` is that of the step (s), `density` F_DA at its end.
+    /// The friction part of η on each candidate facet (J), up to the middle and the end of the step from `now` to
+    /// `next`; `length` is that of the step (s), `density` F_DA at its end.
     fn friction(
         &self,
         problem: &Problem<D, N>,
@@ -149,8 +152,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         None
     }
 
-    /// Finds equilibrated tractions of levels with these forces, and gives `then` each part of the mesh when those of its elements are
-    /// final. Returns the largest relative miss of the star problems. `levels` gives its memory.
+    /// Finds equilibrated tractions of levels with these forces, and gives `then` each part of the mesh when those of
+    /// its elements are final. Returns the largest relative miss of the star problems. `levels` gives its memory.
     fn equilibrate(
         &self,
         equilibration: &Equilibration<'_, D, N>,

@@ -9,7 +9,8 @@ use percute_core::problem::Problem;
 /// Edges that meet at more than 45° are no neighbours: their normals' cosine is below this.
 const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// The reconstruction of the paper: reaction over tributary length, from one step after impact to one step before release.
+/// The reconstruction of the paper: reaction over tributary length, from one step after impact to one step before
+/// release.
 #[derive(Debug)]
 pub(super) struct Published<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

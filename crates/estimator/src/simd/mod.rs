@@ -1,12 +1,12 @@
 //! The instruction set of the hot loops, chosen when the program runs.
 //!
 //! A binary is compiled for the oldest processor that it must run on. Its loops then use registers of two numbers. On a
-//! newer processor, [`dispatch`] and [`run_task`] run a copy of the loops that was compiled for registers of four or eight.
-//! Products and sums are never fused, so the bits are those of the portable copy. This folder is the only one of the crate that
-//! knows instruction sets.
+//! newer processor, [`dispatch`] and [`run_task`] run a copy of the loops that was compiled for registers of four or
+//! eight. Products and sums are never fused, so the bits are those of the portable copy. This folder is the only one of
+//! the crate that knows instruction sets.
 //!
-//! [`dispatch`] is for loops that the compiler turns into vectors by itself. Where lanes are gathered and exchanged, it makes
-//! short vectors with many permutations, three times as many instructions. Such loops are a
+//! [`dispatch`] is for loops that the compiler turns into vectors by itself. Where lanes are gathered and exchanged, it
+//! makes short vectors with many permutations, three times as many instructions. Such loops are a
 //! [`Task`] over [`Registers`].
 
 #[cfg(target_arch = "x86_64")]
@@ -14,8 +14,8 @@ mod x86;
 
 use pulp::{Arch, NullaryFnOnce};
 
-/// Runs a task with the widest registers of this processor. The task and all functions of its loops must be `#[inline(always)]`:
-/// other functions keep the instructions of the oldest processor.
+/// Runs a task with the widest registers of this processor. The task and all functions of its loops must be
+/// `#[inline(always)]`: other functions keep the instructions of the oldest processor.
 ///
 /// ```ignore
 /// dispatch(#[inline(always)] || sweep(cells, values));

@@ -46,8 +46,8 @@ fn late(t: f64) -> f64 {
     (0..WAVES).map(wave).sum::<f64>() / WAVES as f64
 }
 
-/// The largest k is twice as large on elements half as long, and the phase at it as well; the energies are half as large. With a
-/// quarter of the dispersion, the phase is that of a quarter of the time.
+/// The largest k is twice as large on elements half as long, and the phase at it as well; the energies are half as
+/// large. With a quarter of the dispersion, the phase is that of a quarter of the time.
 #[test]
 fn the_dispersion_of_a_jump() {
     for exponent in 4..30 {

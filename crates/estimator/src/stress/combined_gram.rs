@@ -3,7 +3,8 @@
 use super::reference::{ALL, PAIRS, Reference};
 use crate::lanes::Lanes;
 
-/// For each pair of components, ∫ of products of some combinations of the basis over the reference triangle, on and below the diagonal.
+/// For each pair of components, ∫ of products of some combinations of the basis over the reference triangle, on and
+/// below the diagonal.
 #[derive(Debug)]
 pub(super) struct CombinedGram(Vec<[f64; PAIRS.len()]>);
 

@@ -1,14 +1,14 @@
 //! The elastic energy of the stress of an element, for some elements side by side.
 //!
-//! The law is constant in an element, so the mean of a stress and what is left of it have separate energies. The mean follows from the
-//! forces on the nodes. The rest, the *fluctuation*, follows from the differences of the tractions at the two ends of each edge and from
-//! Γ_DA − f_d: with these given, the tractions that put no force on any node are unique. The tractions of a constant stress add nothing to
-//! the fluctuation.
+//! The law is constant in an element, so the mean of a stress and what is left of it have separate energies. The mean
+//! follows from the forces on the nodes. The rest, the *fluctuation*, follows from the differences of the tractions at
+//! the two ends of each edge and from Γ_DA − f_d: with these given, the tractions that put no force on any node are
+//! unique. The tractions of a constant stress add nothing to the fluctuation.
 //!
-//! The form of the fluctuation follows from the shape and the law. It is written LLᵀ, so that Lᵀ gives coordinates in which the energy is
-//! the sum of squares. Coordinates are linear in the loads: half way between two instants they are the mean. The form takes more memory than
-//! all other data of an element, so it is made anew for each window of levels, for [`LANES`] triangles at once, and triangles of
-//! the same shape share it.
+//! The form of the fluctuation follows from the shape and the law. It is written LLᵀ, so that Lᵀ gives coordinates in
+//! which the energy is the sum of squares. Coordinates are linear in the loads: half way between two instants they are
+//! the mean. The form takes more memory than all other data of an element, so it is made anew for each window of
+//! levels, for [`LANES`] triangles at once, and triangles of the same shape share it.
 
 use super::bar::BarStress;
 use super::fluctuation::{MODES, START, gram};
@@ -29,7 +29,8 @@ const LOADS: usize = 12;
 /// Columns whose products with loads are summed side by side: those of the edges, then those of the nodes.
 const COLUMNS: usize = 6;
 
-/// Edges that differ by less, relative to the smallest height, belong to triangles of the same shape: rounding of coordinates.
+/// Edges that differ by less, relative to the smallest height, belong to triangles of the same shape: rounding of
+/// coordinates.
 const SAME: f64 = 1e-13;
 
 /// A pivot that is smaller, relative to its diagonal entry, is the rounding of some terms of this entry.
@@ -61,7 +62,8 @@ impl EnergyForms {
         }
     }
 
-    /// Makes the forms of at most [`LANES`] elements with these nodes (m), unless they are there, and gives their lanes.
+    /// Makes the forms of at most [`LANES`] elements with these nodes (m), unless they are there, and gives their
+    /// lanes.
     #[inline(always)]
     pub(crate) fn prepare<const D: usize, const N: usize>(
         &mut self,
@@ -107,8 +109,8 @@ impl EnergyForm<'_> {
         }
     }
 
-    /// The slope of the energy (J per unit of section or thickness) of a fluctuation in the difference of the tractions on each edge, that
-    /// at the second node less that at the first; in 1D, where an edge is a point, zero.
+    /// The slope of the energy (J per unit of section or thickness) of a fluctuation in the difference of the tractions
+    /// on each edge, that at the second node less that at the first; in 1D, where an edge is a point, zero.
     #[inline(always)]
     pub(crate) fn difference_slope<T: Value, const D: usize, const N: usize>(
         &self,
@@ -249,7 +251,8 @@ impl TriangleForm<'_> {
         coordinates
     }
 
-    /// The products of some columns of L with loads. Above the diagonal L is 0: a loop of fixed length is worth the products with it.
+    /// The products of some columns of L with loads. Above the diagonal L is 0: a loop of fixed length is worth the
+    /// products with it.
     #[inline(always)]
     fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
         // A lane is below LANES; the compiler does not know.
@@ -313,7 +316,8 @@ fn make(shapes: &[TriangleShape], factors: &mut FactorLanes) {
     );
 }
 
-/// Makes the factors of these shapes. The free stresses come first: the rest of the factor is then that of the energy that they cannot save.
+/// Makes the factors of these shapes. The free stresses come first: the rest of the factor is then that of the energy
+/// that they cannot save.
 #[inline(always)]
 fn factor(shapes: &[TriangleShape], factors: &mut FactorLanes) {
     let Some(first) = shapes.first() else { return };
@@ -337,7 +341,8 @@ fn factor(shapes: &[TriangleShape], factors: &mut FactorLanes) {
                 continue;
             }
             for lane in 0..LANES {
-                // In needles that are almost incompressible, nothing but rounding may be left of a pivot: its column is then 0.
+                // In needles that are almost incompressible, nothing but rounding may be left of a pivot: its column is
+                // then 0.
                 if rest.0[lane] > ROUNDING * entry.0[lane] {
                     lower[i][i].0[lane] = rest.0[lane].sqrt();
                     inverse[i].0[lane] = 1.0 / lower[i][i].0[lane];

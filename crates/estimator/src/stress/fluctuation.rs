@@ -5,8 +5,8 @@ use super::reference::{ALL, FREE, LOADS};
 use crate::lanes::Value;
 use std::sync::OnceLock;
 
-/// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares, two for each edge, which a
-/// bar has none of, and node.
+/// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares, two for
+/// each edge, which a bar has none of, and node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fluctuation<const D: usize, const N: usize, T = f64> {
     pub(crate) edges: [[T; D]; N],
@@ -65,7 +65,8 @@ pub(super) fn gram() -> &'static CombinedGram {
     })
 }
 
-/// The loads on the reference triangle that a unit of a load of a fluctuation brings about: those that put no force on any node.
+/// The loads on the reference triangle that a unit of a load of a fluctuation brings about: those that put no force on
+/// any node.
 fn loads(at: usize) -> [f64; ALL] {
     let (k, c) = (at / 2 % 3, at % 2);
     // Differences of the moments of tractions at the ends of each edge, and forces of the volume load on the nodes.

@@ -1,8 +1,9 @@
 //! The energy of triangles as a form of the moments on their edges, for some triangles side by side.
 //!
-//! The moments are written in a basis that suits the changes that balance: on edge k, from its first node to its second, opposite
-//! moments at the two; and around node i, the same moment through both edges, outward by the edge that ends there. On the
-//! reference triangle, they are constant: products of the stresses are combined once for all triangles.
+//! The moments are written in a basis that suits the changes that balance: on edge k, from its first node to its
+//! second, opposite moments at the two; and around node i, the same moment through both edges, outward by the edge that
+//! ends there. On the reference triangle, they are constant: products of the stresses are combined once for all
+//! triangles.
 
 use super::LOADS;
 use super::combined_gram::{CombinedGram, unit};
@@ -39,8 +40,8 @@ impl TractionForms {
         })
     }
 
-    /// The second derivative of the energy (J) of each triangle in the components of the basis, from the edges (m) from node 0 to
-    /// nodes 1 and 2 and the law of each.
+    /// The second derivative of the energy (J) of each triangle in the components of the basis, from the edges (m) from
+    /// node 0 to nodes 1 and 2 and the law of each.
     #[inline(always)]
     pub(crate) fn form<L: LinearLaw>(&self, maps: &[Matrix2<f64>; LANES], laws: &[&L; LANES]) -> BasisForm {
         let compliance: [[[f64; 3]; 3]; LANES] =

@@ -5,7 +5,8 @@ use crate::time_level::ForcesKnown;
 use percute_core::ids::ElementId;
 use std::sync::Arc;
 
-/// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only [`Equilibration`](super::Equilibration) makes them.
+/// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only
+/// [`Equilibration`](super::Equilibration) makes them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EquilibratedLevels<const D: usize> {
     pub(super) forces: Vec<ForcesKnown<D>>,

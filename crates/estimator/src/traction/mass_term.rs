@@ -6,13 +6,14 @@ use crate::lanes::Value;
 pub(super) enum MassTerm<'a, const D: usize, const N: usize, T: Value> {
     /// ρV/(D+1) ã_i, with ã of the node.
     Lumped([T; D]),
-    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at nodes, and the places of the nodes of each element.
+    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at nodes, and the places of the nodes of each
+    /// element.
     Mixed { acceleration: &'a [[T::Stored; D]], lumping_difference: &'a [[T::Stored; D]], nodes: &'a [[u32; N]] },
 }
 
 impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
-    /// Component `c` at local node `i` of an element, and the size of its parts before they cancel; both over the lumped mass
-    /// of the element there (m/s²), in the form of a number.
+    /// Component `c` at local node `i` of an element, and the size of its parts before they cancel; both over the
+    /// lumped mass of the element there (m/s²), in the form of a number.
     #[inline(always)]
     pub(super) fn at(&self, like: T, element: usize, i: usize, c: usize) -> [T; 2] {
         match *self {
@@ -40,8 +41,8 @@ mod tests {
     use percute_core::problem::Problem;
     use percute_testkit::{Random, random_rectangle};
 
-    /// Over each star the elements sum up to (M ã)_i where nothing is prescribed, and to (M_c ã)_i, which a support carries,
-    /// where o is 0.
+    /// Over each star the elements sum up to (M ã)_i where nothing is prescribed, and to (M_c ã)_i, which a support
+    /// carries, where o is 0.
     #[test]
     fn stars_sum_up_to_the_lumped_mass() {
         let problem = Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())

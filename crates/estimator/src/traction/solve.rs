@@ -28,8 +28,9 @@ pub(super) struct StarFields<const D: usize> {
 }
 
 impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
-    /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels, part by part, and gives `then` each part when all
-    /// stars of its elements are solved. Returns the largest relative miss of their equations. `levels` gives its memory.
+    /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels, part by part, and gives `then` each
+    /// part when all stars of its elements are solved. Returns the largest relative miss of their equations. `levels`
+    /// gives its memory.
     pub(crate) fn solve(
         &self,
         forces: Vec<ForcesKnown<D>>,
@@ -88,8 +89,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         stars.link_range(NodeId::new(nodes.start)).start..stars.link_range(NodeId::new(nodes.end - 1)).end
     }
 
-    /// The nodes of the stars of a part and the moments on their links, for changes that balance. No instant of these levels may be
-    /// a jump.
+    /// The nodes of the stars of a part and the moments on their links, for changes that balance. No instant of these
+    /// levels may be a jump.
     pub(crate) fn moments_mut<'l>(
         &self,
         part: &MeshPart,
@@ -205,7 +206,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         moments
     }
 
-    /// The stars of contact nodes once more, with the values before a jump, and the largest relative miss of their equations.
+    /// The stars of contact nodes once more, with the values before a jump, and the largest relative miss of their
+    /// equations.
     fn stars_before_jump(&self, forces: &ForcesKnown<D>, force_scale: f64) -> Option<(Vec<[f64; D]>, f64)> {
         let before = forces.before.as_ref()?;
         let mut moments = vec![[0.0; D]; self.contact_links.last().copied().unwrap_or(0)];

@@ -76,8 +76,8 @@ pub(super) struct StarSolver<'a, 'p, const D: usize, const N: usize, T: Value> {
 }
 
 impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
-    /// Finds the moments: `moments` receives, for each link, the moment that leaves the element before it (and enters, with
-    /// the other sign, the one after it).
+    /// Finds the moments: `moments` receives, for each link, the moment that leaves the element before it (and enters,
+    /// with the other sign, the one after it).
     #[inline(always)]
     pub(super) fn solve(&self, moments: &mut [[T::Stored; D]]) -> Compatibility<T> {
         let mut scale = self.like().zero();
@@ -179,8 +179,8 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
         moment
     }
 
-    /// σ_h beyond the facet by which the star leaves element `m`; at the boundary that of the element, whose traction is the
-    /// finite-element one there.
+    /// σ_h beyond the facet by which the star leaves element `m`; at the boundary that of the element, whose traction
+    /// is the finite-element one there.
     #[inline(always)]
     fn next(&self, m: usize, here: &[[T; D]; D]) -> [[T; D]; D] {
         match self.local.get(m + 1) {

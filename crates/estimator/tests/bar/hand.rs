@@ -102,7 +102,8 @@ impl Bar {
 
     /// N of the elements, and the acceleration that they alone give, which the balance is built on: the simulation's,
     /// or for `corrected` those of the same bar under the same pushes, with a + (Δt_c² − Δt²)/12 · K a/M for each
-    /// acceleration a, and less (Δt_c²/6)² (K/M)² a/36: on a uniform bar that is what is left of (h²/12c² − Δt²/12), and β.
+    /// acceleration a, and less (Δt_c²/6)² (K/M)² a/36: on a uniform bar that is what is left of (h²/12c² − Δt²/12),
+    /// and β.
     fn sources(&self, history: &[Instant], reconstruction: Reconstruction) -> Vec<(Vec<f64>, Vec<f64>)> {
         if reconstruction != Reconstruction::Corrected {
             return history.iter().map(|i| (i.force.clone(), i.free.clone())).collect();

@@ -127,8 +127,8 @@ fn the_program_agrees_with_the_computation_by_hand() {
 /// e_sup/e_Ex and e_mean/e_Ex on the paper's grid, up to the first step past the rebound at
 /// t_c + 2L/c. The ranges of `consistent` and `published` are those of an independent computation over 10 to 400
 /// elements, Δt/Δt_c from 0.5 to 1 and gaps of all fractions of a step: 0.24 to 2.1 and 0.24 to 3.2 (the
-/// paper, with a gap that it does not give, has 0.7 to 1.8). That of `corrected` is what comes out here, 0.844 to 1.585, with
-/// which the computation by hand agrees; docs/verification.md has it on the whole grid.
+/// paper, with a gap that it does not give, has 0.7 to 1.8). That of `corrected` is what comes out here, 0.844 to
+/// 1.585, with which the computation by hand agrees; docs/verification.md has it on the whole grid.
 #[test]
 fn effectivities_against_the_exact_solution() {
     for elements in [10, 40, 120] {

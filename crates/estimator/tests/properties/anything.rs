@@ -63,7 +63,9 @@ proptest! {
     #![proptest_config(few())]
 
     #[test]
-    fn fields_are_admissible(mesh in rectangle(5), tilt in angle(), friction in 0.0..1.0_f64, seed in 0..1_000_000_u64) {
+    fn fields_are_admissible(
+        mesh in rectangle(5), tilt in angle(), friction in 0.0..1.0_f64, seed in 0..1_000_000_u64,
+    ) {
         let (problem, times) = problem(mesh, tilt, friction, seed);
         check(&format!("seed {seed}"), &problem, &times);
     }

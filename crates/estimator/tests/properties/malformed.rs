@@ -68,10 +68,8 @@ fn wrong_lengths() {
         ];
         for (name, spoil) in fields {
             let error = fed(at, spoil);
-            assert!(
-                matches!(error, EstimateError::Step(StepError::Length { step, field, .. }) if step == at && field == name),
-                "{error}"
-            );
+            let EstimateError::Step(StepError::Length { step, field, .. }) = error else { panic!("{error}") };
+            assert_eq!((step, field), (at, name));
         }
     }
 }
@@ -198,8 +196,8 @@ fn steps_of_another_problem() {
     );
 }
 
-/// A history of which only every third instant was kept, as another scheme might take them: too long for the auxiliary solution
-/// of `corrected`, which says so, and no hindrance to `consistent`.
+/// A history of which only every third instant was kept, as another scheme might take them: too long for the auxiliary
+/// solution of `corrected`, which says so, and no hindrance to `consistent`.
 #[test]
 fn steps_too_long_for_the_auxiliary_solution() {
     let problem = impact();
@@ -224,7 +222,8 @@ fn steps_too_long_for_the_auxiliary_solution() {
         match refused {
             Some(EstimateError::AuxiliarySolution { longest_step, step, .. }) => {
                 assert_eq!(reconstruction, Reconstruction::Corrected);
-                // The shortest waves grow by some 20 in each step, their energy by 400: soon a million times what there is.
+                // The shortest waves grow by some 20 in each step, their energy by 400: soon a million times what there
+                // is.
                 assert!(step < 20, "told at step {step}");
                 assert!(
                     (longest_step / longest - 1.0).abs() < 1e-9 && told.contains("reconstruction = \"consistent\""),

@@ -60,7 +60,8 @@ fn tilted_blocks() {
     }
 }
 
-/// Almost incompressible blocks, also of needles, strike the plane flat and with a corner: rounding in the stress of hats is largest.
+/// Almost incompressible blocks, also of needles, strike the plane flat and with a corner: rounding in the stress of
+/// hats is largest.
 #[test]
 fn almost_incompressible_blocks() {
     for aspect in [1.0, 1e1, 1e2, 1e3, 1e4] {

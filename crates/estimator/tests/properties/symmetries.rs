@@ -119,7 +119,8 @@ proptest! {
 
     #[test]
     fn turning_everything(
-        mesh in rectangle(5), turn in angle(), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), turn in angle(), along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
         let (sin, cos) = turn.sin_cos();
@@ -130,7 +131,8 @@ proptest! {
 
     #[test]
     fn in_a_mirror(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
         let image = Throw { mesh: mirrored(&throw.mesh).unwrap(), ..throw.clone() };
@@ -139,7 +141,8 @@ proptest! {
 
     #[test]
     fn faster_from_farther_away(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
         scale in 0.1..7.0_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
@@ -150,7 +153,8 @@ proptest! {
 
     #[test]
     fn stiffer_and_heavier(
-        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
         scale in 0.1..7.0_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
@@ -162,7 +166,8 @@ proptest! {
 
     #[test]
     fn under_other_numbers(
-        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
         let (mesh, new) = renumbered(&throw.mesh, seed).unwrap();
@@ -174,7 +179,8 @@ proptest! {
     /// The same of a problem that is renumbered as a whole.
     #[test]
     fn renumbered_after_the_checks(
-        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(), friction in 0.0..0.6_f64,
+        mesh in rectangle(5), seed in 0..1000_u64, along in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(), friction in 0.0..0.6_f64,
     ) {
         let throw = Throw::new(mesh, along, speed, friction, driven);
         let (_, new) = renumbered(&throw.mesh, seed).unwrap();
@@ -189,7 +195,8 @@ proptest! {
 
     #[test]
     fn without_friction_on_a_moving_belt(
-        mesh in rectangle(5), along in -300.0..300.0_f64, belt in -300.0..300.0_f64, speed in 50.0..300.0_f64, driven in any::<bool>(),
+        mesh in rectangle(5), along in -300.0..300.0_f64, belt in -300.0..300.0_f64, speed in 50.0..300.0_f64,
+        driven in any::<bool>(),
     ) {
         let throw = Throw::new(mesh, along, speed, 0.0, driven);
         let image = Throw { velocity: [along + belt, -speed], ..throw.clone() };
@@ -198,8 +205,8 @@ proptest! {
     }
 }
 
-/// The lowest node of a disc lies on its axis of symmetry: two mirrored shapes of its traction may cost the same, and rounding
-/// must not choose. It did at 4 m/s, where elements differed by 3 %.
+/// The lowest node of a disc lies on its axis of symmetry: two mirrored shapes of its traction may cost the same, and
+/// rounding must not choose. It did at 4 m/s, where elements differed by 3 %.
 #[test]
 fn a_symmetric_disc() {
     for speed in [4.0, 100.0] {

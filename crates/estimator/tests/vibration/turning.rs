@@ -18,8 +18,8 @@ const YOUNG: f64 = 70e9;
 const POISSON: f64 = 0.3;
 const DENSITY: f64 = 2700.0;
 
-/// Lamé's mode of a free square is the mode of a square on rollers, seen from half a side away: its stress is zero on the lines
-/// x = ±a/2 and y = ±a/2 of the latter. It starts undeformed.
+/// Lamé's mode of a free square is the mode of a square on rollers, seen from half a side away: its stress is zero on
+/// the lines x = ±a/2 and y = ±a/2 of the latter. It starts undeformed.
 const LAME: BlockMode = BlockMode {
     wave: Wave::Shear,
     numbers: [1, 1],
@@ -112,9 +112,9 @@ fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
     }
 }
 
-/// Measured with `mixed` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03; unstructured
-/// 1.21, 1.12, 1.08, 1.06 and 1.29, 1.19, 1.13, 1.11. The rotation in Γ_DA of `closest` is an error of the order of the true
-/// one: its index tends to about 2.1, unstructured 2.5.
+/// Measured with `mixed` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03;
+/// unstructured 1.21, 1.12, 1.08, 1.06 and 1.29, 1.19, 1.13, 1.11. The rotation in Γ_DA of `closest` is an error of the
+/// order of the true one: its index tends to about 2.1, unstructured 2.5.
 #[test]
 fn lame_mode() {
     const CELLS: [usize; 4] = [6, 12, 24, 48];
@@ -129,15 +129,15 @@ fn lame_mode() {
     assert!(structured.windows(2).all(|pair| pair[1][0][0] > pair[0][0][0]), "{structured:?}");
 }
 
-/// Measured with `mixed`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and 1.53, 1.48,
-/// 1.48.
+/// Measured with `mixed`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and
+/// 1.53, 1.48, 1.48.
 #[test]
 fn bending_mode() {
     assert_steady("bending", &[0, 1, 2].map(bending), [0.95, 1.35]);
 }
 
-/// The finite elements represent a rigid rotation: a square that spins, with a speed of its sides of six times that of the
-/// mode, has the error of the mode.
+/// The finite elements represent a rigid rotation: a square that spins, with a speed of its sides of six times that of
+/// the mode, has the error of the mode.
 #[test]
 fn spinning_adds_nothing() {
     let estimates = [0.0, 1e3].map(|spin| {

@@ -36,8 +36,8 @@ pub struct EstimateContents<'a, const D: usize, const N: usize> {
     pub report: &'a str,
 }
 
-/// Writes an estimate of a problem: its maps as VTKHDF, the errors over time, the residuals, the contact results, and the
-/// report.
+/// Writes an estimate of a problem: its maps as VTKHDF, the errors over time, the residuals, the contact results, and
+/// the report.
 ///
 /// # Errors
 /// As for the creation of a history; an estimate of another mesh.

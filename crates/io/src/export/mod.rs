@@ -1,4 +1,5 @@
-//! Fields at chosen instants in files for ParaView: one VTKHDF file, or a VTU file for each instant with an index (PVD).
+//! Fields at chosen instants in files for ParaView: one VTKHDF file, or a VTU file for each instant with an index
+//! (PVD).
 
 mod base64;
 mod series;

@@ -69,8 +69,8 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
     let at = |number: usize| elements.get(number).map(|element| element.at);
     let (at, advice, error) = match error {
         MeshError::DuplicateNodes { first, second, distance } => {
-            let advice = "; in Gmsh, join bodies that touch by `Coherence;` (OpenCASCADE: `BooleanFragments`) before meshing, \
-                          or nodes by `Coherence Mesh;` after";
+            let advice = "; in Gmsh, join bodies that touch by `Coherence;` (OpenCASCADE: `BooleanFragments`) before \
+                          meshing, or nodes by `Coherence Mesh;` after";
             (None, advice, MeshError::DuplicateNodes { first: node(first), second: node(second), distance })
         }
         MeshError::Degenerate { element: e, nodes: of, volume, diameter } => {
@@ -88,8 +88,8 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
             (at(all[1]), OVERLAP, MeshError::Overlap { elements: all.map(element) })
         }
         MeshError::PartsTouch { elements: all } => {
-            let advice = "; in Gmsh, join surfaces that touch or overlap by `Coherence;` (OpenCASCADE: `BooleanFragments`) \
-                          before meshing";
+            let advice = "; in Gmsh, join surfaces that touch or overlap by `Coherence;` (OpenCASCADE: \
+                          `BooleanFragments`) before meshing";
             (at(all[1]), advice, MeshError::PartsTouch { elements: all.map(element) })
         }
         MeshError::NonManifoldNode { node: n, elements, reached } => {

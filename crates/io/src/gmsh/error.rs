@@ -50,8 +50,8 @@ pub enum GmshCause {
     File(#[from] FileCause),
     /// An invalid scale.
     #[error(
-        "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the file, \
-         1e-3 for millimetres"
+        "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the \
+         file, 1e-3 for millimetres"
     )]
     Scale { value: f64 },
     /// Not a mesh file.
@@ -77,7 +77,8 @@ pub enum GmshCause {
     NoSection { section: &'static str },
     /// A partitioned mesh.
     #[error(
-        "the mesh is partitioned; in Gmsh, choose Mesh > Unpartition (in Python `gmsh.model.mesh.unpartition()`) and save again"
+        "the mesh is partitioned; in Gmsh, choose Mesh > Unpartition (in Python `gmsh.model.mesh.unpartition()`) and \
+         save again"
     )]
     Partitioned,
     /// Elements of an unsupported kind.
@@ -89,8 +90,8 @@ pub enum GmshCause {
     },
     /// Neither triangles nor lines.
     #[error(
-        "the file has neither triangles nor lines; in Gmsh, mesh the surfaces (2D) before saving. If there are physical \
-         groups, Gmsh saves their members only: name the body by `Physical Surface(\"body\") = {{…}};`"
+        "the file has neither triangles nor lines; in Gmsh, mesh the surfaces (2D) before saving. If there are \
+         physical groups, Gmsh saves their members only: name the body by `Physical Surface(\"body\") = {{…}};`"
     )]
     NoElements,
     /// Surfaces whose triangles were not saved.
@@ -116,8 +117,8 @@ pub enum GmshCause {
     NotPlane { nodes: [u64; 2], values: [f64; 2], advice: &'static str },
     /// Lines that are not a bar along x.
     #[error(
-        "the file has lines but no triangles, and the lines are not a bar along x: node {} has {axis} = {} m and node {} has \
-         {axis} = {} m. For a plane body: with physical groups, Gmsh saves their members only; name \
+        "the file has lines but no triangles, and the lines are not a bar along x: node {} has {axis} = {} m and node \
+         {} has {axis} = {} m. For a plane body: with physical groups, Gmsh saves their members only; name \
          the body by `Physical Surface(\"body\") = {{…}};` and mesh in 2D",
         .nodes[0], .values[0], .nodes[1], .values[1]
     )]
@@ -151,8 +152,8 @@ fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {
             "a mesh cannot have triangles and bars; in Gmsh, delete the curve, or save without it by `Mesh.SaveAll = 0`"
         }
         (false, 2) => {
-            "percute takes no bars beside triangles; in Gmsh, take the curve out of its group, or, where it should bound a \
-             surface, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
+            "percute takes no bars beside triangles; in Gmsh, take the curve out of its group, or, where it should \
+             bound a surface, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
         }
         (false, _) => "in Gmsh, take the point out of its group",
     }

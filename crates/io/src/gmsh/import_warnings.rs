@@ -75,8 +75,8 @@ pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option
     let (edge, edges, of) = if dimension == 2 { ("edge", "edges", "curves") } else { ("point", "points", "points") };
     let (what, lie, are) = if count == 1 { (edge, "lies", "was") } else { (edges, "lie", "were") };
     let message = format!(
-        "{count} {what} of {} {lie} inside the body and {are} left out: groups of {of} name parts of its boundary, where it \
-         can be held, loaded or touched",
+        "{count} {what} of {} {lie} inside the body and {are} left out: groups of {of} name parts of its boundary, \
+         where it can be held, loaded or touched",
         quoted(&groups)
     );
     import_warning("inner_facets", "parts of groups inside the body left out", message, groups)
@@ -112,7 +112,8 @@ pub(super) fn large(size: f64, scale: f64) -> Option<ImportWarning> {
         return None;
     }
     let message = format!(
-        "the mesh in the file is {size:.3} m large, corner to corner: if its lengths are in millimetres, give `scale` = 1e-3"
+        "the mesh in the file is {size:.3} m large, corner to corner: if its lengths are in millimetres, give `scale` \
+         = 1e-3"
     );
     Some(ImportWarning {
         name: "large_mesh",

@@ -5,8 +5,8 @@ use super::raw::{Element, Node};
 use percute_core::mesh::MeshError;
 use percute_core::simplex::Shape;
 
-/// Tolerance of a plane or line, as a fraction of the body size; smaller distances are rounding. It is also the distance
-/// below which two nodes coincide.
+/// Tolerance of a plane or line, as a fraction of the body size; smaller distances are rounding. It is also the
+/// distance below which two nodes coincide.
 const FLAT: f64 = 1e-10;
 
 /// Nodes by increasing tags.

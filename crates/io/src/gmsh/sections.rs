@@ -92,8 +92,8 @@ fn no_mesh(rest: &[u8], path: &Path) -> GmshCause {
     let advice = if !rest.is_empty() && !rest.starts_with(b"<") && (ending || begins) {
         "a script (.geo) has no mesh yet: `gmsh -2 block.geo -o block.msh` makes it"
     } else {
-        "in Gmsh, save as .msh (version 4.1 or 2.2). Other formats: `percute.Mesh.read(…).write(\"block.msh\")` in Python, with \
-         the extra `mesh`"
+        "in Gmsh, save as .msh (version 4.1 or 2.2). Other formats: `percute.Mesh.read(…).write(\"block.msh\")` in \
+         Python, with the extra `mesh`"
     };
     GmshCause::NotMsh { found: if rest.is_empty() { "nothing, it is empty".to_string() } else { shown(rest) }, advice }
 }

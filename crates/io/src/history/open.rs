@@ -193,8 +193,8 @@ fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCau
     }
 }
 
-/// Nodes of the rows of the contact data, if any, and whether forces and touching status are there. Status without forces
-/// is not read: it does not follow from the scheme.
+/// Nodes of the rows of the contact data, if any, and whether forces and touching status are there. Status without
+/// forces is not read: it does not follow from the scheme.
 fn contact(
     ours: &Part<'_>,
     instants: usize,

@@ -20,8 +20,8 @@ pub struct Recovered {
     pub was_complete: bool,
 }
 
-/// Completes a history whose run was killed: VTK then reads all its complete steps. The room of steps that were never written is
-/// given back.
+/// Completes a history whose run was killed: VTK then reads all its complete steps. The room of steps that were never
+/// written is given back.
 ///
 /// # Errors
 /// A file that is not a history, is truncated, has no step, is still being written, or cannot be written to.
@@ -64,8 +64,8 @@ pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
     change(path, |file| note_steps(&file.group("VTKHDF")?, count.max(1)))
 }
 
-/// Gives back the room of steps that were never written. `rooms` are the places of step 0 and the sizes of a step (bytes); of the
-/// `planned` instants, `count` were written. The file keeps its length, and has holes there.
+/// Gives back the room of steps that were never written. `rooms` are the places of step 0 and the sizes of a step
+/// (bytes); of the `planned` instants, `count` were written. The file keeps its length, and has holes there.
 pub(super) fn give_back_room(file: &File, rooms: impl IntoIterator<Item = (u64, u64)>, planned: usize, count: usize) {
     let unwritten = planned.saturating_sub(count) as u64;
     for (place, row) in rooms.into_iter().filter(|(_, row)| row * unwritten > 0) {

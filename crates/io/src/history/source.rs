@@ -194,7 +194,8 @@ impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
 }
 
 impl<const D: usize, const N: usize> HistorySource<D, N> {
-    /// The stored steps, also of a thinned history: numbered by their place in the file, and with the motion that it has.
+    /// The stored steps, also of a thinned history: numbered by their place in the file, and with the motion that it
+    /// has.
     #[must_use]
     pub fn stored(&self) -> StoredSteps<'_, D, N> {
         StoredSteps(self)

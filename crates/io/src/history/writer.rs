@@ -91,7 +91,8 @@ impl<const D: usize> Writer<D> {
     }
 
     /// Waits for the last step, writes the number of steps for VTK, marks the file complete and waits for
-    /// the disk. A run that was stopped cleanly ends in the same way. A file that was moved is completed in its new place.
+    /// the disk. A run that was stopped cleanly ends in the same way. A file that was moved is completed in its new
+    /// place.
     ///
     /// # Errors
     /// A step that could not be written, or a file that was moved or removed.

@@ -1,5 +1,5 @@
-//! The heaps of texts of variable length, checked before the library reads them: they have no checksums, and an object of a wrong size
-//! can keep the library in an endless loop.
+//! The heaps of texts of variable length, checked before the library reads them: they have no checksums, and an object
+//! of a wrong size can keep the library in an endless loop.
 
 use std::fs::File;
 use std::io;

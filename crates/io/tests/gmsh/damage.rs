@@ -47,7 +47,8 @@ fn child() {
     }
 }
 
-/// In an address space of 500 MB, a few times what the test needs: whoever takes memory for what a spoilt file says dies.
+/// In an address space of 500 MB, a few times what the test needs: whoever takes memory for what a spoilt file says
+/// dies.
 #[test]
 fn cut_and_changed_files_are_survived() {
     let output = Command::new("sh")

@@ -117,7 +117,8 @@ fn parametric_nodes_are_read() {
         SQUARE.replace("2 1 0 5", "2 1 1 5").replace("1 1 0\n0 1 0\n7 7 7", "1 1 0 0.1 0.2\n0 1 0 5 5\n7 7 7 nan 0");
     let with = with.replace("\n0 0 0\n1 0 0\n", "\n0 0 0 0 0\n1 0 0 0.5 -1\n");
     assert_same(&plane(of_bytes(with.as_bytes()).unwrap()).mesh, &text);
-    let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n3 0 1 0 2 4 0.5 0.5\n\
+    let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n3 0 1 0 2 4 \
+        0.5 0.5\n\
                $EndParametricNodes\n$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
     assert_eq!(plane(of_bytes(old.as_bytes()).unwrap()).mesh.points(), [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
 }

@@ -69,7 +69,8 @@ fn a_body_in_no_physical_group_is_missed() {
     assert!(message.contains("surfaces but no triangles") && message.contains("Physical Surface"), "{message}");
     let (message, _) = said(&format!("{head}$Elements\n0 0 0 0\n$EndElements\n"));
     assert!(message.contains("neither triangles nor lines") && message.contains("mesh the surfaces"), "{message}");
-    let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 1 1 0\n$EndNodes\n$Elements\n1\n1 1 2 0 1 1 2\n$EndElements\n";
+    let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 1 1 0\n$EndNodes\n$Elements\n1\n1 1 2 0 1 1 \
+        2\n$EndElements\n";
     let (message, _) = said(old);
     assert!(message.contains("not a bar along x: node 1 has y = 0 m and node 2 has y = 1 m"), "{message}");
     assert!(message.contains("Physical Surface"), "{message}");
@@ -86,7 +87,8 @@ fn bodies_that_only_seem_to_touch_are_told_to_be_joined() {
 
 #[test]
 fn bodies_that_overlap_are_told_to_be_cut_apart() {
-    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 3 0 0\n3 0 3 0\n4 1 1 0\n5 4 1 0\n6 4 4 0\n$EndNodes\n\
+    let text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 3 0 0\n3 0 3 0\n4 1 1 0\n5 4 1 0\n6 4 4 \
+        0\n$EndNodes\n\
                 $Elements\n2\n40 2 2 0 1 1 2 3\n70 2 2 0 2 4 5 6\n$EndElements\n";
     let (message, _) = said(text);
     assert!(message.contains("elements 40 and 70 touch or overlap") && message.contains("Coherence;"), "{message}");

@@ -71,7 +71,8 @@ fn child() {
     }
 }
 
-/// Each stored number of the steps and of the mesh: one that is changed is refused, with its field and instant, or is not read.
+/// Each stored number of the steps and of the mesh: one that is changed is refused, with its field and instant, or is
+/// not read.
 #[test]
 fn a_changed_number_is_refused() {
     let folder = folder();

@@ -272,7 +272,8 @@ fn unfinished_files_give_their_whole_steps() {
     }
 }
 
-/// The room of steps that were never written is given back, after a kill and after a stop, and the steps keep their bits.
+/// The room of steps that were never written is given back, after a kill and after a stop, and the steps keep their
+/// bits.
 #[test]
 fn unwritten_steps_give_their_room_back() {
     let folder = folder();
@@ -290,7 +291,8 @@ fn unwritten_steps_give_their_room_back() {
             drop(writer);
             recover(&path).unwrap();
         }
-        // File systems without holes keep it all; those of the tests have them. The blocks at the ends of each array remain.
+        // File systems without holes keep it all; those of the tests have them. The blocks at the ends of each array
+        // remain.
         assert!(room() < 10 * 357 * 24 + 150_000, "{} bytes", room());
         assert_same(&replayed(&path, &problem).unwrap(), &history, 10);
     }

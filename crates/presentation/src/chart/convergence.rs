@@ -10,7 +10,8 @@ use percute_workflow::verify::{Level, Verification};
 const HEIGHT: f64 = 190.0;
 const BELOW: f64 = 34.0;
 const ROW: f64 = 20.0;
-/// Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their range.
+/// Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their
+/// range.
 const BESIDE: f64 = 1.1;
 const AROUND: f64 = 1.25;
 const PADDING: f64 = 0.1;
@@ -49,8 +50,8 @@ const CONTACT: [Quantity; 3] = [
 const EXPECTED: &str = "expected by the verdict on the first mesh";
 
 /// Estimate and true error, effectivity index, and peak force, impulse and rebound velocity over their values on the
-/// finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects on
-/// the first mesh is shaded. None with fewer than two meshes or without an error.
+/// finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects
+/// on the first mesh is shaded. None with fewer than two meshes or without an error.
 #[must_use]
 pub fn convergence(verification: &Verification) -> Option<String> {
     let levels = &verification.levels;

@@ -19,8 +19,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The part of the surface that comes into contact, with the results of all nodes at all instants. None without these,
-    /// without contact, and where a single node may touch.
+    /// The part of the surface that comes into contact, with the results of all nodes at all instants. None without
+    /// these, without contact, and where a single node may touch.
     #[must_use]
     pub fn new<const D: usize>(results: &ContactResults<D>) -> Option<Self> {
         let (steps, count) = (results.steps.as_ref()?, results.nodes.len());
@@ -52,8 +52,8 @@ fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The nodes to show, in their order along the surface: those that are pressed, and some on both sides. A closed outline is
-/// opened in its longest part without contact.
+/// The nodes to show, in their order along the surface: those that are pressed, and some on both sides. A closed
+/// outline is opened in its longest part without contact.
 fn order<const D: usize>(nodes: &[ContactPoint<D>], pressed: impl Fn(usize) -> bool) -> Option<Vec<usize>> {
     let count = nodes.len();
     let pressed: Vec<bool> = (0..count).map(pressed).collect();

@@ -74,14 +74,15 @@ fn pressure(contents: &Contents<'_>) -> String {
     let Some(surface) = contents.surface else {
         // A bar has a single node at each end.
         let plane = contents.body.dimension == 2;
-        let text = "The pressure along the surface is not drawn: the report has no contact results of all nodes at all instants.";
+        let text = "The pressure along the surface is not drawn: the report has no contact results of all nodes at all \
+            instants.";
         return if plane { remark(text) } else { String::new() };
     };
     let Ok(svg) = space_time(surface) else { return String::new() };
     let [from, to] = surface.ends.each_ref().map(|end| vector(end));
     let caption = format!(
-        "Pressure over time along the part of the surface that comes into contact, from {from} m (below) to {to} m (above), \
-         undeformed. No colour: no pressure."
+        "Pressure over time along the part of the surface that comes into contact, from {from} m (below) to {to} m \
+         (above), undeformed. No colour: no pressure."
     );
     figure(&svg, "pressure along the surface over time", &caption)
 }

@@ -149,7 +149,8 @@ mod tests {
         let html = shown(
             r#"{"error": {"sup": 1.5}, "verdict": {"trust": "limited", "text": ["Refine <there>.", "Keep Δt_c."]},
                 "contact": {"first_touch": 1e-6}, "consistency": {"balance": 2.5e-9},
-                "rebound": {"restitution": 0.875, "velocity_before": [0.0, -4.0], "velocity_after": null, "ended": false}}"#,
+                "rebound": {"restitution": 0.875, "velocity_before": [0.0, -4.0], "velocity_after": null,
+                            "ended": false}}"#,
             None,
         );
         for part in [

@@ -13,8 +13,8 @@ pub(super) fn section(document: &Document) -> String {
     let mut table = Table::long(&["key", "~value"]);
     walk("", document.all(), &mut table);
     let contents = format!(
-        "<details><summary>All numbers of the document with all their digits, by the keys that docs/json.md explains. Units are \
-         SI.</summary>\n{}</details>\n",
+        "<details><summary>All numbers of the document with all their digits, by the keys that docs/json.md explains. \
+         Units are SI.</summary>\n{}</details>\n",
         table.html()
     );
     sectioned("All numbers", &contents)

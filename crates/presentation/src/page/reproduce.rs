@@ -14,7 +14,8 @@ pub(super) fn section(contents: &Contents<'_>) -> String {
     let document = contents.document;
     let version = document.text("versions.percute");
     let mut html = paragraph(&format!(
-        "percute {version} computed the numbers on {} {}. The same version on the same architecture gives them again bit by bit.",
+        "percute {version} computed the numbers on {} {}. The same version on the same architecture gives them again \
+         bit by bit.",
         document.text("versions.architecture"),
         document.text("versions.system")
     ));
@@ -26,8 +27,8 @@ pub(super) fn section(contents: &Contents<'_>) -> String {
                 + &text(&case.text)
         }
         None => {
-            let origin = "The problem was not stated in a case file. This is the problem in the language of the case files, without \
-                          mesh, initial fields and instants.";
+            let origin = "The problem was not stated in a case file. This is the problem in the language of the case \
+                          files, without mesh, initial fields and instants.";
             without_case(document) + &heading("Statement of the problem") + &remark(origin) + &text(contents.statement)
         }
     };
@@ -43,8 +44,8 @@ fn mesh_file(body: &Body, case: &str) -> String {
     let kind = if body.dimension == 1 { "bar element" } else { "triangle" };
     let (elements, nodes) = (counted(body.elements(), kind), counted(body.points.len(), "node"));
     let told = format!(
-        "The case reads the mesh file `{file}`, which gives {elements} and {nodes} and is not on this page: it must lie \
-         beside the case. A history of the run has its mesh, too, in metres, for a case without `scale`: \
+        "The case reads the mesh file `{file}`, which gives {elements} and {nodes} and is not on this page: it must \
+         lie beside the case. A history of the run has its mesh, too, in metres, for a case without `scale`: \
          `percute.open(\"history.vtkhdf\").problem.mesh.write(\"mesh.msh\")` in Python writes it."
     );
     paragraph(&told)

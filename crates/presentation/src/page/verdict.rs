@@ -30,8 +30,8 @@ fn interrupted(document: &Document) -> String {
     let [steps, planned] = ["steps", "steps_planned"].map(|path| number(document.number(path)));
     let end = document.number("end").map_or_else(String::new, |end| html(&format!(", t = {}", quantity(end, "s", 4))));
     format!(
-        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}{end}: all numbers are those of \
-         the steps until then.</p></div>\n"
+        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}{end}: all numbers are those \
+         of the steps until then.</p></div>\n"
     )
 }
 

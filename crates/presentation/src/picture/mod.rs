@@ -113,8 +113,8 @@ fn worst(document: &Document, count: usize) -> impl Iterator<Item = &serde_json:
 const MARK: f64 = 8.5;
 const APART: f64 = 2.0 * MARK + 2.0;
 
-/// Draws the ranks of elements at their places, the first place that of rank 1. A mark that would cover one before it stands beside
-/// its place, with a line to it.
+/// Draws the ranks of elements at their places, the first place that of rank 1. A mark that would cover one before it
+/// stands beside its place, with a line to it.
 fn marks(svg: &mut Svg, places: &[[f64; 2]]) {
     let marks = apart(places);
     for (&place, &mark) in places.iter().zip(&marks).filter(|(place, mark)| place != mark) {
@@ -127,7 +127,8 @@ fn marks(svg: &mut Svg, places: &[[f64; 2]]) {
     }
 }
 
-/// Places for marks that do not cover each other: each at its own or, if there is no room, at the nearest of some around it, above first.
+/// Places for marks that do not cover each other: each at its own or, if there is no room, at the nearest of some
+/// around it, above first.
 fn apart(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     /// Directions that are tried, and the steps in them (pixels).
     const DIRECTIONS: usize = 12;

@@ -144,7 +144,8 @@ mod tests {
             let (cos, sin) = (degrees.to_radians().cos(), degrees.to_radians().sin());
             let strokes = strokes([-sin, cos]);
             assert!(strokes.iter().flatten().all(|x| (-0.1..=200.1).contains(x)), "{degrees}: {strokes:?}");
-            // Along the plane, from end to end of its part in the frame, no gap is longer than two distances of strokes.
+            // Along the plane, from end to end of its part in the frame, no gap is longer than two distances of
+            // strokes.
             let along = |x: f64, y: f64| (x - 100.0) * cos + (100.0 - y) * sin;
             let half = 100.0 / cos.abs().max(sin.abs());
             let mut places: Vec<f64> = strokes.iter().flat_map(|s| [along(s[0], s[1]), along(s[2], s[3])]).collect();

@@ -65,7 +65,8 @@ pub(super) fn steps(table: &Table<'_>) -> Result<StepChoice, CaseError> {
     }
 }
 
-/// Reads a list of `fields`: those of the history, if it names any, and whether the estimate file has the admissible ones.
+/// Reads a list of `fields`: those of the history, if it names any, and whether the estimate file has the admissible
+/// ones.
 pub(super) fn fields(value: &Value<'_>) -> Result<(Option<Vec<String>>, bool), CaseError> {
     let (mut kept, mut admissible) = (Vec::new(), false);
     for entry in value.list("names")? {

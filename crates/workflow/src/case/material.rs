@@ -16,7 +16,8 @@ pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>
     let tables = root.tables("material")?;
     if tables.is_empty() {
         return Err(root.error(
-            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), and `poisson` and `plane` (a bar: `section` in m²)",
+            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), and `poisson` and `plane` (a bar: \
+             `section` in m²)",
         ));
     }
     let one = |table: &Table<'_>| {

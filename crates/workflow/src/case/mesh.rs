@@ -55,7 +55,8 @@ pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
 pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseError {
     if table.get("file").is_some() && error.message.contains(NOT_FOR_BARS) {
         error.message += "; the mesh file has lines only: for a plane body, name it in Gmsh by \
-                          `Physical Surface(\"body\") = {…};`, because with physical groups Gmsh saves their members only";
+                          `Physical Surface(\"body\") = {…};`, because with physical groups Gmsh saves their \
+                          members only";
     }
     error
 }
@@ -63,8 +64,8 @@ pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseErro
 /// A mesh of more elements than this is large: to make it takes more than a tenth of a second.
 const LARGE: usize = 100_000;
 
-/// The coarsest mesh of the same kind, with the same groups, for checks of other tables before a large mesh is made. None unless the
-/// mesh is generated and large.
+/// The coarsest mesh of the same kind, with the same groups, for checks of other tables before a large mesh is made.
+/// None unless the mesh is generated and large.
 pub(super) fn coarsest(table: &Table<'_>) -> Option<AnyMesh> {
     let count = |of: &str, keys: &[&'static str], key: &str| {
         table.get(of).and_then(|value| value.table(keys, "").ok()?.get(key)?.count(1).ok()).unwrap_or(1)

@@ -4,8 +4,8 @@
 //!
 //! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
 //!   `top`), `disc = { radius, rings }` around the origin (outline `boundary`), `bar = { length, elements }` (ends
-//!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres per
-//!   unit of length, 1 unless given); or arrays: `points` and `cells`, with
+//!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres
+//!   per unit of length, 1 unless given); or arrays: `points` and `cells`, with
 //!   `edge_groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
 //!   `element_groups = { name = [element, …] }`;
 //! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
@@ -19,8 +19,8 @@
 //! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
 //! - `[estimate]`: `reconstruction`, `acceleration`, `every`;
 //! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
-//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields, or the names of those
-//!   that the history keeps; `every` or `times`, the steps that it keeps.
+//!   the estimate file, how many or a list of times; `fields`, whether it holds the admissible fields, or the names of
+//!   those that the history keeps; `every` or `times`, the steps that it keeps.
 //!
 //! The reader goes through the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
@@ -69,8 +69,9 @@ use value::table::Table;
 const TABLES: [&str; 10] =
     ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
 
-const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectangle = { width = 0.05, height = 0.04, nx = 20, \
-                       ny = 16 }; `percute new block` prints a whole case to start from";
+const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectangle = \
+                       { width = 0.05, height = 0.04, nx = 20, ny = 16 }; `percute new block` prints a whole case to \
+                       start from";
 
 /// Names of the components.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -149,7 +150,8 @@ fn read<const D: usize, const N: usize>(
     Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_file })
 }
 
-/// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the obstacle.
+/// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the
+/// obstacle.
 #[must_use]
 pub fn refused_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
@@ -168,7 +170,8 @@ fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     DeTable::parse(source.text()).map_err(|error| {
         let at = At { path: String::new(), span: error.span().unwrap_or(0..0) };
         if source.text().starts_with("$MeshFormat") {
-            let message = "this is a Gmsh mesh, not a case; name it in a case: [mesh], and `file = \"block.msh\"` on the next line";
+            let message = "this is a Gmsh mesh, not a case; name it in a case: [mesh], and `file = \"block.msh\"` on \
+                the next line";
             return source.error(&at, message);
         }
         let mut wrong = source.error(&at, "");
@@ -205,8 +208,9 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         self.error_at(place, message)
     }
 
-    /// Refuses a start that the simulation would refuse, a run for which there is no memory, and one that takes long unless
-    /// `long` says so, before warnings and before any work; `estimated` if the error is estimated beside the run.
+    /// Refuses a start that the simulation would refuse, a run for which there is no memory, and one that takes long
+    /// unless `long` says so, before warnings and before any work; `estimated` if the error is estimated beside the
+    /// run.
     ///
     /// # Errors
     /// The place in the file.

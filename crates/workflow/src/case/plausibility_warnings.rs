@@ -8,8 +8,8 @@ use crate::report::{Warning, few_samples, varying_steps};
 use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
 
 impl<const D: usize, const N: usize> CaseOf<D, N> {
-    /// Statements that are possible but more likely slips, each with its line, for use before the run. With `in_memory`, the
-    /// history is kept in memory.
+    /// Statements that are possible but more likely slips, each with its line, for use before the run. With
+    /// `in_memory`, the history is kept in memory.
     #[must_use]
     pub fn plausibility_warnings(&self, in_memory: bool) -> Vec<Warning> {
         let mut all = plausibility_warnings(&self.problem, &self.times);
@@ -32,7 +32,8 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         if all.is_empty() { Vec::new() } else { self.at_their_lines(all) }
     }
 
-    /// What to say if there is no memory for the run, and where: a run of millions of steps is more likely a slip in the end.
+    /// What to say if there is no memory for the run, and where: a run of millions of steps is more likely a slip in
+    /// the end.
     pub(super) fn lack_of_memory(&self) -> Option<(Place, String)> {
         let told = memory::refusal(memory::of_case(self, false))?;
         let warnings = plausibility_warnings(&self.problem, &self.times);

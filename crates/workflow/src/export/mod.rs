@@ -34,8 +34,8 @@ pub struct Request {
     pub names: Names,
     /// Its steps.
     pub steps: StepChoice,
-    /// Names of its fields; by default displacement, velocity, reaction, stress and von Mises stress, and the error if there
-    /// is an estimate.
+    /// Names of its fields; by default displacement, velocity, reaction, stress and von Mises stress, and the error if
+    /// there is an estimate.
     pub fields: Option<Vec<String>>,
     /// Of a thinned history, the fields that it lacks; `source` then gives its stored steps.
     pub lacks: Option<Vec<&'static str>>,

@@ -13,7 +13,8 @@ use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::is_stable;
 
-/// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to 0.02.
+/// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to
+/// 0.02.
 const DRIFT: f64 = 0.1;
 /// The cause of a history that runs backwards.
 pub(crate) const REVERSED: &str = "the order in time is reversed: the last instants fit the initial state";
@@ -88,7 +89,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let factor = ends.given.or(ends.speed).filter(|f| f.is_finite() && (f - 1.0).abs() > BALANCE);
         let factor = factor.map_or(String::new(), |f| format!(", {} the stated one", times(f)));
         format!(
-            "`initial_velocity` is not that of the history, which starts with {} m/s on average{factor}; the problem has {} m/s",
+            "`initial_velocity` is not that of the history, which starts with {} m/s on average{factor}; the problem \
+             has {} m/s",
             vector(&given, 4),
             vector(&stated, 4)
         )
@@ -100,8 +102,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let side = if gap > 0.0 { "above" } else { "below" };
         let (which, away) = (self.which(k), trimmed(gap.abs(), 4));
         Some(format!(
-            "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} m \
-             along its normal",
+            "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it \
+             by {} m along its normal",
             trimmed(gap, 4)
         ))
     }
@@ -109,8 +111,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
     /// Contact forces that throw nodes off their plane.
     fn unstable(&self) -> String {
         format!(
-            "the contact is unstable, and the energy drifts by {}: is a penalty too stiff for the steps? Otherwise the `point` of \
-             a plane is not that of the history",
+            "the contact is unstable, and the energy drifts by {}: is a penalty too stiff for the steps? Otherwise the \
+             `point` of a plane is not that of the history",
             percent(self.found.energy)
         )
     }
@@ -227,8 +229,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let (step, critical) = (self.source.times().longest_step(), critical_time_step(self.problem));
         (!is_stable(step, critical)).then(|| {
             format!(
-                "the instants are {} critical steps apart: they are samples, not the steps of the solver; give velocities \
-                 and accelerations too",
+                "the instants are {} critical steps apart: they are samples, not the steps of the solver; give \
+                 velocities and accelerations too",
                 trimmed(step / critical, 4)
             )
         })
@@ -259,8 +261,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             ));
         }
         (self.found.balance > 0.3).then(|| {
-            "the displacements do not fit the mesh and its material: is the order of the nodes that of the mesh, and are all \
-             units those of SI?"
+            "the displacements do not fit the mesh and its material: is the order of the nodes that of the mesh, and \
+             are all units those of SI?"
                 .to_string()
         })
     }

@@ -97,8 +97,8 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         Ok(())
     }
 
-    /// Whether contact forces are needed at the last instant, but not there: all are zero, and without them a node of the
-    /// surface would go into its plane in a further step.
+    /// Whether contact forces are needed at the last instant, but not there: all are zero, and without them a node of
+    /// the surface would go into its plane in a further step.
     fn needed_at_the_end(&self) -> Result<bool, SinkError> {
         let last = self.source.count().saturating_sub(1);
         let mut needed = false;

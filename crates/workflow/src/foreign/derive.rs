@@ -10,8 +10,8 @@ use percute_core::problem::Problem;
 
 /// Contact forces below so many times the noise of the forces inside the body are noise.
 const ABOVE: f64 = 8.0;
-/// Noise changes the velocity of a node by at most this share of the largest in a step, unless it is rounding. Where inertia
-/// and stiffness do not fit each other, the forces inside the body are not small either.
+/// Noise changes the velocity of a node by at most this share of the largest in a step, unless it is rounding. Where
+/// inertia and stiffness do not fit each other, the forces inside the body are not small either.
 const LOUDEST: f64 = 1e-3;
 
 /// Derives contact forces and touching status.
@@ -32,8 +32,8 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         Self { balance: Balance::new(problem, source.times()), nearness, stiffest, noise: [f64::INFINITY, 0.0] }
     }
 
-    /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. Whether it has any
-    /// contact force.
+    /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. Whether it
+    /// has any contact force.
     pub(super) fn listen(&mut self, source: &dyn StepSource<D>) -> Result<bool, SinkError> {
         let (mut inside, mut loudest) = (0.0_f64, 0.0_f64);
         windows(source, &mut |window| {

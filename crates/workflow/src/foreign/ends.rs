@@ -10,14 +10,15 @@ use percute_core::problem::Problem;
 /// What start and end say.
 #[derive(Clone, Debug)]
 pub(super) struct Ends<const D: usize> {
-    /// Velocity of the first step without its forces, over v₀, at nodes without contact force: the best factor; none if none
-    /// of them moves.
+    /// Velocity of the first step without its forces, over v₀, at nodes without contact force: the best factor; none if
+    /// none of them moves.
     pub(super) speed: Option<f64>,
     /// Means of v₀ as it is given, else of that velocity, and of the stated v₀ (m/s).
     pub(super) start: [[f64; D]; 2],
     /// The same factor of the given velocity, if one is given.
     pub(super) given: Option<f64>,
-    /// Difference of −v of the last step from v₀, over the norm of v₀; largest difference of u_N from u_0, over the size.
+    /// Difference of −v of the last step from v₀, over the norm of v₀; largest difference of u_N from u_0, over the
+    /// size.
     pub(super) reversed: [f64; 2],
 }
 
@@ -69,8 +70,8 @@ impl<const D: usize> Ends<D> {
     }
 }
 
-/// Whether the last two instants, dt (s) apart, have the initial velocity (m/s) of a history that runs backwards, but for nodes
-/// that touch in its first step.
+/// Whether the last two instants, dt (s) apart, have the initial velocity (m/s) of a history that runs backwards, but
+/// for nodes that touch in its first step.
 pub(crate) fn runs_backwards<const D: usize>(last: [&[[f64; D]]; 2], dt: f64, velocity: &[[f64; D]]) -> bool {
     apart(&rate(last[1], last[0], dt), velocity) <= FALL
 }

@@ -5,8 +5,8 @@ use serde::Serialize;
 /// The figures of consistency; each is 0 in a history that fits its problem exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Consistency {
-    /// Largest component of M a + K u − F − R at any node and instant, over the largest of its terms. The acceleration is
-    /// that of the history, else that of the displacements.
+    /// Largest component of M a + K u − F − R at any node and instant, over the largest of its terms. The acceleration
+    /// is that of the history, else that of the displacements.
     pub balance: f64,
     /// The node of this component.
     pub node: usize,
@@ -22,8 +22,8 @@ pub struct Consistency {
     pub initial_velocity: f64,
     /// Largest tension, or tangential force beyond Coulomb's limit, over the largest normal force.
     pub cone: f64,
-    /// Misfit of Coulomb's law at nodes that slide, ∑(μR_n|w_t| + R_t·w_t)Δt over ∑μR_n|w_t|Δt, w_t of the step after t_n; none
-    /// if no node slides with friction.
+    /// Misfit of Coulomb's law at nodes that slide, ∑(μR_n|w_t| + R_t·w_t)Δt over ∑μR_n|w_t|Δt, w_t of the step after
+    /// t_n; none if no node slides with friction.
     pub slip: Option<f64>,
     /// Mean gap under a contact force, as far as it is nearly the same everywhere, over the element size.
     pub plane: f64,
@@ -31,8 +31,8 @@ pub struct Consistency {
     pub gap_under_force: f64,
     /// Largest penetration, over the element size.
     pub penetration: f64,
-    /// Number of nodes and instants at which touching status and contact force one step before disagree, over the number of
-    /// changes of either.
+    /// Number of nodes and instants at which touching status and contact force one step before disagree, over the
+    /// number of changes of either.
     pub touching: f64,
     /// Largest error of the energy balance, over the largest energy or work.
     pub energy: f64,

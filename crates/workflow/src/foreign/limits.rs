@@ -13,23 +13,23 @@ pub(crate) struct Excess {
     pub(crate) name: &'static str,
 }
 
-/// Limits of `balance`, `velocity` and `initial_velocity`. Percute's own histories and those of an independent solver have
-/// 1e-13 to 1e-9, in single precision 1e-6 to 1e-3; a density that is wrong by 2 % has 1e-2.
+/// Limits of `balance`, `velocity` and `initial_velocity`. Percute's own histories and those of an independent solver
+/// have 1e-13 to 1e-9, in single precision 1e-6 to 1e-3; a density that is wrong by 2 % has 1e-2.
 pub(super) const BALANCE: f64 = 1e-2;
 /// Limit of `initial_displacement`, a share of the body: single precision has 1e-7.
 pub(super) const PLACE: f64 = 1e-6;
 /// Limit of `cone`: single precision has 1e-6.
 pub(super) const CONE: f64 = 1e-2;
-/// Limit of `gap_under_force` and `penetration`, in elements. The softest penalty of docs/recipes.md has 0.35, which the
-/// estimate grades; more is a plane at another place, or another unit of length.
+/// Limit of `gap_under_force` and `penetration`, in elements. The softest penalty of docs/recipes.md has 0.35, which
+/// the estimate grades; more is a plane at another place, or another unit of length.
 pub(super) const GAP: f64 = 1.0;
 /// Limit of `touching`: a status that is shifted by a step has 1.
 pub(super) const TOUCHING: f64 = 0.05;
-/// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less than 1e-7,
-/// also in single precision. Penalties have more.
+/// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less
+/// than 1e-7, also in single precision. Penalties have more.
 const OFF_CONTACT: f64 = 1e-6;
-/// Limit of `slip` of multipliers. A friction by a penalty lets nodes move before they slide, and has no limit: 0.21 in docs/recipes.md,
-/// above 1 where nodes stick.
+/// Limit of `slip` of multipliers. A friction by a penalty lets nodes move before they slide, and has no limit: 0.21 in
+/// docs/recipes.md, above 1 where nodes stick.
 const SLIP: f64 = 0.05;
 /// Limit of `plane`, in elements: nodes at a larger distance are not in contact.
 pub(super) const PLANE: f64 = NEAR;

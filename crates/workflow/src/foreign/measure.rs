@@ -11,8 +11,8 @@ use super::window::{Window, windows};
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
 
-/// Forces that would change the velocity of a node by this share in a step count as a term of the balance. In the flight of a
-/// rigid body all others are rounding, in single precision up to 1e-4 of it.
+/// Forces that would change the velocity of a node by this share in a step count as a term of the balance. In the
+/// flight of a rigid body all others are rounding, in single precision up to 1e-4 of it.
 const FLIGHT: f64 = 1e-2;
 
 /// What likely causes follow from.
@@ -99,7 +99,8 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
         nodal
     }
 
-    /// Compares given velocities and accelerations with those of the displacements, and the start with that of the problem.
+    /// Compares given velocities and accelerations with those of the displacements, and the start with that of the
+    /// problem.
     fn compare(&mut self, window: Window<'_, D>, motion: &Motion<D>) {
         let now = window.now;
         let Some(before) = now.index.checked_sub(1) else {

@@ -101,8 +101,8 @@ fn samples<const D: usize>(
     }
 }
 
-/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely cause,
-/// unless they are to be accepted.
+/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely
+/// cause, unless they are to be accepted.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,

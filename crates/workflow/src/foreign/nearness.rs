@@ -9,8 +9,8 @@ use percute_core::problem::Problem;
 const ROUNDING: [f64; 2] = [f64::EPSILON, f32::EPSILON as f64];
 /// Roundings of displacements add up in their second difference, and in the sums over the elements of a node.
 pub(super) const ADDED: f64 = 16.0;
-/// A node within this share of an element of its plane can be in contact. The gaps of percute's histories under a force are
-/// below 1e-12 of an element, those of points in single precision below 3e-6.
+/// A node within this share of an element of its plane can be in contact. The gaps of percute's histories under a force
+/// are below 1e-12 of an element, those of points in single precision below 3e-6.
 pub(super) const NEAR: f64 = 1e-5;
 
 /// The lengths of a problem that gaps are compared with.

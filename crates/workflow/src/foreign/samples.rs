@@ -28,7 +28,8 @@ pub(crate) struct Between<'s, const D: usize> {
     times: TimeGrid,
 }
 
-/// Weights of the displacement, velocity and acceleration (each over its power of Δt) of the first and the second sample.
+/// Weights of the displacement, velocity and acceleration (each over its power of Δt) of the first and the second
+/// sample.
 type Weights = [f64; 6];
 
 impl<'s, const D: usize> Between<'s, D> {

@@ -88,8 +88,8 @@ pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<
             Some(format!("the displacements {}", should(1.0 / speed, Quantity::Length)))
         }
         () if paths.is_empty() && !hint.is_empty() => Some(format!(
-            "`initial_velocity`, or the unit of the displacements or of `time`, is not that of the history: it starts with {} \
-             the stated velocity",
+            "`initial_velocity`, or the unit of the displacements or of `time`, is not that of the history: it starts \
+             with {} the stated velocity",
             times(speed)
         )),
         () => None,
@@ -124,8 +124,8 @@ fn young(factor: f64) -> String {
     format!("`young` is not that of the history: it {}", should(factor, Quantity::Modulus))
 }
 
-/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus has the
-/// same effect as another mass.
+/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus
+/// has the same effect as another mass.
 fn mass(factor: f64, speed: Option<f64>, open: bool) -> String {
     let scale = factor.sqrt();
     let time = format!("the steps should be {} as long{}", times(1.0 / scale), Quantity::Time.hint(1.0 / scale));

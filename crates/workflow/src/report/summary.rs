@@ -199,7 +199,8 @@ fn kept_impulse(report: &Report) -> Option<String> {
     (kept != percent(1.0)).then(|| format!("{kept} of the contact impulse kept by the admissible force"))
 }
 
-/// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said already.
+/// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said
+/// already.
 fn contact(report: &Report) -> Option<String> {
     let contact = report.contact.as_ref()?;
     let (first, peak) = (contact.first_touch?, contact.time_of_peak?);

@@ -10,8 +10,8 @@ use serde::Serialize;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
 const DRIFT: f64 = 0.1;
-/// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum of their squared
-/// norms: e/D is 1/√2 where they are orthogonal.
+/// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum
+/// of their squared norms: e/D is 1/√2 where they are orthogonal.
 const NEAR_CEILING: f64 = 0.6;
 /// So is a contact impulse of which less than the one or more than the other is kept.
 const KEPT: [f64; 2] = [0.9, 1.1];
@@ -163,8 +163,8 @@ fn relative_error(relative: [f64; 2]) -> Option<Warning> {
     }
     let shown = percent(largest);
     let message = format!(
-        "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true error; refine the \
-         mesh, and look for elements that are nearly flat"
+        "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
+         error; refine the mesh, and look for elements that are nearly flat"
     );
     warning("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), message)
 }
@@ -192,7 +192,8 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
         return warning("kept_impulse", format!("{shown} of the contact impulse in the admissible force"), message);
     }
     let message = format!(
-        "the admissible contact force keeps {shown} of the simulated impulse; below 90 % the estimate is pessimistic: {advice}"
+        "the admissible contact force keeps {shown} of the simulated impulse; below 90 % the estimate is pessimistic: \
+         {advice}"
     );
     warning("kept_impulse", format!("only {shown} of the contact impulse kept"), message)
 }

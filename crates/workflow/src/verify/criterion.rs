@@ -7,9 +7,9 @@ const LARGEST_MOVE: f64 = 0.1;
 
 /// The effect of the finest mesh on the true error of the first.
 ///
-/// The finest mesh has an error of its own. With fewer than half of it each time, the true error of the first mesh moves by less and less from
-/// reference to reference, and the last reference is off by about the last move at most: in the evidence 5.53 %, then 2.42 %
-/// (docs/verification.md, the cases and their references).
+/// The finest mesh has an error of its own. With fewer than half of it each time, the true error of the first mesh
+/// moves by less and less from reference to reference, and the last reference is off by about the last move at most: in
+/// the evidence 5.53 %, then 2.42 % (docs/verification.md, the cases and their references).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Settled {
     /// By how much the mean true error of the first mesh moves from the finest mesh but one to the finest, relative.
@@ -19,7 +19,8 @@ pub struct Settled {
 }
 
 impl Settled {
-    /// From the mean true errors (J^½) of the first mesh against finer and finer ones; none with fewer than two, or without an error.
+    /// From the mean true errors (J^½) of the first mesh against finer and finer ones; none with fewer than two, or
+    /// without an error.
     pub(super) fn last(errors: &[f64]) -> Option<Self> {
         let [.., before, now] = errors else { return None };
         let moved = (now / before - 1.0).abs();

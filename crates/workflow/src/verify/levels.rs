@@ -46,7 +46,8 @@ pub struct Measures {
     pub mean: f64,
 }
 
-/// Orders p with which quantities fall or converge like h^p on the finest meshes; none where there are too few, or no convergence.
+/// Orders p with which quantities fall or converge like h^p on the finest meshes; none where there are too few, or no
+/// convergence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Orders {
     /// Of the mean estimate: from the two finest meshes.

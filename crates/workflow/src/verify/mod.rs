@@ -1,7 +1,7 @@
 //! A problem on its mesh and on nested refinements of it: estimates beside true errors against the finest.
 //!
-//! All meshes have the Courant number of the first. Each run is compared with all coarser ones as it goes, so that each is simulated
-//! once and a verification is complete after each mesh.
+//! All meshes have the Courant number of the first. Each run is compared with all coarser ones as it goes, so that each
+//! is simulated once and a verification is complete after each mesh.
 
 mod criterion;
 mod levels;
@@ -40,8 +40,8 @@ pub struct Prepared<const D: usize, const N: usize> {
 /// The problem on its mesh and on so many refinements, which may be long.
 ///
 /// # Errors
-/// A number of refinements out of range or with much work that was not asked for, a problem that the case language cannot say, a mesh
-/// that cannot be refined.
+/// A number of refinements out of range or with much work that was not asked for, a problem that the case language
+/// cannot say, a mesh that cannot be refined.
 pub fn prepare<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
@@ -79,8 +79,8 @@ pub fn cost<const D: usize, const N: usize>(prepared: &[Prepared<D, N>], options
     Cost::new(prepared.iter().map(|each| levels::Work::new(&each.problem, &each.times, options)).collect())
 }
 
-/// Runs all meshes and compares each with all coarser ones. After each, `done` gets the verification so far, in which the mesh is the
-/// reference. If the observer breaks, the levels done remain.
+/// Runs all meshes and compares each with all coarser ones. After each, `done` gets the verification so far, in which
+/// the mesh is the reference. If the observer breaks, the levels done remain.
 ///
 /// # Errors
 /// As [`run`](crate::run::run) and [`true_errors`](crate::run::true_errors).

@@ -70,8 +70,8 @@ fn row(cells: &[String; 9]) -> String {
     line.trim_end().to_string()
 }
 
-/// The index of the first mesh beside the range that its verdict states. A reference that is not fine enough has an error of its own that the
-/// true error lacks: the index is too large.
+/// The index of the first mesh beside the range that its verdict states. A reference that is not fine enough has an
+/// error of its own that the true error lacks: the index is too large.
 fn expected(verification: &Verification) -> Option<String> {
     let first = verification.levels.first()?;
     let (index, [low, high]) = (first.effectivity?, first.expected);
@@ -94,7 +94,8 @@ fn conclusion(verification: &Verification) -> String {
     }
     let Some(settled) = verification.settled else {
         return format!(
-            "{stopped}From two refinements on, it shows whether the finest mesh is fine enough; with one, the index is too large."
+            "{stopped}From two refinements on, it shows whether the finest mesh is fine enough; with one, the index is \
+             too large."
         );
     };
     let moved = format!("With the finest mesh the true error of the first moves by {}", percent(settled.moved));

@@ -21,8 +21,8 @@ pub struct ContactMemoryError {
     pub instants: usize,
 }
 
-/// Keeps the contact results of the steps that it takes: beside a run or from its history the same, bit by bit. They follow from
-/// displacements, reactions and touching status alone.
+/// Keeps the contact results of the steps that it takes: beside a run or from its history the same, bit by bit. They
+/// follow from displacements, reactions and touching status alone.
 #[derive(Clone, Debug)]
 pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,

@@ -46,8 +46,8 @@ impl<const D: usize> NodeSummary<D> {
         }
     }
 
-    /// Adds a step of `dt` seconds with the forces and status at both ends. All integrals are trapezoids, like the impulse
-    /// of the scheme.
+    /// Adds a step of `dt` seconds with the forces and status at both ends. All integrals are trapezoids, like the
+    /// impulse of the scheme.
     pub(super) fn over(&mut self, dt: f64, forces: [&[f64; D]; 2], status: [Status; 2]) {
         (0..D).for_each(|c| self.impulse[c] += 0.5 * dt * (forces[0][c] + forces[1][c]));
         let ends = status.iter().filter(|s| **s != Status::Free).count();

@@ -33,8 +33,8 @@ fn too_fast(speed: f64, waves: f64) -> Option<(String, String)> {
     let (shown, waves) = (speed > waves).then(|| (short(speed), short(waves)))?;
     let millimetres = short(1e-3 * speed);
     let message = format!(
-        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), beyond small strains; speeds are in m/s: if it \
-         is in mm/s, write {millimetres}"
+        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), beyond small strains; speeds are in m/s: if \
+         it is in mm/s, write {millimetres}"
     );
     Some((format!("a speed of {shown} m/s, above that of waves"), message))
 }
@@ -62,8 +62,8 @@ fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Pl
     if problem.is_loaded() || moving || !still(problem.initial_velocity()) || !still(problem.initial_displacement()) {
         return None;
     }
-    let message = "nothing moves: there is no initial velocity, no load and no moving support; give the body a velocity \
-                   (m/s), a load or a moving support";
+    let message = "nothing moves: there is no initial velocity, no load and no moving support; give the body a \
+                   velocity (m/s), a load or a moving support";
     Some(plausibility_warning(at("initial", None, "velocity"), "at_rest", "nothing moves", message))
 }
 
@@ -159,8 +159,8 @@ fn never(first: &Approach, end: f64) -> Option<PlausibilityWarning> {
     if time.is_finite() {
         let when = short(time);
         let message = format!(
-            "the gap of {gap} m closes after {when} s (the body starts at {towards} m/s towards the plane), but the run \
-             ends at {end} s: use a later `end`, start nearer, or check the units of gap and velocity"
+            "the gap of {gap} m closes after {when} s (the body starts at {towards} m/s towards the plane), but the \
+             run ends at {end} s: use a later `end`, start nearer, or check the units of gap and velocity"
         );
         let brief = format!("no contact before {when} s");
         return Some(plausibility_warning(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
@@ -170,7 +170,8 @@ fn never(first: &Approach, end: f64) -> Option<PlausibilityWarning> {
         format!("moves the body away from the plane at {away} m/s, so the body never touches: is the sign correct?")
     } else {
         format!(
-            "does not move the body towards the plane, {gap} m away: it never touches; give it a velocity towards the plane"
+            "does not move the body towards the plane, {gap} m away: it never touches; give it a velocity towards the \
+             plane"
         )
     };
     Some(plausibility_warning(
@@ -188,8 +189,8 @@ fn far(first: &Approach, size: f64) -> Option<PlausibilityWarning> {
     }
     let (gap, size, time) = (short(gap), short(size), short(time));
     let message = format!(
-        "the plane is {gap} m away from a body of {size} m, which takes {time} s to reach it: is the point in metres? Start \
-         nearer to save the steps before contact"
+        "the plane is {gap} m away from a body of {size} m, which takes {time} s to reach it: is the point in metres? \
+         Start nearer to save the steps before contact"
     );
     Some(plausibility_warning(
         at("obstacle", Some(obstacle), "point"),

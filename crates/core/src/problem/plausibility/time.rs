@@ -67,7 +67,8 @@ fn unused<const C: usize>(table: &Table<C>, end: f64) -> Option<String> {
         return None;
     }
     Some(format!(
-        "its `time` runs to {} s, but the run to {} s only, and the table hardly changes by then: is `time` in seconds?",
+        "its `time` runs to {} s, but the run to {} s only, and the table hardly changes by then: is `time` in \
+         seconds?",
         short(last),
         short(end)
     ))

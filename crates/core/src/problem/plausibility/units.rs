@@ -24,8 +24,8 @@ const FAST: f64 = 2e4;
 const LARGE: f64 = 60.0;
 /// If the start is refused, a body above this size is more likely in millimetres: its steps are too long.
 pub(super) const LARGE_IF_REFUSED: f64 = 1.0;
-/// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one in
-/// other units.
+/// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one
+/// in other units.
 const WIDE: f64 = 10.0;
 const THICK: f64 = 100.0;
 /// A coefficient of friction above this is more likely a percentage.
@@ -72,8 +72,8 @@ pub(super) fn size_of_body(size: f64, large: f64) -> Option<PlausibilityWarning>
     }
     let (shown, metres) = (short(size), short(1e-3 * size));
     let message = format!(
-        "the body is {shown} m large; lengths are in metres: if these are millimetres, make it {metres} m (a mesh from a \
-             file: `scale` 1e-3)"
+        "the body is {shown} m large; lengths are in metres: if these are millimetres, make it {metres} m (a mesh from \
+             a file: `scale` 1e-3)"
     );
     units("mesh", None, "", message)
 }
@@ -119,7 +119,8 @@ fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Plausibility
             "It is in Pa".to_string()
         };
         format!(
-            "is {shown} Pa, softer than rubber, in a body of {} m (waves run at {waves} m/s): did you mix units? {advice}",
+            "is {shown} Pa, softer than rubber, in a body of {} m (waves run at {waves} m/s): did you mix units? \
+             {advice}",
             short(size)
         )
     } else if young > STIFF {
@@ -127,8 +128,8 @@ fn stiffness(material: &Elastic, size: f64, index: usize) -> Option<Plausibility
     } else if speed > FAST {
         let density = short(material.density());
         format!(
-            "is {shown} Pa; with a density of {density} kg/m³ waves run at {waves} m/s, faster than in any material (diamond: \
-             18000 m/s): did you mix units? They are Pa and kg/m³"
+            "is {shown} Pa; with a density of {density} kg/m³ waves run at {waves} m/s, faster than in any material \
+             (diamond: 18000 m/s): did you mix units? They are Pa and kg/m³"
         )
     } else {
         return None;
@@ -146,7 +147,8 @@ fn extent(material: &Elastic, size: f64, index: usize) -> Option<PlausibilityWar
         }
         let metres = short(1e-6 * extent);
         let message = format!(
-            "is {shown} m², far wider than the bar's length of {length} m; sections are in m²: if it is in mm², write {metres}"
+            "is {shown} m², far wider than the bar's length of {length} m; sections are in m²: if it is in mm², write \
+             {metres}"
         );
         return units("material", Some(index), "section", message);
     }
@@ -187,7 +189,8 @@ fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> O
     }
     let (shown, weight) = (short(largest), short(density * largest));
     let message = format!(
-        "reaches {shown} N/m³, the number of g in m/s²; a weight is density times g, here {weight} N/m³: did you leave out the density?"
+        "reaches {shown} N/m³, the number of g in m/s²; a weight is density times g, here {weight} N/m³: did you leave \
+         out the density?"
     );
     units("body_force", Some(index), "value", message)
 }

@@ -105,9 +105,10 @@ fn a_wrong_force_shows() {
     }
 }
 
-/// Far from the ends of a hat, the stress of a force at the tip of a wedge is radial. With ψ from the bisector to the force
-/// and α the angle of the wedge, a hat of half the width costs more energy by P²/E ln 2 [cos²ψ/(α + sin α) + sin²ψ/(α − sin α)].
-/// Quadratic stresses on few triangles are off by some percent, the less the more triangles there are.
+/// Far from the ends of a hat, the stress of a force at the tip of a wedge is radial. With ψ from the bisector to the
+/// force and α the angle of the wedge, a hat of half the width costs more energy by P²/E ln 2
+/// [cos²ψ/(α + sin α) + sin²ψ/(α − sin α)]. Quadratic stresses on few triangles are off by some percent, the less the
+/// more triangles there are.
 #[test]
 fn octaves_cost_the_energy_of_the_radial_field() {
     use std::f64::consts::{FRAC_PI_2, LN_2, PI};
@@ -177,8 +178,8 @@ fn energy_is_that_of_forces_over_thickness() {
     }
 }
 
-/// Any traction that is linear between break points has its stress: the sum of two hats has the sum of their stresses. In a
-/// coarser cut, without rings inside the last break, the energy is larger by little.
+/// Any traction that is linear between break points has its stress: the sum of two hats has the sum of their stresses.
+/// In a coarser cut, without rings inside the last break, the energy is larger by little.
 #[test]
 fn tractions_between_breaks_have_their_stress() {
     let law = law();
@@ -214,8 +215,8 @@ fn tractions_between_breaks_have_their_stress() {
     assert!([resultants, stress.divergence, stress.edges, stress.inner].iter().all(|r| *r < 1e-12), "{resultants}");
 }
 
-/// A linear displacement does no work on loads that balance and have no first moment: the products with a constant stress
-/// sum to 0 over the star.
+/// A linear displacement does no work on loads that balance and have no first moment: the products with a constant
+/// stress sum to 0 over the star.
 #[test]
 fn products_are_those_of_virtual_work() {
     let law = law();

@@ -84,8 +84,8 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         self.measure.error(stress, &increment, &ElementMotion::of_nodes(like, motions), like.zero())
     }
 
-    /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear and the
-    /// same at all levels.
+    /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear
+    /// and the same at all levels.
     #[inline(always)]
     fn check<T: Value<Stored = Lanes>>(&self, balanced: &Balanced<D, N, T>, residuals: &mut Residuals) {
         let turn = (self.all.turns - self.id.index() % self.all.turns) % self.all.turns;

@@ -110,8 +110,8 @@ impl<const D: usize, const N: usize> FarLevels<'_, '_, '_, D, N> {
     }
 }
 
-/// The integral of a field in the middles of the steps before levels, from the integral and the field at the levels and the
-/// field at the level before the first of them.
+/// The integral of a field in the middles of the steps before levels, from the integral and the field at the levels and
+/// the field at the level before the first of them.
 #[inline(always)]
 fn half_way<R: Registers, const D: usize>(
     length: Wide<R>,

@@ -62,8 +62,8 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         forces
     }
 
-    /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã is
-    /// linear over the step, like the lumping difference.
+    /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã
+    /// is linear over the step, like the lumping difference.
     fn reach(
         &self,
         now: &ForcesKnown<D>,

@@ -1,7 +1,7 @@
 use super::*;
 
-/// The samples of a run with these steps, in each of which some nodes touch with a force (N), on a mesh so fine that the spacing
-/// is limited by the number of steps.
+/// The samples of a run with these steps, in each of which some nodes touch with a force (N), on a mesh so fine that
+/// the spacing is limited by the number of steps.
 fn sampled(every: Sampling, steps: &[(&[bool], f64)], requested: &[usize]) -> Vec<usize> {
     sampled_with(&Options { every, ..Options::default() }, steps, requested)
 }
@@ -50,7 +50,8 @@ fn peaks_of_the_force_are_sampled_and_fluctuations_are_not() {
     assert_eq!(but_multiples(10, &sampled(Sampling::Auto, &steps, &[])), [33, 117]);
 }
 
-/// Of 64 nodes that touch one after the other, those count that are the first, or a quarter of all that touch since one counted.
+/// Of 64 nodes that touch one after the other, those count that are the first, or a quarter of all that touch since one
+/// counted.
 #[test]
 fn nodes_among_many_count_together() {
     let status: Vec<Vec<bool>> = (0..=320).map(|n| (0..64).map(|k| n > 50 + 2 * k).collect()).collect();

@@ -136,8 +136,8 @@ fn a_wrong_acceleration_shows_in_the_resultants() {
     assert!(found.element_resultants > SHOWS && found.star_compatibility < 1e-12, "{found:?}");
 }
 
-/// With `mixed`, 1 % on the lumping difference at one node before the stars are solved puts them out of balance; afterwards it
-/// changes Γ_DA, not the tractions.
+/// With `mixed`, 1 % on the lumping difference at one node before the stars are solved puts them out of balance;
+/// afterwards it changes Γ_DA, not the tractions.
 #[test]
 fn a_wrong_lumping_difference_shows() {
     let (problem, times) = impact();

@@ -3,8 +3,8 @@
 //! The simulation stops the lumped mass of a node that arrives within a step. As a density, the reaction of that step
 //! would grow without bound as steps become shorter. An exact impact at speed v exerts ρcv: it
 //! stops the mass m of the tributary depth m/(ρℓ) in a time of the order of τ = m/(ρcℓ), a wave's through that depth.
-//! So the part of a reaction that changes the motion of its node is spread, with decreasing weight, over the time τ that
-//! follows. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
+//! So the part of a reaction that changes the motion of its node is spread, with decreasing weight, over the time τ
+//! that follows. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -46,8 +46,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
         Self { time: time.collect(), pending: vec![VecDeque::new(); nodes.len()] }
     }
 
-    /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but for
-    /// the rest after the last step. Nothing depends on the length of later steps.
+    /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but
+    /// for the rest after the last step. Nothing depends on the length of later steps.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -88,8 +88,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
     }
 }
 
-/// The part of the rest of an impulse that is due. Its weight is now `weight` and falls by `fall` in each step; this step
-/// counts for a `share` of one. The part is this weight over the sum of all that follow, an arithmetic series.
+/// The part of the rest of an impulse that is due. Its weight is now `weight` and falls by `fall` in each step; this
+/// step counts for a `share` of one. The part is this weight over the sum of all that follow, an arithmetic series.
 fn part(weight: f64, fall: f64, share: f64) -> f64 {
     let count = (weight / fall).ceil() - 1.0;
     if count < 1.0 {

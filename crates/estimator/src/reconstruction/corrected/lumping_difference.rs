@@ -4,8 +4,8 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 
-/// The lumping difference M⁻¹(M − M_c) of a nodal field, 0 on prescribed components, which have the motion they must have. An
-/// element gives m/(D+2) times the distance to the mean of its nodes.
+/// The lumping difference M⁻¹(M − M_c) of a nodal field, 0 on prescribed components, which have the motion they must
+/// have. An element gives m/(D+2) times the distance to the mean of its nodes.
 pub(super) fn lumping_difference<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     inverse_mass: &[f64],
@@ -61,8 +61,8 @@ mod tests {
         }
     }
 
-    /// The triangles around a node do not lie evenly at the boundary and in an unstructured mesh. There a linear field, whose
-    /// values are of the order of h, has a difference of first order.
+    /// The triangles around a node do not lie evenly at the boundary and in an unstructured mesh. There a linear field,
+    /// whose values are of the order of h, has a difference of first order.
     #[test]
     fn first_order_elsewhere() {
         let field = |[x, _]: [f64; 2]| [x, 0.0];

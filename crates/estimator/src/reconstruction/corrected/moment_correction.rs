@@ -76,8 +76,8 @@ impl<const D: usize> MomentCorrection<D> {
         Self { groups: groups.into_iter().map(|(_, group)| group).collect() }
     }
 
-    /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have the
-    /// moment of the reactions, or come as near as compressive forces can.
+    /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have
+    /// the moment of the reactions, or come as near as compressive forces can.
     pub(super) fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
         self.groups.iter().for_each(|group| group.apply(reaction, centroid));
     }

@@ -22,7 +22,8 @@ fn fluctuating(points: &[[f64; 2]; 3], random: &mut Random) -> Loading<2, 3> {
     for c in 0..2 {
         let sum: f64 = loading.volume.iter().map(|g| g[c]).sum();
         let moment = |t: &[[f64; 2]; 2], p: usize| (2.0 * t[p][c] + t[1 - p][c]) / 6.0;
-        // Edge k adds the same to its moments at both of its nodes, so that those around each node cancel the volume load.
+        // Edge k adds the same to its moments at both of its nodes, so that those around each node cancel the volume
+        // load.
         let missing: [f64; 3] = std::array::from_fn(|i| {
             let (before, after) = (&loading.traction[(i + 1) % 3], &loading.traction[(i + 2) % 3]);
             (loading.volume[i][c] + sum) * area / 12.0 - moment(before, 1) - moment(after, 0)
@@ -128,8 +129,8 @@ fn shapes_are_shared() {
     assert_eq!((&lanes[..5], forms.shapes.len()), (&[0, 0, 1, 2, 2][..], 3));
 }
 
-/// Needles, also almost incompressible, have the energy of the form that is not factored: some of their pivots are rounding. Measured
-/// are at most 8e-12.
+/// Needles, also almost incompressible, have the energy of the form that is not factored: some of their pivots are
+/// rounding. Measured are at most 8e-12.
 #[test]
 fn needles() {
     let mut random = Random::new(5);

@@ -9,7 +9,8 @@ use percute_core::contact::{ContactResults, ContactSteps};
 /// Contact status of a node that is not on the contact surface.
 const OFF: i8 = -1;
 
-/// Writes the fields on all nodes at some steps; gives the names. Outside the contact surface all values are 0, and the status is −1.
+/// Writes the fields on all nodes at some steps; gives the names. Outside the contact surface all values are 0, and the
+/// status is −1.
 pub(in crate::estimate_file) fn write_fields<const D: usize>(
     data: &Group,
     (results, steps): (&ContactResults<D>, &ContactSteps<D>),

@@ -1,5 +1,5 @@
-//! Contact results in an estimate file: all contact nodes at all instants with their resultants, in `percute/contact`, and on
-//! the body for ParaView at the instants of the maps.
+//! Contact results in an estimate file: all contact nodes at all instants with their resultants, in `percute/contact`,
+//! and on the body for ParaView at the instants of the maps.
 
 mod fields;
 mod read;

@@ -22,8 +22,8 @@ pub struct Format {
     pub binary: bool,
 }
 
-/// Writes a mesh in metres, completely or not at all. [`super::read`] restores the same mesh, bit by bit. Tags of nodes and
-/// elements are their numbers plus 1. Elements of the same groups form one part of the geometry.
+/// Writes a mesh in metres, completely or not at all. [`super::read`] restores the same mesh, bit by bit. Tags of nodes
+/// and elements are their numbers plus 1. Elements of the same groups form one part of the geometry.
 ///
 /// # Errors
 /// A file that cannot be created or exists already, group names that the format does not allow.

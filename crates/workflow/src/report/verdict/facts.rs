@@ -10,8 +10,8 @@ use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstruction};
 
-/// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs for bodies of
-/// 64 mm with waves of 5.3 km/s.
+/// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs
+/// for bodies of 64 mm with waves of 5.3 km/s.
 const APART: f64 = 1.25;
 
 /// What a verdict follows from. More may be added: rules name the facts that they read.

@@ -1,5 +1,5 @@
-//! Effectivity indices of the evidence, situation by situation. Each range has its source beside it: a table that `percute reproduce` writes.
-//! The tests of the evidence compare the ranges with its page.
+//! Effectivity indices of the evidence, situation by situation. Each range has its source beside it: a table that
+//! `percute reproduce` writes. The tests of the evidence compare the ranges with its page.
 
 use super::facts::Facts;
 use super::touches::Touches;
@@ -25,16 +25,19 @@ pub(super) const STEPS: [f64; 2] = [0.02, 0.9];
 /// Largest friction of the evidence.
 pub(super) const FRICTION: f64 = 0.5;
 
-/// Bodies of less mean thickness over their diagonal bend: 0.13 for the frame of the evidence, 0.18 and more for its other bodies.
+/// Bodies of less mean thickness over their diagonal bend: 0.13 for the frame of the evidence, 0.18 and more for its
+/// other bodies.
 const SLENDER: f64 = 0.15;
 
-/// Residuals of the balance in a history of another program above this share of the largest term may double the estimate: contact forces are far
-/// larger than those inside the body. Histories in single precision have 1e-4, with steps of 0.02 Δt_c 2e-3.
+/// Residuals of the balance in a history of another program above this share of the largest term may double the
+/// estimate: contact forces are far larger than those inside the body. Histories in single precision have 1e-4, with
+/// steps of 0.02 Δt_c 2e-3.
 const UNBALANCED: f64 = 5e-4;
 
 /// The rules in their order.
 pub(super) const RULES: [Rule; 15] = [
-    // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and `published` fall to a quarter.
+    // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
+    // `published` fall to a quarter.
     Rule {
         applies: |f| f.reconstruction == Reconstruction::Consistent,
         range: [0.23, 18.0],

@@ -14,8 +14,8 @@ const DRIFT: f64 = 0.1;
 const KEPT: [f64; 2] = [0.9, 1.1];
 /// An expected change of the mean error below this is not worth a run.
 const WORTH: f64 = -0.1;
-/// Where the contact surface is the source of more, elements that touch are refined first: in sources-local.csv the mean of η then falls
-/// by 28 % to 63 %, against 4 % to 23 % where fronts and dispersion are the larger source.
+/// Where the contact surface is the source of more, elements that touch are refined first: in sources-local.csv the
+/// mean of η then falls by 28 % to 63 %, against 4 % to 23 % where fronts and dispersion are the larger source.
 const LOCAL: f64 = 0.5;
 
 /// The reasons not to trust the number.
@@ -79,8 +79,8 @@ fn place(facts: &Facts, shares: Shares) -> String {
     }
     let near = whole_percent(facts.at_contact);
     format!(
-        "Elements that touch hold {near} of the squared mean error; the squared largest error is {contact} contact, {inertia} \
-         inertia, {stress} stress."
+        "Elements that touch hold {near} of the squared mean error; the squared largest error is {contact} contact, \
+         {inertia} inertia, {stress} stress."
     )
 }
 

@@ -9,11 +9,11 @@ use std::f64::consts::PI;
 
 /// Sine of the largest angle between a plane and an edge that counts as parallel to it: coordinates with six digits.
 const PARALLEL: f64 = 1e-5;
-/// Where the outline turns by more (rad), it has a corner; else it is a curve. The evidence has curves of edges that turn by up to 22.5°,
-/// and corners that turn by 45° and more.
+/// Where the outline turns by more (rad), it has a corner; else it is a curve. The evidence has curves of edges that
+/// turn by up to 22.5°, and corners that turn by 45° and more.
 const CORNER: f64 = 30.0 * PI / 180.0;
-/// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes straight on: the stress
-/// is singular there. The evidence has angles of 90° and of 117° and more.
+/// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes
+/// straight on: the stress is singular there. The evidence has angles of 90° and of 117° and more.
 const OBTUSE: f64 = 100.0 * PI / 180.0;
 
 /// How the body touches first.
@@ -22,7 +22,8 @@ const OBTUSE: f64 = 100.0 * PI / 180.0;
 pub enum Touches {
     /// Along an edge of the outline that is parallel to the plane. A bar touches so.
     Edge,
-    /// Along such an edge, at an end of which the outline turns by less than 80°: beside an inclined side, or within a straight one.
+    /// Along such an edge, at an end of which the outline turns by less than 80°: beside an inclined side, or within a
+    /// straight one.
     End,
     /// With a curve: the outline turns little by little.
     Curve,

@@ -1,8 +1,8 @@
 //! Tractions of nodes, as wide as their gaps and the stress under them make best, and their stress.
 //!
-//! The force of a node as a density that is linear over whole edges acts where the edges leave the plane. The energy of the
-//! gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate of a
-//! corner or a curve would be many times too large.
+//! The force of a node as a density that is linear over whole edges acts where the edges leave the plane. The energy of
+//! the gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate
+//! of a corner or a curve would be many times too large.
 
 mod own_forces;
 mod star;
@@ -45,8 +45,8 @@ impl<const D: usize> Concentration<D> {
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane, or rounding
-    /// spoils the stress of hats.
+    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane,
+    /// or rounding spoils the stress of hats.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
@@ -67,7 +67,8 @@ impl<const D: usize> Concentration<D> {
         gaps.iter().any(|gap| *gap > self.tolerance).then_some(gaps)
     }
 
-    /// The cost of shapes under a force with this direction, its normal part 1; none if rounding spoils the stress of hats.
+    /// The cost of shapes under a force with this direction, its normal part 1; none if rounding spoils the stress of
+    /// hats.
     fn costs<'a, const N: usize>(
         &'a self,
         problem: &Problem<D, N>,
@@ -115,8 +116,8 @@ impl<const D: usize> Concentration<D> {
         found.map_or([0.0; D], |(edge, hat)| force.map(|f| D as f64 * hat.share * f / edge.area))
     }
 
-    /// By how far the tractions on the edges of a node, narrow hats and densities as wide as edges, are from shares of its
-    /// force: each at least 0, their sum 1.
+    /// By how far the tractions on the edges of a node, narrow hats and densities as wide as edges, are from shares of
+    /// its force: each at least 0, their sum 1.
     pub(super) fn share_residual(
         &self,
         at: usize,
@@ -154,7 +155,8 @@ impl<const D: usize> Concentration<D> {
         centroid
     }
 
-    /// Calls `with` for each element of the star of each node, with the stress of these hats, which are sorted by nodes.
+    /// Calls `with` for each element of the star of each node, with the stress of these hats, which are sorted by
+    /// nodes.
     pub(crate) fn each_element<const N: usize>(
         &self,
         problem: &Problem<D, N>,

@@ -1,8 +1,8 @@
 //! The contact forces of the auxiliary solution where a node touches alone.
 //!
-//! The force of the simulation is too large there, because the mesh lacks the compliance of the body close to the node. A force
-//! that is smaller for longer has another impulse after each contact phase. Such a node of the auxiliary solution therefore
-//! has a contact of its own, with Coulomb friction: it touches and is released by its own gap.
+//! The force of the simulation is too large there, because the mesh lacks the compliance of the body close to the node.
+//! A force that is smaller for longer has another impulse after each contact phase. Such a node of the auxiliary
+//! solution therefore has a contact of its own, with Coulomb friction: it touches and is released by its own gap.
 
 use super::Concentration;
 use crate::concentrated::{ShapeCosts, StarFrame, TractionShape};
@@ -47,9 +47,9 @@ impl<const D: usize> OwnForces<D> {
         self.replaced.iter().filter(|&&replaced| replaced).count()
     }
 
-    /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone, from then
-    /// on until the own force is 0. The second field has the reactions of which the normal work is measured: none at these
-    /// nodes, where the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
+    /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone, from
+    /// then on until the own force is 0. The second field has the reactions of which the normal work is measured: none
+    /// at these nodes, where the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
     pub(in crate::reconstruction::corrected) fn apply<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -108,8 +108,8 @@ impl<const D: usize> Own<D> {
         self.star.own([normal[0], normal[D - 1]])
     }
 
-    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction; `largest`
-    /// brings it there without.
+    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction;
+    /// `largest` brings it there without.
     fn normal(&self, costs: &ShapeCosts<'_>, largest: f64) -> f64 {
         let across = self.across();
         let (mut low, mut high) = (0.0, largest);
@@ -122,8 +122,8 @@ impl<const D: usize> Own<D> {
         0.5 * (low + high)
     }
 
-    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit; `None`
-    /// without a force.
+    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit;
+    /// `None` without a force.
     fn contact(&self, costs: &ShapeCosts<'_>, force: f64, last: Option<OwnContact<D>>) -> Option<OwnContact<D>> {
         if force == 0.0 {
             return None;

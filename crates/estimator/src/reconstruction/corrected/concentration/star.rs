@@ -100,8 +100,8 @@ impl NodeStar {
         made
     }
 
-    /// The other corners of an element, from the node (m), in the frame. Rounding does not grow with the distance of the body
-    /// from the origin.
+    /// The other corners of an element, from the node (m), in the frame. Rounding does not grow with the distance of
+    /// the body from the origin.
     fn ends<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, position: usize) -> [[f64; 2]; 2] {
         let points = problem.mesh().cell_points(self.elements[position]);
         let origin = points[self.corners[position]];

@@ -95,8 +95,8 @@ fn congruent_stars_share_their_stress() {
     assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
 }
 
-/// A polygon of equal triangles around its centre: the stars of all its corners are copies of one, turned. Rounding of the
-/// corners may put some on the other side of a bound of congruence.
+/// A polygon of equal triangles around its centre: the stars of all its corners are copies of one, turned. Rounding of
+/// the corners may put some on the other side of a bound of congruence.
 #[test]
 fn turned_stars_share_their_stress() {
     let corner = |k: usize| {
@@ -160,8 +160,8 @@ fn own_force(
     contact[at]
 }
 
-/// Under its own force a node comes to its plane, with the compliance of its traction, however large the reaction of the
-/// simulation is, and also where there is none. Off the plane it has no force.
+/// Under its own force a node comes to its plane, with the compliance of its traction, however large the reaction of
+/// the simulation is, and also where there is none. Off the plane it has no force.
 #[test]
 fn own_forces_close_the_gap() {
     let problem = tilted();

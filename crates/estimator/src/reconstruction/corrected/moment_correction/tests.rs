@@ -73,8 +73,8 @@ fn admissible(problem: &TriangleProblem, forces: &[[f64; 2]]) -> bool {
     })
 }
 
-/// Each block gets the resultant and the moment of its own reactions, whatever the angle and the friction: none, some, or as
-/// much as the cone allows, on all nodes or on the first two alone.
+/// Each block gets the resultant and the moment of its own reactions, whatever the angle and the friction: none, some,
+/// or as much as the cone allows, on all nodes or on the first two alone.
 #[test]
 fn resultant_and_moment_are_those_of_the_reactions() {
     for seed in 0..40_u32 {
@@ -129,8 +129,8 @@ fn no_frame_is_special() {
     }
 }
 
-/// Where nearly all is carried by the end of a block, the density cannot act there: the end takes what it can, and what is
-/// missing of the moment is what a hat over the first edge must miss.
+/// Where nearly all is carried by the end of a block, the density cannot act there: the end takes what it can, and what
+/// is missing of the moment is what a hat over the first edge must miss.
 #[test]
 fn what_cannot_be_had_is_had_in_part() {
     let problem = blocks(0.0);

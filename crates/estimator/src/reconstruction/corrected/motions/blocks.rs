@@ -7,8 +7,8 @@ use std::ops::Range;
 /// Fewest elements of a block: the nodes of six blocks are in work at a time and should stay in a cache.
 const FEWEST: usize = 512;
 
-/// Strips in the order of a pass: the even ones each before its odd neighbours. A turn is an even strip and the odd one before it.
-/// Elements are thus summed up in the order of all even strips and then all odd ones.
+/// Strips in the order of a pass: the even ones each before its odd neighbours. A turn is an even strip and the odd one
+/// before it. Elements are thus summed up in the order of all even strips and then all odd ones.
 #[derive(Clone, Debug)]
 pub(super) struct Blocks {
     strips: Strips,

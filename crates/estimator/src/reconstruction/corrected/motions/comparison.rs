@@ -129,7 +129,8 @@ fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; 
     [one(Shares::ALL), one(quarters), one(Shares { mass: 0.0, ..quarters }), Plain::from_rest(problem)]
 }
 
-/// Checks fields, forces and energies of all levels, under any contact forces and a random motion in place of the simulation.
+/// Checks fields, forces and energies of all levels, under any contact forces and a random motion in place of the
+/// simulation.
 fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, fewest: usize) {
     let dynamics = Dynamics::new(problem, times);
     let count = problem.mesh().node_count();

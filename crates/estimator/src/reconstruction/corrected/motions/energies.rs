@@ -30,8 +30,8 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
         Self { problem, near: near.map(|(e, element)| (ElementId::new(e), *element)).collect() }
     }
 
-    /// The energies with these displacements (m) and velocities (m/s) of the simulation. The fields of the motions that the next
-    /// pass makes anew are overwritten.
+    /// The energies with these displacements (m) and velocities (m/s) of the simulation. The fields of the motions that
+    /// the next pass makes anew are overwritten.
     pub(super) fn measure(
         &self,
         (pairs, blocks, plan): (&Pairs, &Blocks, &Plan),
@@ -68,9 +68,9 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     }
 }
 
-/// Sums up, number by number, the squares of the differences of the simulation, the half-size and the half-step solution from the
-/// auxiliary solution and of the contact difference: twice their energies (J). The second sum has the products of the first and
-/// the last of these, and others.
+/// Sums up, number by number, the squares of the differences of the simulation, the half-size and the half-step
+/// solution from the auxiliary solution and of the contact difference: twice their energies (J). The second sum has the
+/// products of the first and the last of these, and others.
 #[derive(Clone, Copy)]
 struct Measure<'a, const D: usize> {
     pairs: &'a Pairs,
@@ -143,8 +143,8 @@ impl<const D: usize> Measure<'_, D> {
     }
 }
 
-/// The differences of the simulation, the half-size and the half-step solution from the auxiliary solution, and the contact
-/// difference.
+/// The differences of the simulation, the half-size and the half-step solution from the auxiliary solution, and the
+/// contact difference.
 #[inline(always)]
 fn difference<const D: usize>(motions: &Nodal, simulated: &[f64; D]) -> Nodal {
     let mut difference = *motions;

@@ -1,8 +1,9 @@
-//! A second solution of the motion, under the admissible contact force and with less dispersion, and three motions beside it.
+//! A second solution of the motion, under the admissible contact force and with less dispersion, and three motions
+//! beside it.
 //!
-//! Fields that balance the simulation's own displacements repeat its dispersion and hide it: the waves of the simulation and
-//! those of the balance are late together. The *auxiliary solution* is balanced instead. It starts like the simulation and
-//! takes the steps of the same scheme, but under the nodal forces of F_DA, and with the acceleration
+//! Fields that balance the simulation's own displacements repeat its dispersion and hide it: the waves of the
+//! simulation and those of the balance are late together. The *auxiliary solution* is balanced instead. It starts like
+//! the simulation and takes the steps of the same scheme, but under the nodal forces of F_DA, and with the acceleration
 //!
 //! a = ã + p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã,   p(μ) = μ/2 − βμ²,   M ã = F + F_DA − K u,
 //!
@@ -15,12 +16,13 @@
 //!
 //! - The *half-size solution* is an auxiliary solution with three quarters of both corrections: the leading dispersion
 //!   that is left is that of elements and steps half as long.
-//! - The *half-step solution* has the reactions of the simulation, its lumped mass, and three quarters of the correction of the
-//!   central differences: it moves like a simulation with steps half as long.
+//! - The *half-step solution* has the reactions of the simulation, its lumped mass, and three quarters of the
+//!   correction of the central differences: it moves like a simulation with steps half as long.
 //! - The *contact difference* is the motion from rest, by the scheme of the simulation, under the difference of its
 //!   reactions and the nodal forces of F_DA.
 //!
-//! The four motions are lanes: they are gathered, multiplied and updated together, in one pass over the mesh for a step.
+//! The four motions are lanes: they are gathered, multiplied and updated together, in one pass over the mesh for a
+//! step.
 
 mod approach;
 mod blocks;
@@ -55,8 +57,8 @@ use surface::SurfaceForces;
 pub(super) use weights::Shares;
 use weights::Weights;
 
-/// An auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its error
-/// would be a thousand times the energy.
+/// An auxiliary solution whose kinetic energy is so many times the largest energy of the simulation is unstable: its
+/// error would be a thousand times the energy.
 const UNSTABLE: f64 = 1e6;
 
 /// The four motions, advanced beside the simulation's steps.
@@ -202,15 +204,16 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         self.surface.hold(dynamics, n);
     }
 
-    /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections left out.
+    /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections
+    /// left out.
     pub(super) fn approaches(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[Approach<D>] {
         let Self { times, pairs, surface, near, fields, external, due, .. } = self;
         let before = BeforePass { laws: &pairs.laws, surface, fields, external, due: *due };
         near.approaches(dynamics, (times, n), &before)
     }
 
-    /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step and
-    /// fills in the fields of the auxiliary solution.
+    /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step
+    /// and fills in the fields of the auxiliary solution.
     pub(super) fn advance(
         &mut self,
         dynamics: &Dynamics<'_, D, N>,
@@ -242,7 +245,8 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         self.differences.resize(n + 1, Difference::default());
     }
 
-    /// Measures the difference of the simulation and the auxiliary solution at the last level taken in. Once for a level.
+    /// Measures the difference of the simulation and the auxiliary solution at the last level taken in. Once for a
+    /// level.
     pub(super) fn differ(&mut self, simulated: [&[[f64; D]]; 2], halvings: [f64; 2]) {
         if let (Some(energies), Some(last)) = (&self.energies, self.differences.last_mut()) {
             let measured = energies.measure((&self.pairs, &self.blocks, &self.plan), &mut self.fields, simulated);
@@ -255,8 +259,8 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         &self.differences
     }
 
-    /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps above the
-    /// critical one. A stable one has about the energy of the simulation, an unstable one soon any.
+    /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps
+    /// above the critical one. A stable one has about the energy of the simulation, an unstable one soon any.
     pub(super) fn is_unstable(&self) -> bool {
         // A body that starts unstrained at rest has no energy before it is loaded.
         self.peak_energy > 0.0 && self.kinetic > UNSTABLE * self.peak_energy

@@ -1,4 +1,5 @@
-//! The elements, two and two across a common facet: a pair has four nodes to read and write where two triangles have six.
+//! The elements, two and two across a common facet: a pair has four nodes to read and write where two triangles have
+//! six.
 
 use super::blocks::Blocks;
 use super::lanes::place;
@@ -9,8 +10,8 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use std::ops::Range;
 
-/// A pair of triangles A and B: A has its nodes 0, 1, 2 and B its nodes 0, 2, 3. A bar is a triangle whose nodes 0 and 2, or 0 and
-/// 3, are one. Without a partner, B has no gradients and no mass.
+/// A pair of triangles A and B: A has its nodes 0, 1, 2 and B its nodes 0, 2, 3. A bar is a triangle whose nodes 0 and
+/// 2, or 0 and 3, are one. Without a partner, B has no gradients and no mass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     /// Nodes are counted from the first one of the block.
@@ -22,9 +23,9 @@ pub(super) struct Pair {
     pub(super) law: u32,
 }
 
-/// The moduli of a law (Pa), by place: the derivatives along x_b of all components make the column b of a gradient. A stress in
-/// column b is `own` times the derivative of the same place plus `partner` times that of the place in the other column with
-/// components exchanged: the other normal component, or the same shear component.
+/// The moduli of a law (Pa), by place: the derivatives along x_b of all components make the column b of a gradient. A
+/// stress in column b is `own` times the derivative of the same place plus `partner` times that of the place in the
+/// other column with components exchanged: the other normal component, or the same shear component.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Moduli {
@@ -74,7 +75,8 @@ impl Pairs {
     }
 }
 
-/// The free neighbour with the lowest number of an element, in this range and of its law, and the local node that it does not have.
+/// The free neighbour with the lowest number of an element, in this range and of its law, and the local node that it
+/// does not have.
 fn partner<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     e: usize,

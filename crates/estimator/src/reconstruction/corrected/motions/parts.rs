@@ -1,7 +1,8 @@
 //! Parts of the mesh that threads work on at the same time.
 //!
-//! The turns of a mesh are cut into chunks. First all chunks are worked on, each as far as it does not need the others. Then the
-//! places where they meet are completed. The plan depends on the mesh alone, and one thread follows it as well.
+//! The turns of a mesh are cut into chunks. First all chunks are worked on, each as far as it does not need the others.
+//! Then the places where they meet are completed. The plan depends on the mesh alone, and one thread follows it as
+//! well.
 
 use super::blocks::Blocks;
 use super::lanes::{FirstPair, Nodal};
@@ -13,8 +14,8 @@ const FEWEST: usize = 10;
 /// … and there are at most so many chunks.
 const MOST: usize = 16;
 
-/// The turns of the sweeps of a pass in one part. A turn of the second sweep comes after the next turn of the first one, and a turn
-/// of the third sweep after the next turn of the second one.
+/// The turns of the sweeps of a pass in one part. A turn of the second sweep comes after the next turn of the first
+/// one, and a turn of the third sweep after the next turn of the second one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Part {
     /// Even blocks of the first sweep.
@@ -156,7 +157,8 @@ impl<'a, const D: usize> View<'a, D> {
     }
 }
 
-/// Does the work of all chunks and then of all meetings, at the same time in a pool of threads. Gives one sum for each part.
+/// Does the work of all chunks and then of all meetings, at the same time in a pool of threads. Gives one sum for each
+/// part.
 pub(super) fn for_all<S: Send + Default + Clone, const D: usize>(
     plan: &Plan,
     mut view: View<'_, D>,

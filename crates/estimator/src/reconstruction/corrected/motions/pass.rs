@@ -1,7 +1,7 @@
 //! One pass over the mesh for a step: blocks of nodes and elements go through all sweeps while they are in a cache.
 //!
-//! A sweep over the blocks of a turn needs the nodes that the sweep before it has finished in this turn and the next one, so each of
-//! the three sweeps is a turn behind the one before.
+//! A sweep over the blocks of a turn needs the nodes that the sweep before it has finished in this turn and the next
+//! one, so each of the three sweeps is a turn behind the one before.
 
 use super::blocks::Blocks;
 use super::lanes::{FirstPair, Nodal};

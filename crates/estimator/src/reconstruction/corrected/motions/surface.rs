@@ -52,8 +52,8 @@ impl SurfaceForces {
         }
     }
 
-    /// Sets the forces on prescribed components of these nodes, hands out the forces on the auxiliary solution and adds those of
-    /// contact. At supports the contact difference stays at rest.
+    /// Sets the forces on prescribed components of these nodes, hands out the forces on the auxiliary solution and adds
+    /// those of contact. At supports the contact difference stays at rest.
     #[inline(always)]
     pub(super) fn apply<const D: usize>(&self, nodes: &Range<usize>, forces: &mut [Nodal], out: &mut [[f64; D]]) {
         let local = |node: u32| node as usize - nodes.start;

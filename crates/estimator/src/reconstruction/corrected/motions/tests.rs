@@ -53,8 +53,9 @@ fn held_bar() -> BarProblem {
     builder.build().unwrap()
 }
 
-/// The mode swings at the frequency of the corrected scheme, sin²(ωΔt/2) = (Δt²/4)λ(1 + (Δt_c² − Δt²)λ/12 − β(h²λ/6)²) with
-/// λ = (4/h²) sin²(kh/2) and β = 1/36: near that of the bar, k, to the fourth order, where the simulation is to the second.
+/// The mode swings at the frequency of the corrected scheme, sin²(ωΔt/2) = (Δt²/4)λ(1 + (Δt_c² − Δt²)λ/12 − β(h²λ/6)²)
+/// with λ = (4/h²) sin²(kh/2) and β = 1/36: near that of the bar, k, to the fourth order, where the simulation is to
+/// the second.
 #[test]
 fn dispersion_is_of_fourth_order() {
     let (problem, h, k) = (held_bar(), 1.0 / ELEMENTS as f64, 2.0 * PI);
@@ -77,8 +78,8 @@ fn dispersion_is_of_fourth_order() {
     }
 }
 
-/// Three quarters of the correction of the central differences make the steps of a simulation half as long, three quarters of both
-/// corrections its elements as well: the displacements agree to a part of what halving changes.
+/// Three quarters of the correction of the central differences make the steps of a simulation half as long, three
+/// quarters of both corrections its elements as well: the displacements agree to a part of what halving changes.
 #[test]
 fn three_quarters_are_a_halving() {
     let bar = |elements: usize| {
@@ -113,8 +114,8 @@ fn three_quarters_are_a_halving() {
     }
 }
 
-/// At the critical step of a uniform bar the simulation's shortest wave grows by as much in each step, and so does what takes its
-/// steps; the auxiliary solution's swings, with sin²(ωΔt/2) = 1 − β(2/3)².
+/// At the critical step of a uniform bar the simulation's shortest wave grows by as much in each step, and so does what
+/// takes its steps; the auxiliary solution's swings, with sin²(ωΔt/2) = 1 − β(2/3)².
 #[test]
 fn the_shortest_wave_of_a_bar_does_not_grow() {
     let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
@@ -137,8 +138,8 @@ fn the_shortest_wave_of_a_bar_does_not_grow() {
     }
 }
 
-/// Steps of 0.7 and 0.6 of the critical one in turn: below 1/√2, so that the simulation is stable. The corrected scheme is not,
-/// and is not taken but for the first of them.
+/// Steps of 0.7 and 0.6 of the critical one in turn: below 1/√2, so that the simulation is stable. The corrected scheme
+/// is not, and is not taken but for the first of them.
 #[test]
 fn uneven_steps_leave_the_corrections_out() {
     let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();

@@ -26,9 +26,9 @@ const QUARTERS: f64 = 0.75;
 const BESIDE: [Shares; 3] =
     [Shares { mass: QUARTERS, time: QUARTERS }, Shares { mass: 0.0, time: QUARTERS }, Shares::NONE];
 
-/// Reversals after which corrections are no longer made. Steps that are long and short in turn drive waves that need four of
-/// them for a period; the corrected scheme has such waves from shorter steps on than the plain one, and can be unstable where the
-/// simulation is not. A few do no harm; and the plain scheme is as stable as the simulation.
+/// Reversals after which corrections are no longer made. Steps that are long and short in turn drive waves that need
+/// four of them for a period; the corrected scheme has such waves from shorter steps on than the plain one, and can be
+/// unstable where the simulation is not. A few do no harm; and the plain scheme is as stable as the simulation.
 const FEW: usize = 8;
 /// Relative difference from which on a step is longer than another.
 const LONGER: f64 = 1e-3;
@@ -73,12 +73,12 @@ impl Weights {
 
 /// β of p(μ) = μ/2 − βμ².
 ///
-/// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from 0.97 of
-/// the critical step on. With the β that makes p ≤ ⅓, x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: the auxiliary solution is
-/// stable wherever the simulation is. In 1D this β is 0. But there the simulation takes the critical step exactly, its
-/// shortest wave grows with time once it is excited, and an auxiliary solution with the same growth does not show it. With
-/// β ≥ 1/36 the auxiliary solution does not grow, at the price of a larger estimate at that step. This changes errors of
-/// the order that is left anyway.
+/// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from
+/// 0.97 of the critical step on. With the β that makes p ≤ ⅓, x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: the auxiliary
+/// solution is stable wherever the simulation is. In 1D this β is 0. But there the simulation takes the critical step
+/// exactly, its shortest wave grows with time once it is excited, and an auxiliary solution with the same growth does
+/// not show it. With β ≥ 1/36 the auxiliary solution does not grow, at the price of a larger estimate at that step.
+/// This changes errors of the order that is left anyway.
 pub(super) fn damping<const D: usize>() -> f64 {
     let largest = (D + 1) as f64 / (D + 2) as f64;
     ((0.5 * largest - 1.0 / 3.0) / (largest * largest)).max(1.0 / 36.0)

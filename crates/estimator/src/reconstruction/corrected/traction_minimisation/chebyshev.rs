@@ -1,12 +1,12 @@
 //! The Chebyshev iteration over the modes, preconditioned by symmetric Gauss–Seidel of two classes: edges and nodes.
 //!
-//! With the matrix I + E + N + C + Cᵀ (E couples edges, N nodes, C nodes with edges), the factors are I + C and its transpose. They
-//! use no order of edges or of nodes, so the result does not depend on numbering. The iteration has the matrix
-//! (I + C)⁻¹(I + E + N + C + Cᵀ)(I + Cᵀ)⁻¹. With x = (x_e, x_n), t = x_e − Cᵀx_n and v = x_e − t + Et, its product with x is
-//! (x_e + Et, x_n + Nx_n − Cv): it has each entry of the energy once.
+//! With the matrix I + E + N + C + Cᵀ (E couples edges, N nodes, C nodes with edges), the factors are I + C and its
+//! transpose. They use no order of edges or of nodes, so the result does not depend on numbering. The iteration has the
+//! matrix (I + C)⁻¹(I + E + N + C + Cᵀ)(I + Cᵀ)⁻¹. With x = (x_e, x_n), t = x_e − Cᵀx_n and v = x_e − t + Et, its
+//! product with x is (x_e + Et, x_n + Nx_n − Cv): it has each entry of the energy once.
 //!
-//! There are no scalar products: each coefficient depends on those around it only. Numbers of threads, the order of the work and
-//! the other instants of a group do not matter.
+//! There are no scalar products: each coefficient depends on those around it only. Numbers of threads, the order of the
+//! work and the other instants of a group do not matter.
 
 use super::modes::{Modes, ModesPart, Numbers};
 use super::operator::{Block, Operator};
@@ -14,8 +14,9 @@ use crate::lanes::Lanes;
 use crate::simd::dispatch;
 use percute_core::ids::NodeId;
 
-/// Products with the matrix; the first step needs none. Over an impact or a vibration, the five steps gain 98.7 to 99.9 % of what can
-/// be gained. Five of conjugate gradients, preconditioned by nodes and edges alone, would gain 96.2 to 99.6 %.
+/// Products with the matrix; the first step needs none. Over an impact or a vibration, the five steps gain 98.7 to 99.9
+/// % of what can be gained. Five of conjugate gradients, preconditioned by nodes and edges alone, would gain 96.2 to
+/// 99.6 %.
 const PRODUCTS: usize = 4;
 
 /// Part of the largest eigenvalue from which on the iteration reduces all errors: smaller ones bring little gain.
@@ -24,8 +25,8 @@ const LOWEST: f64 = 0.14;
 /// The roots of the residual, one for each step, from the largest one; in this order the steps between stay small.
 const ORDER: [usize; PRODUCTS + 1] = [0, 4, 2, 1, 3];
 
-/// The steps x⁺ = αx + βb + γAx: with the root r of each, x + (b − Ax)/r from x = 0. The first product is with the slopes −b, of which
-/// the first step is a part.
+/// The steps x⁺ = αx + βb + γAx: with the root r of each, x + (b − Ax)/r from x = 0. The first product is with the
+/// slopes −b, of which the first step is a part.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steps([[f64; 3]; PRODUCTS]);
 

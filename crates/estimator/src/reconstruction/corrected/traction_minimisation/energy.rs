@@ -21,8 +21,8 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
             difference[a][b] -= stress[a][b];
         }
     }
-    // A moment is a force on its node: it changes the mean stress by the product with the arm of the node. The traction at the second
-    // node of an edge less that at the first is D(D+1) times the difference of the moments.
+    // A moment is a force on its node: it changes the mean stress by the product with the arm of the node. The traction
+    // at the second node of an edge less that at the first is D(D+1) times the difference of the moments.
     let (strain, slopes) = (measure.strain(&difference), form.difference_slope(&admissible.fluctuation));
     let mut moments = [difference[0][0]; MOMENTS];
     for (k, slope) in slopes.iter().enumerate() {
@@ -48,8 +48,8 @@ pub(super) fn product_slope<const D: usize, const N: usize>(products: &[f64; LOA
     moment_gradient(&gradient)
 }
 
-/// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions are
-/// D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
+/// The derivative of an energy in the moments on the edges of an element, from that in its traction loads. Tractions
+/// are D/extent ((D+1)b_p − Σb): a symmetric map, and energy is extent times that of the stress.
 #[inline(always)]
 pub(super) fn moment_gradient<T: Value, const D: usize, const N: usize>(gradient: &[[[T; D]; D]; N]) -> [T; MOMENTS] {
     let zero = gradient[0][0][0].zero();

@@ -5,8 +5,8 @@
 //! three times the energy of the true error. Equilibrium requires less: any change of the tractions
 //! that gives no element a resultant or a moment is allowed. The modes of [`modes`] span all of them. Five steps of the
 //! Chebyshev iteration of [`chebyshev`] over these modes, for each instant alone, reduce
-//! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. The fields stay exactly admissible after
-//! any number of steps.
+//! ½∫(σ_DA − σ)K⁻¹(σ_DA − σ), σ the stress of the displacement that is equilibrated. The fields stay exactly admissible
+//! after any number of steps.
 
 mod assembly;
 mod chebyshev;
@@ -41,7 +41,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 use wavefront::{Wavefront, Work};
 
-/// The largest eigenvalue is known to 1 to 3 % from below. Above the value that is assumed, the iteration overshoots fast.
+/// The largest eigenvalue is known to 1 to 3 % from below. Above the value that is assumed, the iteration overshoots
+/// fast.
 const MARGIN: f64 = 1.03;
 
 /// The data that are fixed in time.
@@ -107,7 +108,8 @@ impl TractionMinimisation {
     pub(in crate::reconstruction) fn memory(shape: Shape, elements: usize) -> usize {
         match shape {
             Shape::Bar => 0,
-            // Slopes and change are three coefficients each, a half of them of nodes; there is room for another half twice.
+            // Slopes and change are three coefficients each, a half of them of nodes; there is room for another half
+            // twice.
             Shape::Triangle => elements.saturating_mul(Operator::BYTES + Numbers::BYTES + 21 * size_of::<Lanes>() / 2),
         }
     }
@@ -120,8 +122,8 @@ impl TractionMinimisation {
         self.wavefront.run(work, &mut arrays);
     }
 
-    /// Solves the star problems of levels with these forces and improves their moments; `then` is given each part of the mesh with
-    /// the final ones. Returns the largest relative miss of the star problems.
+    /// Solves the star problems of levels with these forces and improves their moments; `then` is given each part of
+    /// the mesh with the final ones. Returns the largest relative miss of the star problems.
     pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
         of @ (problem, equilibration, _): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),

@@ -43,8 +43,8 @@ pub(super) fn mode_forms<const D: usize, const N: usize>(
     of_modes(&forms.form(&maps, &laws), &basis_changes(&maps, &sides, &sign))
 }
 
-/// For each edge, the components in the reference frame of the mode of the edge and of a unit couple of opposite moments; for all
-/// nodes, those of the unit moments in x and y.
+/// For each edge, the components in the reference frame of the mode of the edge and of a unit couple of opposite
+/// moments; for all nodes, those of the unit moments in x and y.
 #[inline(always)]
 fn basis_changes(maps: &[Matrix2<f64>; LANES], sides: &[[Lanes; 2]; 3], sign: &[Lanes; 3]) -> [[[Lanes; 2]; 2]; 4] {
     let of_map = |r: usize, c: usize| Lanes::at_levels(|l| maps[l][(r, c)]);

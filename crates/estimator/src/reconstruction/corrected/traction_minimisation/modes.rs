@@ -6,8 +6,8 @@
 //! - around each node that is surrounded by unknown edges, the same force and the same couple through all of
 //!   them: three for each such node.
 //!
-//! Each edge and each node has coefficients, whether it has modes or not; without modes they stay 0. Edges are numbered by their lower
-//! ends, so that those of consecutive nodes follow each other.
+//! Each edge and each node has coefficients, whether it has modes or not; without modes they stay 0. Edges are numbered
+//! by their lower ends, so that those of consecutive nodes follow each other.
 
 use crate::lanes::{Lanes, Value, load};
 use percute_core::ids::{FacetId, NodeId};
@@ -186,8 +186,8 @@ impl Numbers {
 /// An edge of an element, from its first node to its second, counterclockwise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    /// Unit vector along it, from the end of higher number to the lower one: the force of the mode of the edge on the element at
-    /// the second node; at the first node there is the opposite one.
+    /// Unit vector along it, from the end of higher number to the lower one: the force of the mode of the edge on the
+    /// element at the second node; at the first node there is the opposite one.
     pub(super) along: [f64; 2],
     /// d⊥/|d|² with d from the first node to the second (1/m): the force at the second node of a unit couple about it.
     pub(super) lever: [f64; 2],

@@ -1,7 +1,7 @@
 //! The energy of the modes: a matrix whose blocks for each node and each edge alone are the identity.
 //!
-//! Coefficients are scaled by the Cholesky factors of these blocks. The spectrum then depends on shapes only, not on sizes,
-//! materials or axes.
+//! Coefficients are scaled by the Cholesky factors of these blocks. The spectrum then depends on shapes only, not on
+//! sizes, materials or axes.
 
 use super::modes::Numbers;
 use crate::lanes::Lanes;
@@ -28,8 +28,8 @@ pub(super) struct WithEdges {
 pub(super) struct Sector {
     /// Twice the number of the edge, and 1 if the node is its higher end.
     pub(super) spoke: u32,
-    /// Twice the number of the opposite edge, and 1 if the node lies on its neighbour's side; [`NONE`] after the last edge of a
-    /// node of the boundary.
+    /// Twice the number of the opposite edge, and 1 if the node lies on its neighbour's side; [`NONE`] after the last
+    /// edge of a node of the boundary.
     pub(super) rim: u32,
 }
 
@@ -76,7 +76,8 @@ impl Block {
 }
 
 impl Operator {
-    /// Of an element (bytes): in a triangulation, three edges and one node go with two elements, and six edges with a node.
+    /// Of an element (bytes): in a triangulation, three edges and one node go with two elements, and six edges with a
+    /// node.
     pub(super) const BYTES: usize = 3 * size_of::<Sector>()
         + (3 * (size_of::<WithNodes>() + size_of::<WithEdges>() + 10 * size_of::<f64>())
             + size_of::<[[f64; 3]; 3]>()
@@ -151,8 +152,8 @@ impl Operator {
         }
     }
 
-    /// Gives `with` the sums over the nodes around each node, if they are wanted, less those over the edges around it, and its
-    /// place.
+    /// Gives `with` the sums over the nodes around each node, if they are wanted, less those over the edges around it,
+    /// and its place.
     #[inline(always)]
     pub(super) fn around_nodes<const NODES: bool>(
         &self,

@@ -140,9 +140,9 @@ fn stretched(mesh: &TriangleMesh) -> TriangleMesh {
     TriangleMesh::new(points, &cells, &groups.collect(), &ElementGroups::new()).unwrap()
 }
 
-/// Random meshes and structured ones, also stretched and almost incompressible. Measured are 97.6 to 99.1 % of what can be
-/// gained, stretched 94.0 to 97.8 %. With the slopes of impacts and vibrations they are 98.7 to 99.9 % over all instants, stretched 93 to
-/// 96 %.
+/// Random meshes and structured ones, also stretched and almost incompressible. Measured are 97.6 to 99.1 % of what can
+/// be gained, stretched 94.0 to 97.8 %. With the slopes of impacts and vibrations they are 98.7 to 99.9 % over all
+/// instants, stretched 93 to 96 %.
 #[test]
 fn the_steps_gain_most_of_what_can_be_gained() {
     let body =
@@ -165,8 +165,9 @@ fn the_steps_gain_most_of_what_can_be_gained() {
     }
 }
 
-/// Close below the exact one: measured are 98.8 to 100 %. In structured meshes the largest eigenvalues lie close together: six steps
-/// of Lanczos find 94 %. The iteration gains energy up to 1.14 times the eigenvalue that it assumes.
+/// Close below the exact one: measured are 98.8 to 100 %. In structured meshes the largest eigenvalues lie close
+/// together: six steps of Lanczos find 94 %. The iteration gains energy up to 1.14 times the eigenvalue that it
+/// assumes.
 #[test]
 fn the_largest_eigenvalue() {
     let mesh = TriangleMesh::rectangle(0.05, 0.05, 12, 12).unwrap();

@@ -1,8 +1,8 @@
 //! The order of the work: stages follow each other through the mesh, so that each finds its numbers in the cache.
 //!
-//! A block of nodes may go through a stage once the blocks around it have gone through the one before. The order of the stages is
-//! then as free as the mesh permits, and the numbers do not depend on it. Each thread has a segment of the blocks, in which
-//! it works as far as the blocks of its own permit; the rest, around the ends of segments, comes last.
+//! A block of nodes may go through a stage once the blocks around it have gone through the one before. The order of the
+//! stages is then as free as the mesh permits, and the numbers do not depend on it. Each thread has a segment of the
+//! blocks, in which it works as far as the blocks of its own permit; the rest, around the ends of segments, comes last.
 
 use super::chebyshev::{Arrays, STAGES, Steps};
 use super::modes::Numbers;
