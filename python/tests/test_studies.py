@@ -182,3 +182,20 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
         pc.estimate(bar_history).effectivity(1.0)  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match="`histories`"):
         pc.true_errors(bar_history, bar(80), end=50e-6, courant=0.9)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("count", "letters", "columns"), [(5, 17, 3), (11, 32, 2), (4, 28, 1), (6, 33, 1), (9, 60, 2), (2, 99, 1)])
+def test_legends_fill_their_rows_and_stay_inside(count: int, letters: int, columns: int) -> None:
+    """No more columns than their rows need, and none beyond the figure."""
+    from percute.verification import figures
+
+    curves = [figures.Curve(f"{k:02d} " + "at " * (letters // 3 - 1), [0.0, 1.0], [0.0, 1.0], marked=True) for k in range(count)]
+    figure = figures.lines([("panel", curves)] * columns, "x", "y", columns=columns)
+    (legend,) = figure.legends
+    figure.draw_without_rendering()
+    box = legend.get_window_extent()
+    assert box.x0 >= 0.0 and box.x1 <= figure.bbox.width
+    rows = -(-count // legend._ncols)
+    assert count > (legend._ncols - 1) * rows, (legend._ncols, rows)
+    if (count, letters) == (5, 17):
+        assert legend._ncols == 5

@@ -170,9 +170,18 @@ def lines(
         if zero:
             all_axes[0].set_ylim(bottom=0.0)
         if any(entries):
-            wide = max(1, int(120 * WIDTHS[min(columns, 3) - 1] / 9 / (10 + max(map(len, entries)))))
-            figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=min(wide, len(entries)))
+            _legend(figure, entries)
     return figure
+
+
+def _legend(figure: Drawing, entries: dict[str, Any]) -> None:
+    """Put the legend below the panels, in as few rows as its width allows."""
+    for rows in range(1, len(entries) + 1):
+        columns = math.ceil(len(entries) / rows)
+        legend = figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=columns)
+        if columns == 1 or legend.get_window_extent().width < figure.bbox.width:
+            return
+        legend.remove()
 
 
 def heat_maps(
