@@ -116,7 +116,7 @@ def _thin(table: Table, key: str, curve: Curve) -> None:
 def _draw(panels: list[tuple[str, Curve]]) -> figures.Drawing:
     """Draw a panel for each curve, with axes of its own."""
     curves = [
-        (key, [figures.Curve("exact", c.time, c.exact, dashed=True), figures.Curve("computed", c.time, c.computed, figures.own(0))])
+        (key.replace("_", " "), [figures.Curve("exact", c.time, c.exact, dashed=True), figures.Curve("computed", c.time, c.computed, figures.own(0))])
         for key, c in panels
     ]
     x, y = [f"time ({c.time_unit})" for _, c in panels], [f"{c.name} ({c.unit})" for _, c in panels]
