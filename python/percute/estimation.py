@@ -212,7 +212,7 @@ class Estimate(EstimateViews):
         Parameters
         ----------
         error : percute.TrueError
-            The true error of the same history, as `History.error` and `percute.exact` give it.
+            The true error of the same history, as `History.error` and ``percute.exact`` give it.
         """
         from percute.exact import Effectivity, TrueError
 

@@ -201,7 +201,7 @@ class _StruckBar(_Bar):
 
 @dataclass(frozen=True, kw_only=True)
 class BarImpact(_StruckBar):
-    """A uniform bar on [0, L], as `Mesh.bar` makes it, that moves in -x at ``speed`` towards a rigid plane at x = -``gap``.
+    """A uniform bar on [0, L], of `percute.Mesh.bar`, that moves in -x at ``speed`` towards a rigid plane at x = -``gap``.
 
     All arguments are positive: ``length`` (m), ``young`` (Pa), ``density`` (kg/m³), ``section`` (m²), ``speed`` (m/s) and ``gap`` (m).
 

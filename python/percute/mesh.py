@@ -98,7 +98,7 @@ class Mesh(Immutable):
 
     @classmethod
     def disc(cls, radius: float, *, rings: int) -> Mesh:
-        """Make a disc of this radius (m) around the origin, of 6 ``rings``² triangles of nearly equal size.
+        """Make a disc of this radius (m) around the origin, of 6 ``rings ** 2`` triangles of nearly equal size.
 
         Returns
         -------
