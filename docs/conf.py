@@ -118,9 +118,16 @@ def signature(
     return ("" if what == "class" and shown == "()" else re.sub(r", _\w+='\w+'", "", shown)), result
 
 
+def unsearched(app: Sphinx, _page: nodes.document) -> None:
+    """Keep old changes out of the results of a search: other pages say what holds."""
+    if app.env.docname == "CHANGELOG":
+        app.env.metadata["CHANGELOG"]["nosearch"] = ""
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the equations, the directive and the signatures."""
     app.add_html_math_renderer("mathml", (mathml, None), (mathml, None))
     app.add_directive("command", Command)
+    app.connect("doctree-read", unsearched)
     app.connect("autodoc-process-signature", signature)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
