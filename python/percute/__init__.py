@@ -45,6 +45,7 @@ from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
+from percute.sweeping import Sweep, sweep
 from percute.verifying import Verification, verify
 
 __all__ = [
@@ -80,6 +81,7 @@ __all__ = [
     "SourcesOverTime",
     "StorageError",
     "Support",
+    "Sweep",
     "Traction",
     "TrueError",
     "Verification",
@@ -91,6 +93,7 @@ __all__ = [
     "reproduce",
     "run",
     "simulate",
+    "sweep",
     "true_errors",
     "verify",
 ]

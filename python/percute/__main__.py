@@ -18,7 +18,7 @@ def main() -> int:
         return plot(sys.argv[2:])
     # Ctrl-C is the command's own: Python would answer only once the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return command(["percute", *sys.argv[1:]])
+    return command(["percute", *sys.argv[1:]], [sys.executable, "-m", "percute"])
 
 
 if __name__ == "__main__":

@@ -17,8 +17,8 @@ __all__ = ["Progress", "shown"]
 ProgressOption = bool | Callable[[Progress], object] | None
 
 WIDTH = 32
-COUNTED = ("simulating", "estimating")
-"""Stages that count steps; others are shown in per cent."""
+COUNTED = {"simulating": "step ", "estimating": "step ", "running cases": ""}
+"""Stages that count, and their word for one; others are shown in per cent."""
 
 
 def _seconds(seconds: float) -> str:
@@ -45,7 +45,7 @@ class _Line:
         fraction = progress.done / progress.total if progress.total else 1.0
         spent = now - self.start
         left = f", {_seconds(spent * (1 - fraction) / fraction)} left" if 0 < fraction < 1 else ""
-        counted = f"step {progress.done} of {progress.total}" if progress.stage in COUNTED else f"{100 * fraction:.0f} %"
+        counted = f"{COUNTED[progress.stage]}{progress.done} of {progress.total}" if progress.stage in COUNTED else f"{100 * fraction:.0f} %"
         return counted + left, fraction
 
 

@@ -16,11 +16,29 @@ from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
     import pandas as _pandas
-    import xarray
+    import xarray as _xarray
 
     from percute.history import History
 
 VECTORS = ("component", "component2")
+
+
+def pandas() -> Any:
+    """Give pandas."""
+    try:
+        import pandas
+    except ImportError as error:
+        raise PercuteError('tables need pandas: pip install "percute[pandas]", or pip install pandas') from error
+    return pandas
+
+
+def xarray() -> Any:
+    """Give xarray."""
+    try:
+        import xarray
+    except ImportError as error:
+        raise PercuteError('data sets need xarray: pip install "percute[xarray]", or pip install xarray') from error
+    return xarray
 
 
 def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]]) -> _pandas.DataFrame:
@@ -28,10 +46,7 @@ def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]
 
     ``known`` has the dimensions by the names that ``over`` may have.
     """
-    try:
-        import pandas
-    except ImportError as error:
-        raise PercuteError('tables need pandas: pip install "percute[pandas]", or pip install pandas') from error
+    frames = pandas()
     if text("over", over) not in known:
         raise InputError(f"`over` is {over!r}; it must be one of {', '.join(known)}")
     dims = known[str(over)]
@@ -46,8 +61,8 @@ def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]
         for column, values in _columns(name, quantity, dims, contents):
             columns[column], units[column] = values, quantity.unit
     labels = [contents.coordinates[name].values for name in dims]
-    index = pandas.Index(labels[0], name=dims[0]) if len(dims) == 1 else pandas.MultiIndex.from_product(labels, names=dims)
-    table = pandas.DataFrame(columns, index=index)
+    index = frames.Index(labels[0], name=dims[0]) if len(dims) == 1 else frames.MultiIndex.from_product(labels, names=dims)
+    table = frames.DataFrame(columns, index=index)
     table.attrs["units"] = {name: contents.coordinates[name].unit for name in dims} | units
     table.attrs.update(contents.facts)
     return table
@@ -89,16 +104,13 @@ def of_history(history: History, over: object, step: int | None) -> _pandas.Data
     return to_pandas(at_one_instant(found), over, {name: dims[1:] or dims for name, dims in rows.items()})
 
 
-def to_xarray(contents: Contents) -> xarray.Dataset:
+def to_xarray(contents: Contents) -> _xarray.Dataset:
     """Make a data set of all quantities."""
-    try:
-        import xarray
-    except ImportError as error:
-        raise PercuteError('data sets need xarray: pip install "percute[xarray]", or pip install xarray') from error
+    library = xarray()
     used = {dimension for quantity in contents.quantities.values() for dimension in quantity.dims}
     coordinates = {name: _variable(each) for name, each in contents.coordinates.items() if set(each.dims) <= used}
     quantities = {name: _variable(each) for name, each in contents.quantities.items()}
-    return xarray.Dataset(quantities, coordinates, {"source": f"percute {__version__}"} | contents.facts)
+    return library.Dataset(quantities, coordinates, {"source": f"percute {__version__}"} | contents.facts)
 
 
 def _variable(quantity: Quantity) -> tuple[tuple[str, ...], NDArray[Any], dict[str, str]]:

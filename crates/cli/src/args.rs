@@ -1,8 +1,10 @@
 //! The arguments of the command.
 
 mod export;
+mod sweep;
 
 pub use export::{ExportArguments, Times};
+pub use sweep::SweepArguments;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, Sampling, UnknownName, UnknownSampling};
@@ -49,6 +51,8 @@ pub enum Command {
     Report(ReportArguments),
     /// Run a case on its mesh and on nested refinements: true errors, effectivity indices and orders of convergence
     Verify(VerifyArguments),
+    /// Run a case over values of its keys, in several processes, and make one table of the results
+    Sweep(SweepArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file
     Info(InfoArguments),
     /// Write fields of a history for ParaView and other programs: stress, velocity, reaction, error at chosen steps

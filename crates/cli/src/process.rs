@@ -22,7 +22,9 @@ const PAUSE: Duration = Duration::from_millis(10);
 /// From here on Ctrl-C is the command's, not the caller's: the first asks for a clean stop, and ends the process if the
 /// command is not at its steps; a second one ends the process; so do SIGTERM and SIGHUP, with which batch systems and
 /// terminals end what they run. Where no handler can be set, the first ends it.
-pub fn process<I>(arguments: I) -> u8
+///
+/// `itself` is the command with which processes of its own are started: a program and its first arguments.
+pub fn process<I>(arguments: I, itself: &[OsString]) -> u8
 where
     I: IntoIterator,
     I::Item: Into<OsString> + Clone,
@@ -38,8 +40,8 @@ where
             true
         }
     });
-    let code =
-        command_line(arguments, &mut Console { out: &mut out, err: &mut err, progress, interrupted: &interrupted });
+    let console = &mut Console { out: &mut out, err: &mut err, progress, interrupted: &interrupted, itself };
+    let code = command_line(arguments, console);
     // Only Rust's own `main` would do it at the end.
     let _ = out.flush();
     HEARD.store(true, Relaxed);

@@ -15,7 +15,7 @@ impl<'a> Watch<'a> {
     pub(crate) fn new(visible: bool, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:32} step {pos} of {len}, {eta} left") {
+        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:32} {pos} of {len}, {eta} left") {
             bar.set_style(style);
         }
         Self { bar, interrupted }

@@ -21,6 +21,7 @@ mod run;
 mod simulate;
 mod statement;
 mod stored;
+mod sweep;
 mod time;
 mod verify;
 mod view;
@@ -58,6 +59,8 @@ mod _percute {
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
     #[pymodule_export]
+    use super::sweep::{SweepPlan, sweep_case};
+    #[pymodule_export]
     use super::verify::verification;
 
     /// Adds the constants.
@@ -76,9 +79,10 @@ mod _percute {
     }
 
     /// Runs the command `percute` with these arguments, the program's name first, as the process's
-    /// own: it prints to standard output and error and takes Ctrl-C over. Returns the exit code.
+    /// own: it prints to standard output and error and takes Ctrl-C over. Returns the exit code. `itself` is the command
+    /// with which processes of its own are started.
     #[pyfunction]
-    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-        py.detach(|| percute::process(arguments))
+    fn command(py: Python<'_>, arguments: Vec<OsString>, itself: Vec<OsString>) -> u8 {
+        py.detach(|| percute::process(arguments, &itself))
     }
 }

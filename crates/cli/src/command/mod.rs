@@ -11,6 +11,7 @@ mod report;
 mod result;
 mod run;
 mod simulate;
+mod sweep;
 mod verify;
 
 use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
@@ -42,6 +43,8 @@ pub struct Console<'a> {
     pub progress: bool,
     /// Asked at each step; the run stops cleanly when it says yes.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// This command, with which it starts processes of its own: a program and its first arguments.
+    pub itself: &'a [OsString],
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code.
@@ -58,6 +61,7 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Report(arguments) => report::command(&arguments, console),
             Command::Verify(arguments) => verify::command(&arguments, console),
+            Command::Sweep(arguments) => sweep::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Export(arguments) => export::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),

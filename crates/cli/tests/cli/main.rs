@@ -22,3 +22,5 @@ mod picture;
 mod report;
 mod run;
 mod steps;
+#[cfg(target_os = "linux")]
+mod sweep;
