@@ -105,7 +105,7 @@ def run(
     told = None if store is None else file_name("store", store)
     replace, lasting, (threads, window) = flag("overwrite", overwrite), flag("long", long), pace(threads, window)
     with shown(progress) as tell, history_done():
-        name, content, source = _read(case)
+        name, content, source = read_case(case)
         read = _percute.CaseData(name, content, os.path.dirname(source or ""))
         tell_of_mesh(read.import_warnings())
         asked = read.outputs(source, told, replace)
@@ -131,7 +131,7 @@ def run(
             raise
 
 
-def _read(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
+def read_case(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     """Name, text and file of a case: a text has several lines, the name of a file has one."""
     if isinstance(case, str) and "\n" in case:
         return "case", text("case", case), None

@@ -16,6 +16,7 @@ from percute import _percute
 from percute.checks import flag, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
+from percute.files import read_case
 from percute.progress import Progress, ProgressOption, shown
 from percute.words import counted
 
@@ -35,6 +36,11 @@ class Sweep:
 
     ``sweep["relative_mean"]`` is a column of its table: an entry for each case, NaN (in texts: an empty one) where there is none.
     """
+
+    _folder: Path
+    _parameters: tuple[str, ...]
+    _columns: dict[str, NDArray[Any]]
+    _units: dict[str, str]
 
     def __init__(self) -> None:
         raise TypeError("use percute.sweep")
@@ -125,7 +131,7 @@ class Sweep:
         axes = self._axes()
         if axes is None:
             data = {name: ("case", values) for name, values in self._columns.items() if name != "case"}
-            found = library.Dataset(data, coords={"case": list(self.cases)})
+            found: xarray.Dataset = library.Dataset(data, coords={"case": list(self.cases)})
         else:
             # The row of each combination.
             places = [np.searchsorted(values, self[key]) for key, values in axes.items()]
@@ -242,7 +248,9 @@ def sweep(
     KeyboardInterrupt
         The processes have been stopped; what is done stays.
     """
-    file = file_name("case", case)
+    _, _, file = read_case(case)
+    if file is None:
+        raise InputError("`case` is the text of a case; a sweep needs the name of a case file")
     place = os.path.abspath(f"{Path(file).stem}-sweep" if folder is None else file_name("folder", folder))
     parts = _parts(parameters)
     count = None if jobs is None else whole("jobs", jobs)
@@ -274,7 +282,7 @@ def _on_workers(
     # Whether a case is done depends on the folder, not on the arguments alone.
     futures = client.map(_run_case, [folder] * len(cases), names, texts, [way[2:]] * len(cases), pure=False)
     try:
-        for done, future in enumerate(as_completed(futures), 1):
+        for done, future in enumerate(as_completed(futures), 1):  # type: ignore[no-untyped-call]
             # A case whose workers were all lost stays open.
             if future.status == "error" and not _is_lost(future.exception()):
                 future.result()

@@ -110,7 +110,8 @@ def to_xarray(contents: Contents) -> _xarray.Dataset:
     used = {dimension for quantity in contents.quantities.values() for dimension in quantity.dims}
     coordinates = {name: _variable(each) for name, each in contents.coordinates.items() if set(each.dims) <= used}
     quantities = {name: _variable(each) for name, each in contents.quantities.items()}
-    return library.Dataset(quantities, coordinates, {"source": f"percute {__version__}"} | contents.facts)
+    found: _xarray.Dataset = library.Dataset(quantities, coordinates, {"source": f"percute {__version__}"} | contents.facts)
+    return found
 
 
 def _variable(quantity: Quantity) -> tuple[tuple[str, ...], NDArray[Any], dict[str, str]]:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -161,8 +164,6 @@ def test_ctrl_c_leaves_nothing_half(tmp_path: Path, case: Path) -> None:
 def test_a_lost_worker_of_dask_changes_nothing(swept: pc.Sweep, case: Path, tmp_path: Path) -> None:
     """Two workers, of which one is killed on the way: the sweep ends complete, and equals that of one machine."""
     distributed = pytest.importorskip("distributed")
-    import warnings
-
     with warnings.catch_warnings():
         # Of the cluster: busy ports, and the worker that is killed.
         warnings.simplefilter("ignore")
@@ -171,22 +172,29 @@ def test_a_lost_worker_of_dask_changes_nothing(swept: pc.Sweep, case: Path, tmp_
             distributed.Client(cluster) as client,
         ):
             told: list[pc.Progress] = []
+            processes = client.run(os.getpid)
 
             def progress(now: pc.Progress) -> None:
                 if not told:
-                    client.run(lambda: None)
-                    workers = list(client.scheduler_info(n_workers=-1)["workers"])
-                    client.run(_die, workers=workers[:1], on_error="ignore", wait=False)
+                    os.kill(min(processes.values()), signal.SIGKILL)
                 told.append(now)
 
             found = pc.sweep(case, GRID, folder=tmp_path / "dask", client=client, progress=progress)
+            assert client.run(os.getpid) != processes
     assert told[-1].done == told[-1].total == len(GRID["mesh.rectangle.nx"]) * len(GRID["obstacle.0.friction"])
     for column in swept.columns:
         if column != "seconds":
             assert list(found[column]) == list(swept[column]) or np.array_equal(found[column], swept[column], equal_nan=True), column
 
 
-def _die() -> None:
-    import os
+def test_the_page_runs(case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "sweep.md").read_text()
+    (tmp_path / "sweep.toml").write_text(re.findall(r"```toml\n(.*?)```", page, re.DOTALL)[0])
+    command = [sys.executable, "-m", "percute", "sweep", "sweep.toml", "--list"]
+    listed = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout.splitlines()
+    assert len(listed) == 12 and listed[0].split() == ["open", "young=7e10,density=2700,nx=10,friction=0"]
+    monkeypatch.chdir(tmp_path)
+    exec(re.findall(r"```python\n(.*?)```", page, re.DOTALL)[0], {})
+    plt.close("all")
+    assert (tmp_path / "map.png").exists() and len(list((tmp_path / "block-sweep").glob("*/result.json"))) == 6
 
-    os.kill(os.getpid(), signal.SIGKILL)

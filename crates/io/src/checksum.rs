@@ -3,7 +3,8 @@
 use percute_core::mesh::Mesh;
 
 /// A checksum of what was added to it. Each step maps its 64 bits one to one, so that a change of one number always
-/// changes it, and of more with all but a probability of 2⁻⁶⁴.
+/// changes it. A step spreads the change of any bit over many, so that the change of another number undoes it by chance
+/// only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Checksum(u64);
 
@@ -13,7 +14,9 @@ impl Checksum {
     }
 
     fn word(&mut self, word: u64) {
-        self.0 = (self.0 ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        // A product carries a change to higher bits only; the shift brings it to the lower ones before.
+        let mixed = self.0 ^ word;
+        self.0 = (mixed ^ (mixed >> 32)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
     }
 
     /// Adds the bits of numbers, and their count.
@@ -62,6 +65,20 @@ impl Checksum {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// As the sign of a number and a bit of the next once cancelled each other.
+    #[test]
+    fn changes_of_two_bits_are_seen() {
+        let sum = |values: &[f64]| Checksum::new().numbers(values).stored();
+        for values in [[1.0_f64, -2.5, 0.0], [3e300, 7e-12, -1.0]] {
+            let whole = sum(&values);
+            for pair in 0..64 * 64 {
+                let (first, second) = (1_u64 << (pair / 64), 1_u64 << (pair % 64));
+                let changed = [values[0].to_bits() ^ first, values[1].to_bits() ^ second].map(f64::from_bits);
+                assert_ne!(sum(&[changed[0], changed[1], values[2]]), whole, "bits {} and {}", pair / 64, pair % 64);
+            }
+        }
+    }
 
     #[test]
     fn each_change_of_one_bit_and_each_exchange_is_seen() {

@@ -78,9 +78,9 @@ mod _percute {
         percute_workflow::message::hint(given, known.iter().map(String::as_str))
     }
 
-    /// Runs the command `percute` with these arguments, the program's name first, as the process's
-    /// own: it prints to standard output and error and takes Ctrl-C over. Returns the exit code. `itself` is the command
-    /// with which processes of its own are started.
+    /// Runs the command `percute` with these arguments, the program's name first, as the process's own: it prints to
+    /// standard output and error and takes Ctrl-C over. Returns the exit code. `itself` is the command with which
+    /// processes of its own are started.
     #[pyfunction]
     fn command(py: Python<'_>, arguments: Vec<OsString>, itself: Vec<OsString>) -> u8 {
         py.detach(|| percute::process(arguments, &itself))

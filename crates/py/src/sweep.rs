@@ -17,12 +17,14 @@ pub(crate) struct SweepPlan {
 /// Cases done before, done now, failed and left, and name and reason of each failure.
 type Done = ([usize; 4], Vec<(String, String)>);
 
-/// How cases are run: the command, processes at a time, threads of each, whether long runs are allowed, whether all are run again.
+/// How cases are run: the command, processes at a time, threads of each, whether long runs are allowed, whether all are
+/// run again.
 type Way = (Vec<OsString>, Option<usize>, usize, bool, bool);
 
 #[pymethods]
 impl SweepPlan {
-    /// The sweep of a case file: `parts` has keys and, in JSON, rows of their values; all combinations of rows are cases.
+    /// The sweep of a case file: `parts` has keys and, in JSON, rows of their values; all combinations of rows are
+    /// cases.
     #[new]
     fn new(
         py: Python<'_>,

@@ -1,4 +1,5 @@
-//! The folder of a case. It appears complete: an attempt has a folder of its own, which takes the name of the case at its end.
+//! The folder of a case. It appears complete: an attempt has a folder of its own, which takes the name of the case at
+//! its end.
 
 use crate::plan::Planned;
 use std::fs::{self, File};

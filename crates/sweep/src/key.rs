@@ -124,7 +124,8 @@ impl Known {
 mod tests {
     use super::*;
 
-    const CASE: &str = "# A case.\n[mesh] # body\nrectangle = { width = 0.05, nx = 20 }\n[initial]\nvelocity = [400.0, -400.0]\n\
+    const CASE: &str = "# A case.\n[mesh] # body\nrectangle = { width = 0.05, nx = 20 }\n\
+                        [initial]\nvelocity = [400.0, -400.0]\n\
                         [[obstacle]]\nfriction = 0.2 # dry\n[[obstacle]]\nfriction = 0.3\n";
 
     fn set(key: &str, value: impl Into<Value>) -> Result<String, String> {

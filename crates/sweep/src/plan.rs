@@ -85,8 +85,8 @@ impl Plan {
     /// The sweep of a case file over these values.
     ///
     /// # Errors
-    /// A case that cannot be read, a key that it does not have; a mistake in the first case. Those of the others are told when
-    /// they are run.
+    /// A case that cannot be read, a key that it does not have; a mistake in the first case. Those of the others are
+    /// told when they are run.
     pub fn new(case: &Path, folder: PathBuf, values: Values, long: Long) -> Result<Self, Failure> {
         let text = std::fs::read_to_string(case);
         let text = text.map_err(|cause| Failure::Unreadable { file: case.to_path_buf(), cause })?;

@@ -70,8 +70,8 @@ impl Launch {
     }
 }
 
-/// Runs those of the cases in `folder` that are not done. Each failure is handed to `tell` with the name of its case; the others go
-/// on. If the observer breaks, all processes are stopped and their attempts removed.
+/// Runs those of the cases in `folder` that are not done. Each failure is handed to `tell` with the name of its case;
+/// the others go on. If the observer breaks, all processes are stopped and their attempts removed.
 ///
 /// # Errors
 /// A folder that cannot be written, a program that cannot be started.

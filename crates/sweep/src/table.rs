@@ -62,8 +62,8 @@ pub struct Column {
     pub entries: Vec<Value>,
 }
 
-/// The table of a sweep as far as it is done: name and status of each case, the values of its keys, its results, the names of its
-/// warnings, and the reason of a failure.
+/// The table of a sweep as far as it is done: name and status of each case, the values of its keys, its results, the
+/// names of its warnings, and the reason of a failure.
 #[must_use]
 pub fn columns(plan: &Plan) -> Vec<Column> {
     let states: Vec<State> = plan.cases.iter().map(|case| state(&plan.folder, case)).collect();

@@ -51,7 +51,9 @@ def _keys(sweep: Sweep, over: object, where: object) -> list[str]:
     """Give one or two keys."""
     fixed = where if isinstance(where, Mapping) else {}
     varied = [key for key in sweep.parameters if len(set(sweep[key])) > 1 and key not in fixed] or list(sweep.parameters[:1])
-    keys = varied if over is None else [over] if isinstance(over, str) else list(over) if isinstance(over, Sequence) else [over]
+    several = isinstance(over, Sequence) and not isinstance(over, str)
+    given: list[Any] = varied if over is None else list(over) if several else [over]  # type: ignore[call-overload]
+    keys = [str(key) for key in given]
     for key in keys:
         if key not in sweep.parameters:
             raise InputError(f"`over` names {key!r}; the keys that are varied are {', '.join(sweep.parameters)}")
@@ -97,5 +99,5 @@ def _map(axes: Axes, places: list[NDArray[Any]], values: NDArray[Any], label: st
     if cells.size <= MOST_NUMBERS:
         for (row, column), value in np.ndenumerate(cells):
             if np.isfinite(value):
-                dark = image.norm(value) < 0.6
+                dark = float(np.asarray(image.norm(value))) < 0.6
                 axes.text(column, row, f"{value:.3g}", ha="center", va="center", fontsize="small", color="white" if dark else "black")

@@ -7,7 +7,7 @@ use super::run::{request, within};
 use crate::args::EstimateArguments;
 use crate::progress::Watch;
 use percute_core::each_dimension;
-use percute_estimator::{Options, Request};
+use percute_estimator::{EstimateError, Options, Request};
 use percute_workflow::Failure;
 use percute_workflow::grade::Graded;
 use percute_workflow::history::{Stored, open};
@@ -44,7 +44,13 @@ fn estimate<const D: usize, const N: usize>(
     let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
     let analysis = Analysis { options, request, contact_steps: output.is_some() || print.report.is_some() };
-    let Graded { results, times, checked } = stored.estimate(&analysis, arguments.accept_inconsistent, watch)?;
+    let graded = stored.estimate(&analysis, arguments.accept_inconsistent, watch);
+    let Graded { results, times, checked } = match graded {
+        Err(Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. }) if (console.interrupted)() => {
+            return Ok(console.interrupted_early(&error));
+        }
+        other => other?,
+    };
     watch.clear();
     let (case, seconds) = (stored.file.case().cloned(), start.elapsed().as_secs_f64());
     let subject = Subject { times: &times, checked: checked.as_ref(), ..stored.subject() };

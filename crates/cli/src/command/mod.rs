@@ -15,9 +15,10 @@ mod sweep;
 mod verify;
 
 use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
-use crate::exit::{BAD_INPUT, DONE, FAILED, code};
+use crate::exit::{BAD_INPUT, DONE, FAILED, INTERRUPTED, code};
 use crate::progress::Watch;
 use clap::Parser;
+use percute_estimator::EstimateError;
 use percute_io::{FileError, is_hdf5};
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Source, parse, stranger};
@@ -115,6 +116,12 @@ impl Console<'_> {
     fn refuse(&mut self, why: &str) -> u8 {
         self.say(&format!("error: {why}"));
         FAILED
+    }
+
+    /// Says that there is no estimate of the steps done before the interruption.
+    fn interrupted_early(&mut self, error: &EstimateError) -> u8 {
+        self.say(&format!("interrupted: {error}"));
+        INTERRUPTED
     }
 
     /// Prints the plausibility warnings about a case and returns their names.

@@ -54,8 +54,7 @@ fn run_case<const D: usize, const N: usize>(
     let Outcome { results, unstored } = match done {
         // Nothing can be estimated from a run stopped at its very start.
         Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
-            console.say(&format!("interrupted: {error}"));
-            return Ok(INTERRUPTED);
+            return Ok(console.interrupted_early(&error));
         }
         other => other?,
     };

@@ -1,12 +1,15 @@
 //! The heaps of texts of variable length, checked before the library reads them: they have no checksums, and an object
 //! of a wrong size can keep the library in an endless loop.
 
+use memchr::memmem;
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
-/// First bytes of a heap: its signature, its version and three zeros.
-const SIGNATURE: [u8; 8] = *b"GCOL\x01\0\0\0";
+/// First bytes of a heap: its signature and its version. Three reserved bytes follow, which the library ignores.
+const SIGNATURE: [u8; 5] = *b"GCOL\x01";
+/// The reserved bytes as the library writes them.
+const RESERVED: [u8; 3] = [0; 3];
 /// Bytes of its header, and of that of an object.
 const HEADER: u64 = 16;
 /// Bytes that are searched at once.
@@ -25,9 +28,9 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
     while start < bytes {
         let length = block.len().min((bytes - start) as usize);
         file.read_exact_at(&mut block[..length], start)?;
-        for at in (0..length).filter(|&at| block[at..length].starts_with(&SIGNATURE)) {
+        for at in memmem::find_iter(&block[..length], &SIGNATURE) {
             let place = start + at as u64;
-            if !is_sound(file, place, bytes)? {
+            if is_heap(file, place, bytes)? && !is_sound(file, place, bytes)? {
                 return Ok(Err(format!("the texts of variable length at byte {place}")));
             }
         }
@@ -42,6 +45,17 @@ fn size_of_lengths(file: &File) -> io::Result<u8> {
     let mut superblock = [0; 16];
     file.read_exact_at(&mut superblock, 0)?;
     Ok(if superblock[8] < 2 { superblock[14] } else { superblock[10] })
+}
+
+/// Whether a signature begins a heap: one whose reserved bytes are damaged has a size that fits into the file, which
+/// numbers with these bytes hardly ever have.
+fn is_heap(file: &File, place: u64, bytes: u64) -> io::Result<bool> {
+    let mut reserved = RESERVED;
+    if place + HEADER > bytes {
+        return Ok(false);
+    }
+    file.read_exact_at(&mut reserved, place + SIGNATURE.len() as u64)?;
+    Ok(reserved == RESERVED || length(file, place + 8, bytes)? <= bytes - place)
 }
 
 /// Whether the objects of a heap follow each other to its end.
@@ -93,6 +107,7 @@ mod tests {
         bytes[10] = 8;
         let start = bytes.len();
         bytes.extend(SIGNATURE);
+        bytes.extend(RESERVED);
         bytes.extend(128_u64.to_le_bytes());
         bytes.extend([1, 0, 0, 0, 0, 0, 0, 0]);
         bytes.extend(11_u64.to_le_bytes());
@@ -115,7 +130,14 @@ mod tests {
             assert!(length(at, wrong).is_err(), "{wrong} at {at}");
         }
         assert!(heap(|bytes| bytes[10] = 4).is_err());
+        // The library looks for objects behind damaged reserved bytes, too.
+        let damaged = heap(|bytes| {
+            bytes[53] = 7;
+            bytes[104..112].fill(0);
+        });
+        assert!(damaged.is_err());
         // Other bytes are no heap.
+        assert_eq!(heap(|bytes| bytes[53..64].fill(7)), Ok(()));
         assert_eq!(heap(|bytes| bytes[48] = b'X'), Ok(()));
     }
 }

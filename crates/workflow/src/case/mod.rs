@@ -222,7 +222,7 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
             self.error_at(Place { table: "time", index: None, key: "end" }, told)
         });
         let refused = refused.or_else(|| {
-            let (place, told) = self.lack_of_memory()?;
+            let (place, told) = self.lack_of_memory(estimated)?;
             self.error_at(place, told)
         });
         refused.map_or(Ok(()), Err)

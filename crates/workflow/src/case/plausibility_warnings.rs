@@ -34,8 +34,9 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
 
     /// What to say if there is no memory for the run, and where: a run of millions of steps is more likely a slip in
     /// the end.
-    pub(super) fn lack_of_memory(&self) -> Option<(Place, String)> {
-        let told = memory::refusal(memory::of_case(self, false))?;
+    pub(super) fn lack_of_memory(&self, estimated: bool) -> Option<(Place, String)> {
+        let simulation = || memory::of_run(&self.problem, &self.times);
+        let told = memory::refusal(if estimated { memory::of_case(self, false) } else { simulation() })?;
         let warnings = plausibility_warnings(&self.problem, &self.times);
         let many = warnings.into_iter().find(|warning| warning.name == "many_steps");
         Some(match many {
