@@ -8,8 +8,11 @@ import percute as pc
 from numpy.typing import NDArray
 
 Parts = dict[str, Any]
-"""The arrays of a history, and changes of its problem: factors, and a shift of the plane (m)."""
-STATED = {"density": 1.0, "young": 1.0, "speed": 1.0, "friction": 1.0, "plane": 0.0}
+"""The arrays of a history, and changes of its problem: factors, a shift of the plane (m), a turn of its normal (rad), another Poisson's ratio or hypothesis."""
+STATED = {
+    **{"density": 1.0, "young": 1.0, "speed": 1.0, "friction": 1.0, "lengths": 1.0, "thickness": 1.0},
+    **{"plane": 0.0, "turn": 0.0, "poisson": None, "hypothesis": None},
+}
 
 
 def parts(history: pc.History) -> Parts:
@@ -35,15 +38,23 @@ def given(problem: pc.Problem, parts: Parts) -> pc.History:
     chosen = {name: getattr(old, name) for name in names if getattr(old, name) is not None}
     if problem.mesh.dimension == 1:
         chosen.pop("thickness", None)
+    else:
+        chosen["thickness"] = parts["thickness"] * (old.thickness or 1.0)
+        chosen |= {"poisson": parts["poisson"] or old.poisson, "plane": parts["hypothesis"] or old.plane}
 
     def moved(plane: pc.Plane) -> pc.Plane:
-        point = np.asarray(plane.point) + parts["plane"] * np.asarray(plane.normal)
-        return pc.Plane(point=point, normal=plane.normal, friction=parts["friction"] * plane.friction)
+        point = parts["lengths"] * (np.asarray(plane.point) + parts["plane"] * np.asarray(plane.normal))
+        sin, cos, normal = np.sin(parts["turn"]), np.cos(parts["turn"]), np.asarray(plane.normal)
+        turned = np.array([[cos, -sin], [sin, cos]]) @ normal if normal.size == 2 else normal
+        return pc.Plane(point=point, normal=turned, friction=parts["friction"] * plane.friction)
 
+    mesh = pc.Mesh(parts["lengths"] * problem.mesh.points, problem.mesh.cells) if parts["lengths"] != 1.0 else problem.mesh
     stated = pc.Problem(
-        problem.mesh,
+        mesh,
         material=pc.Elastic(young=parts["young"] * old.young, density=parts["density"] * old.density, **chosen),
         obstacles=[moved(plane) for plane in problem.obstacles],
-        initial_velocity=parts["speed"] * problem.initial_velocity,
+        initial_velocity=parts["lengths"] * parts["speed"] * problem.initial_velocity,
     )
-    return pc.History.from_arrays(stated, **{name: value for name, value in parts.items() if name not in STATED})
+    arrays = {name: value for name, value in parts.items() if name not in STATED}
+    moving = {name: parts["lengths"] * arrays[name] for name in ("displacement", "velocity", "acceleration") if name in arrays}
+    return pc.History.from_arrays(stated, **{**arrays, **moving})

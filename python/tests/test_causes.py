@@ -57,6 +57,103 @@ def test_units_are_named(name: str, lacks: tuple[str, ...], correct: pc.History)
     assert re.search(text, said), said
 
 
+Mistake = Callable[[pc.History, Parts], Parts]
+
+
+def tangential(factor: float) -> Mistake:
+    """Contact forces whose tangential parts have a factor; the normal is (0, 1)."""
+    return lambda _, parts: {**parts, "reaction": parts["reaction"] * (factor, 1.0)}
+
+
+def rows(order: Callable[[NDArray[Any]], NDArray[Any]]) -> Mistake:
+    """Rows of contact forces in another order than the nodes that are given."""
+
+    def mistake(_: pc.History, parts: Parts) -> Parts:
+        of = order(parts["contact_nodes"])
+        return {**without(parts, "touching"), "reaction": parts["reaction"][:, of]}
+
+    return mistake
+
+
+def velocities(of: Callable[[pc.History], NDArray[Any]]) -> Mistake:
+    return lambda history, parts: {**parts, "velocity": of(history)}
+
+
+def half_a_step(history: pc.History) -> NDArray[Any]:
+    return history.velocity - 0.5 * np.diff(history.time).mean() * history.acceleration
+
+
+def instant(keep: Callable[[NDArray[Any]], NDArray[Any]]) -> Mistake:
+    """Rows of other instants, under the same times."""
+
+    def mistake(_: pc.History, parts: Parts) -> Parts:
+        arrays = {name: keep(parts[name]) for name in ("displacement", "reaction")}
+        return {**without(parts, "touching"), **arrays, "time": parts["time"][: len(arrays["displacement"])]}
+
+    return mistake
+
+
+FALLS = "the norm of the residual falls from [0-9.]+ % to"
+PLANE: dict[str, tuple[Mistake, str]] = {
+    "pressure only": (tangential(0.0), f"the contact forces have no tangential parts: .*{FALLS}"),
+    "friction the other way": (tangential(-1.0), f"the tangential contact forces have the wrong sign: .*{FALLS}"),
+    "half of the friction": (tangential(0.5), f"the tangential contact forces should be 2 times as large; .*{FALLS}"),
+    "rows backwards": (rows(lambda nodes: np.arange(len(nodes))[::-1]), f"the rows .* in the opposite order, .*{FALLS}"),
+    "rows by node": (rows(np.argsort), f"the rows .* in (ascending order of the nodes|the opposite order), .*{FALLS}"),
+    "rows shuffled": (
+        rows(lambda nodes: np.random.default_rng(2).permutation(len(nodes))),
+        f"the rows .* in another order than `contact_nodes`: that of node [0-9]+ holds the force of node .*{FALLS}",
+    ),
+    "x and y": (lambda _, parts: {**parts, "displacement": parts["displacement"][..., ::-1]}, "the components .* are exchanged"),
+    "nodes from 1": (lambda _, parts: {**parts, "displacement": np.roll(parts["displacement"], 1, axis=1)}, "those of the nodes before"),
+    "all in mm": (lambda _, parts: {**parts, "lengths": 1e3}, r"all lengths .* should be 0.001 times as large \(given in mm\?\)"),
+    "MPa and t/mm³": (
+        lambda _, parts: {**parts, "young": 1e-6, "density": 1e-12},
+        r"`young` should be 1e6 times .*MPa.*`density` should be 1e12 times .*t/mm³",
+    ),
+    "Poisson's ratio": (lambda _, parts: {**parts, "poisson": 0.35}, f"`poisson` is 0.3 in the history, not 0.35; .*{FALLS}"),
+    "plane strain": (lambda _, parts: {**parts, "hypothesis": "strain"}, f'`plane` is "stress" in the history; .*{FALLS}'),
+    "per metre": (lambda _, parts: {**parts, "thickness": 0.01}, "should be 0.01 times as large .given per metre of thickness"),
+}
+ANY: dict[str, tuple[Mistake, str]] = {
+    "u reversed": (lambda _, parts: {**parts, "displacement": -parts["displacement"]}, f"the sign of the displacements is wrong; .*{FALLS}"),
+    "places": (
+        lambda history, parts: {**parts, "displacement": parts["displacement"] + history.problem.mesh.points},
+        f"the displacements are places: subtract those of the nodes, .*{FALLS}",
+    ),
+    "velocities half a step early": (velocities(half_a_step), r"the middle of the step before it, v_\{n-1/2\}"),
+    "velocities a step early": (
+        velocities(lambda history: np.concatenate([history.velocity[1:], history.velocity[-1:]])),
+        "the velocities are not those of t_n: they are a step too early",
+    ),
+    "velocities a step late": (
+        velocities(lambda history: np.concatenate([history.velocity[:1], history.velocity[:-1]])),
+        "the velocities are not those of t_n: they are a step too late",
+    ),
+    "an instant lost": (
+        instant(lambda array: np.delete(array, 20, axis=0)),
+        rf"an instant is missing between instant 19 .* and instant 20 .*: the body moves 2 times as far .*{FALLS}",
+    ),
+    "an instant doubled": (
+        instant(lambda array: np.insert(array, 20, array[20], axis=0)[:-1]),
+        f"instant 21 .* repeats the one before it.*{FALLS}",
+    ),
+}
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction", "touching")])
+@pytest.mark.parametrize("name", [*ANY, *PLANE])
+def test_mistakes_are_named(name: str, lacks: tuple[str, ...], correct: pc.History) -> None:
+    mistake, text = {**ANY, **PLANE}[name]
+    if name in PLANE and correct.problem.mesh.dimension == 1:
+        pytest.skip("of plane bodies")
+    spoilt = mistake(correct, parts(correct))
+    if lacks and not np.array_equal(spoilt["reaction"], correct.reaction[: len(spoilt["reaction"])]):
+        pytest.skip("of the contact forces alone")
+    said = cause(correct.problem, without(spoilt, *lacks))
+    assert re.search(text, said), said
+
+
 def test_a_density_that_is_a_little_off_is_no_time_step(correct: pc.History) -> None:
     whole = parts(correct)
     # Contact forces at one node are the largest terms of the disc.

@@ -18,7 +18,7 @@ pub mod load;
 pub mod material;
 pub mod memory;
 pub mod mesh;
-mod message;
+pub mod message;
 pub mod observer;
 pub mod problem;
 mod ratio;

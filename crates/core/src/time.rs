@@ -1,5 +1,6 @@
 //! The instants t_0 … t_N of a simulation.
 
+use crate::message::trimmed;
 use thiserror::Error;
 
 /// Runs longer than this many steps are taken for a mistake of unit.
@@ -26,7 +27,7 @@ pub fn is_stable(step: f64, critical: f64) -> bool {
 #[allow(missing_docs, reason = "the messages explain the fields")]
 pub enum TimeError {
     /// A length of time that must be positive.
-    #[error("`{name}` is {value} s; it must be positive and finite")]
+    #[error("`{name}` is {} s; it must be positive and finite", trimmed(*.value, 12))]
     NotPositive {
         /// `end`, `step` or `steps[i]`.
         name: String,
@@ -36,13 +37,13 @@ pub enum TimeError {
     #[error("`steps` is empty; give at least one time step in seconds")]
     Empty,
     /// Instants that make no step.
-    #[error("there are {count} instants; at least 2 make a step")]
+    #[error("{} given; at least 2 make a step", if *.count == 1 { "a single instant is".to_string() } else { format!("{count} instants are") })]
     TooFew { count: usize },
     /// A first instant that is not 0.
-    #[error("the first instant is {time:e} s; it must be 0")]
+    #[error("the first instant is {} s; it must be 0", trimmed(*.time, 5))]
     Start { time: f64 },
     /// Instants that do not increase.
-    #[error("instant {index} is {time:e} s, not after the {before:e} s before it")]
+    #[error("instant {index} is {} s, not after the {} s before it", trimmed(*.time, 12), trimmed(*.before, 12))]
     Order {
         /// Which instant, from 0.
         index: usize,
@@ -50,15 +51,18 @@ pub enum TimeError {
         before: f64,
     },
     /// Instants that go down.
-    #[error("the instants go down from {first:e} s to {last:e} s: the order in time is reversed; turn all rows round")]
+    #[error(
+        "the instants go down from {} s to {} s: the order in time is reversed; turn all rows round",
+        trimmed(*.first, 5), trimmed(*.last, 5)
+    )]
     Reversed { first: f64, last: f64 },
     /// A step that is lost in the sum, or a sum that is infinite.
-    #[error("`steps[{index}]` is {step:e} s, which cannot be added to the {time:e} s before it")]
+    #[error("`steps[{index}]` is {} s, which cannot be added to the {} s before it", trimmed(*.step, 5), trimmed(*.time, 12))]
     Lost { index: usize, step: f64, time: f64 },
     /// More steps than any run can have.
     #[error(
-        "an end at {end:e} s with steps of {step:e} s makes {count:.3e} steps, but at most 1e8 are possible; are both \
-         in seconds?"
+        "an end at {} s with steps of {} s makes {} steps, but at most 1e8 are possible; are both in seconds?",
+        trimmed(*.end, 5), trimmed(*.step, 5), trimmed(*.count, 4)
     )]
     TooMany { end: f64, step: f64, count: f64 },
 }

@@ -5,6 +5,7 @@ use crate::request::RequestError;
 use crate::scratch_file::ScratchError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{SinkError, StepError};
+use percute_core::message::{counted, trimmed};
 use thiserror::Error;
 
 /// Why an estimate could not be made.
@@ -27,7 +28,7 @@ pub enum EstimateError {
     #[error("the threads of the estimate could not be started: {cause}")]
     Threads { cause: String },
     /// Not even one whole step.
-    #[error("the history holds {count} instants; an estimate needs at least 2")]
+    #[error("the history holds {}; an estimate needs at least 2", counted(*.count, "instant"))]
     TooFewSteps { count: usize },
     /// A step that does not fit.
     #[error(transparent)]
@@ -40,8 +41,8 @@ pub enum EstimateError {
     StartVelocity { node: usize },
     /// A node that is said to touch at t = 0, but does not rest on its plane.
     #[error(
-        "node {node} touches at step 0, but its gap is {gap:e} m and its normal velocity {speed:e} m/s; both must be \
-         zero"
+        "node {node} touches at step 0, but its gap is {} m and its normal velocity {} m/s; both must be zero",
+        trimmed(*.gap, 5), trimmed(*.speed, 5)
     )]
     StartsTouching { node: usize, gap: f64, speed: f64 },
     /// Numbers too large to be squared and summed.
@@ -51,8 +52,8 @@ pub enum EstimateError {
     Overflow,
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
-        "node {node} starts {gap:.6e} m from its plane and touches at step 1; no admissible motion exists \
-         below a gap of {smallest_gap:.6e} m"
+        "node {node} starts {} m from its plane and touches at step 1; no admissible motion exists below a gap of {} m",
+        trimmed(*.gap, 7), trimmed(*.smallest_gap, 7)
     )]
     StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },
     /// A temporary file that failed.
@@ -60,9 +61,9 @@ pub enum EstimateError {
     Scratch(#[from] ScratchError),
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
-        "the auxiliary solution of `corrected` became unstable at step {step}, t = {time:.6e} s: the steps of the \
-         history are too long for its central differences (the longest is {longest_step:.4e} s); estimate this history \
-         with reconstruction = \"consistent\", or store shorter steps"
+        "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s: the steps of the history are too long \
+         for its central differences (the longest is {} s); estimate this history with reconstruction = \"consistent\", or store shorter steps",
+        trimmed(*.time, 7), trimmed(*.longest_step, 5)
     )]
     AuxiliarySolution { step: usize, time: f64, longest_step: f64 },
 }

@@ -2,7 +2,7 @@
 //! filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Lacks, Origin, Refusal, check};
+use crate::foreign::{Between, Checked, Completed, Lacks, Origin, Refusal, check, started};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
@@ -45,13 +45,13 @@ pub fn estimate<const D: usize, const N: usize>(
     let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
     let Some(between) = between else {
         let analysis = &requested(analysis, |step| step.min(last));
-        let results = run::estimate(problem, &complete, analysis, observer)?;
+        let results = run::estimate(problem, &started(problem, &complete), analysis, observer)?;
         return Ok(Graded { results, times: complete.times().clone(), checked: Some(checked) });
     };
     let filled = Completed::new(problem, &between, Lacks { reaction: true, touching: true }).map_err(unread)?;
     checked.derived = filled.derived().to_vec();
     let analysis = &requested(analysis, |step| between.starts[step.min(between.starts.len() - 1)]);
-    let results = run::estimate(problem, &filled, analysis, observer)?;
+    let results = run::estimate(problem, &started(problem, &filled), analysis, observer)?;
     checked.consistency.energy = results.simulation.balance.energy_drift;
     Ok(Graded { results, times: filled.times().clone(), checked: Some(checked) })
 }

@@ -1,6 +1,7 @@
 //! Whether a step fits its problem and its instants.
 
 use super::Step;
+use crate::message::trimmed;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 use thiserror::Error;
@@ -54,7 +55,7 @@ pub enum StepError {
         position: usize,
     },
     /// A step at another time than the grid's.
-    #[error("step {step} is at {given:e} s, but the time grid has {expected:e} s there")]
+    #[error("step {step} is at {} s, but the time grid has {} s there", trimmed(*.given, 12), trimmed(*.expected, 12))]
     Time {
         /// The step.
         step: usize,

@@ -3,7 +3,7 @@
 use crate::contact::ObstacleError;
 use crate::load::TableError;
 use crate::material::MaterialError;
-use crate::message::{facet, named, quoted, short, vector};
+use crate::message::{counted, facet, named, quoted, short, trimmed, vector};
 use crate::simplex::Shape;
 use std::fmt;
 use thiserror::Error;
@@ -67,12 +67,13 @@ pub enum Cause {
     EmptyGroup { name: String, of: GroupOf },
     /// Waves faster than light.
     #[error(
-        "is {density:?} kg/m³; with a Young's modulus of {} Pa waves would run at {speed:.3e} m/s, faster than light: \
-         did you mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa", short(*.young)
+        "is {} kg/m³; with a Young's modulus of {} Pa waves would run at {} m/s, faster than light: did you \
+         mix units? Steel has 7800 kg/m³ (7.8 g/cm³, 7.8e-9 t/mm³) and 210e9 Pa",
+        short(*.density), short(*.young), short(*.speed)
     )]
     FasterThanLight { density: f64, young: f64, speed: f64 },
     /// More materials or body forces than can be told apart.
-    #[error("there are {count} of them; at most {most} are possible")]
+    #[error("{count} are given; at most {most} are possible")]
     TooMany { count: usize, most: usize },
     /// No material at all, or not on all elements.
     #[error(
@@ -93,7 +94,7 @@ pub enum Cause {
         everywhere: bool,
     },
     /// A nodal field of the wrong length.
-    #[error("the field has {given} values, but the mesh has {nodes} nodes; give a value for each node, or one for all")]
+    #[error("the field has {}, but the mesh has {}; give a value for each node, or one for all", counted(*.given, "value"), counted(*.nodes, "node"))]
     FieldLength { given: usize, nodes: usize },
     /// A nodal field with NaN or infinity.
     #[error("the value at node {node} is {value}; all values must be finite numbers")]
@@ -123,8 +124,9 @@ pub enum Cause {
     },
     /// The initial velocity disagrees with a support.
     #[error(
-        "component {component} of node {node} starts at {initial} m/s, but is prescribed {prescribed} m/s by a support \
-         at t = 0; make the two agree, by the initial velocity or by the velocity of the support"
+        "component {component} of node {node} starts at {} m/s, but is prescribed {} m/s by a support at t = 0; \
+         make the two agree, by the initial velocity or by the velocity of the support",
+        trimmed(*.initial, 9), trimmed(*.prescribed, 9)
     )]
     InconsistentStart { node: usize, component: char, initial: f64, prescribed: f64 },
     /// A load on a supported component.
@@ -183,8 +185,8 @@ pub enum Cause {
     Penetrates { node: usize, depth: f64, clear: Vec<f64> },
     /// A node on the plane that moves into it.
     #[error(
-        "node {node} starts on the plane (gap {} m) and moves into it at {speed} m/s; leave a gap before the impact, \
-         of more than a quarter of this speed times the first time step", short(*.gap)
+        "node {node} starts on the plane (gap {} m) and moves into it at {} m/s; leave a gap before the impact, of more than a \
+         quarter of this speed times the first time step", short(*.gap), short(*.speed)
     )]
     StrikesAtStart { node: usize, gap: f64, speed: f64 },
 }

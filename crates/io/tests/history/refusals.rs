@@ -184,8 +184,8 @@ fn numbers_that_are_none() {
 #[test]
 fn times_out_of_order() {
     let said = spoilt(|f| change(f, "percute/times", 3, 0.0));
-    assert_says(&said, &["`percute/times`: instant 3 is 0e0 s, not after the"]);
-    assert_says(&spoilt(|f| change(f, "percute/times", 0, -1.0)), &["the first instant is -1e0 s; it must be 0"]);
+    assert_says(&said, &["`percute/times`: instant 3 is 0 s, not after the"]);
+    assert_says(&spoilt(|f| change(f, "percute/times", 0, -1.0)), &["the first instant is -1 s; it must be 0"]);
     let one = spoilt(|f| replace(f, "percute/times", &[1], &[0.0]));
     assert_says(&one, &["`percute/times`"]);
 }

@@ -2,9 +2,10 @@
 
 use super::derive::Derivation;
 use super::window::windows;
+use crate::message::counted;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
-use percute_core::time::{TimeError, TimeGrid};
+use percute_core::time::TimeGrid;
 use serde::Serialize;
 
 /// A part of a history that was derived.
@@ -91,7 +92,13 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         (self.count <= last).then(|| self.source.times().instants()[last])
     }
 
-    fn leave_out_the_last(&mut self) -> Result<(), TimeError> {
+    fn leave_out_the_last(&mut self) -> Result<(), SinkError> {
+        if self.count <= 2 {
+            let told = counted(self.count, "instant");
+            return Err(
+                format!("the history has {told}: too few, since the contact forces of the last are not known").into()
+            );
+        }
         self.count -= 1;
         self.times = TimeGrid::from_instants(self.times.instants()[..self.count].to_vec())?;
         Ok(())
@@ -142,9 +149,7 @@ impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
             let next = derivation.touching(window, reaction);
             let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(reaction));
             let touching = if self.lacks.touching { &touching } else { &now.touching };
-            let start = derivation.start(now);
-            let displacement = start.as_deref().unwrap_or(&now.displacement);
-            take(&Step { displacement, reaction, touching, ..now.step() })
+            take(&Step { reaction, touching, ..now.step() })
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::balance::{Motion, Terms, dot, norm};
 use super::figures::Consistency;
+use super::gaps::Gaps;
 use super::nearness::{ADDED, Nearness, unsure};
 use super::window::{Held, Window};
 use percute_core::contact::{ContactNode, Frame};
@@ -11,51 +12,9 @@ use percute_core::problem::Problem;
 const FAINT: f64 = 1e-6;
 /// Nodes slide if they are faster than this share of the fastest node; noise of 1e-9 m is slower.
 const SLIDING: f64 = 1e-2;
-/// Gaps under a force are the same if their standard deviation is below the mean over this. Contact by a penalty has a
-/// deviation of 0.05 (a bar) to 6 times the mean.
-const SAME: f64 = 100.0;
-
-/// Sums over gaps under forces, weighted with the square of the normal force (N²).
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Gaps {
-    /// The weights, gap, gap², undeformed gap times path along the normal, and path² (m).
-    sums: [f64; 5],
-}
-
-impl Gaps {
-    fn add(&mut self, force: f64, gap: f64, undeformed: f64) {
-        let path = gap - undeformed;
-        let terms = [1.0, gap, gap * gap, undeformed * path, path * path];
-        self.sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += force * force * term);
-    }
-
-    /// Their mean and standard deviation (m).
-    fn spread(&self) -> Option<[f64; 2]> {
-        let [weight, gap, square, ..] = self.sums;
-        let mean = gap / weight;
-        (weight > 0.0).then(|| [mean, (square / weight - mean * mean).max(0.0).sqrt()])
-    }
-
-    /// The mean, if it is nearly the same everywhere (m).
-    fn mean(&self) -> Option<f64> {
-        self.spread().filter(|&spread| common(spread) > 0.0).map(|[mean, _]| mean)
-    }
-
-    /// The factor of the path that brings the nodes onto their plane.
-    fn path(&self) -> Option<f64> {
-        let [.., product, square] = self.sums;
-        let factor = -product / square;
-        (factor.is_finite() && factor > 0.0).then_some(factor)
-    }
-}
-
-/// The part of a gap (m) that is the same at all nodes and instants, from its mean and standard deviation.
-fn common([mean, deviation]: [f64; 2]) -> f64 {
-    mean.abs() - SAME * deviation
-}
 
 /// Sums over the nodes of a plane and all instants.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug)]
 struct PlaneSums {
     /// ∑μR_n|w_t|Δt, ∑R_n|w_t|Δt and −∑R_t·w_t Δt of sliding nodes (J).
     slide: [f64; 3],
@@ -65,6 +24,10 @@ struct PlaneSums {
 }
 
 impl PlaneSums {
+    fn new(nodes: usize) -> Self {
+        Self { slide: [0.0; 3], forced: Gaps::new(nodes), missing: Gaps::new(nodes) }
+    }
+
     /// The misfit of Coulomb's law (J).
     fn misfit(&self) -> f64 {
         self.slide[0] - self.slide[2]
@@ -95,7 +58,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         Self {
             problem,
             nearness: Nearness::new(problem),
-            planes: vec![PlaneSums::default(); problem.obstacles().len()],
+            planes: vec![PlaneSums::new(problem.surface().nodes().len()); problem.obstacles().len()],
             forced: vec![false; problem.surface().nodes().len()],
             largest: [0.0; 4],
             unsure: 0.0,
@@ -123,7 +86,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             self.press(at, contact, &frame, now);
             let (Some(after), Some(motion)) = (window.after, motion) else { continue };
             let gap = problem.surface().gap(at, &after.displacement[node]);
-            self.gap(contact, &frame, gap, (&now.reaction[at], terms.map(|terms| terms.rest(node))));
+            let along = along(&frame, problem.surface().point(at), &after.displacement[node]);
+            self.gap(at, (&frame, [gap, along]), (&now.reaction[at], terms.map(|terms| terms.rest(node))));
             if contact.free {
                 self.status(window, after, at, faint * problem.mass()[node]);
                 self.slide(contact, &frame, (&now.reaction[at], &motion.forward[node]), [dt, least]);
@@ -147,21 +111,21 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     /// The gap at t_{n+1} under a force at t_n, or where the balance needs one.
     fn gap(
         &mut self,
-        contact: &ContactNode,
-        frame: &Frame<D>,
-        gap: f64,
+        at: usize,
+        (frame, place): (&Frame<D>, [f64; 2]),
         (force, needed): (&[f64; D], Option<[f64; D]>),
     ) {
+        let (contact, [gap, _]) = (&self.problem.surface().nodes()[at], place);
         let normal = frame.split(force).0.max(0.0);
         self.largest[2] = self.largest[2].max(normal * gap);
         if !contact.free {
             return;
         }
         let plane = &mut self.planes[contact.obstacle];
-        plane.forced.add(normal, gap, contact.undeformed_gap);
+        plane.forced.add(at, normal, place, contact.undeformed_gap);
         if *force == [0.0; D] {
             let needed = needed.map_or(0.0, |needed| frame.split(&needed).0.max(0.0));
-            plane.missing.add(needed, gap, contact.undeformed_gap);
+            plane.missing.add(at, needed, place, contact.undeformed_gap);
         }
     }
 
@@ -199,13 +163,13 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * dt);
     }
 
-    /// The first plane at another place than the contact, with the mean gap (m): under forces, or where they are
-    /// missing.
-    pub(super) fn offset(&self, missing: bool) -> Option<(usize, f64)> {
+    /// The first plane at another place than the contact, with the mean gap (m) and its slope along the plane: under forces, or
+    /// where they are missing.
+    pub(super) fn offset(&self, missing: bool) -> Option<(usize, [f64; 2])> {
         let tolerance = self.nearness.tolerance(self.unsure);
-        let of = |plane: &PlaneSums| if missing { plane.missing.mean() } else { plane.forced.mean() };
-        let gaps = self.planes.iter().enumerate().filter_map(|(k, plane)| of(plane).map(|mean| (k, mean)));
-        gaps.into_iter().find(|(_, mean)| mean.abs() > tolerance)
+        let of = |plane: &PlaneSums| if missing { plane.missing.line() } else { plane.forced.line() };
+        let gaps = self.planes.iter().enumerate().filter_map(|(k, plane)| of(plane).map(|line| (k, line)));
+        gaps.into_iter().find(|(_, line)| line.size > tolerance).map(|(k, line)| (k, [line.mean, line.slope]))
     }
 
     /// Factors of the displacements, one for each plane with contact, that bring the contact onto it.
@@ -228,13 +192,21 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         found.cone = super::ratio(excess, normal.max(excess));
         found.gap_under_force = super::ratio(product, normal * size);
         found.penetration = depth / size;
-        let gaps = self.planes.iter().filter_map(|plane| plane.forced.spread());
-        found.plane = gaps.map(|gap| (common(gap) - ADDED * self.unsure).max(0.0) / size).fold(0.0, f64::max);
+        let gaps = self.planes.iter().filter_map(|plane| plane.forced.common());
+        found.plane = gaps.map(|gap| (gap - ADDED * self.unsure).max(0.0) / size).fold(0.0, f64::max);
         let [limit, misfit] = self.planes.iter().fold([0.0; 2], |[limit, misfit], plane| {
             [limit + plane.slide[0], misfit + if plane.slide[0] > 0.0 { plane.misfit().abs() } else { 0.0 }]
         });
         found.slip = (limit > 0.0).then(|| misfit / limit);
         let changes = self.changes[0].max(self.changes[1]).max(1);
         found.touching = self.disagree[0] as f64 / changes as f64;
+    }
+}
+
+/// The place of a node along its plane (m), from the left to the right as seen with the normal upwards; 0 of a bar.
+fn along<const D: usize>(frame: &Frame<D>, point: &[f64; D], displacement: &[f64; D]) -> f64 {
+    match (frame.normal().as_slice(), D) {
+        (&[x, y], 2) => y * (point[0] + displacement[0]) - x * (point[1] + displacement[1]),
+        _ => 0.0,
     }
 }

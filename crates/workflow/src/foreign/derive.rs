@@ -1,12 +1,13 @@
 //! Contact forces and touching status that follow from displacements.
 
 use super::balance::{Balance, Terms, norm};
-use super::nearness::{ADDED, Nearness, rounding, size, unsure};
+use super::nearness::{ADDED, Nearness, rounding, unsure};
 use super::window::{Held, Window, windows};
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
+use percute_core::time::is_stable;
 
 /// Contact forces below so many times the noise of the forces inside the body are noise.
 const ABOVE: f64 = 8.0;
@@ -64,17 +65,6 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         left.into_iter().fold(0.0, f64::max)
     }
 
-    /// u_0 of the problem where that of the history differs by rounding alone.
-    pub(super) fn start(&self, now: &Held<D>) -> Option<Vec<[f64; D]>> {
-        let stated = self.balance.problem().initial_displacement();
-        if now.index > 0 || stated == now.displacement {
-            return None;
-        }
-        let tolerance = 2.0 * f64::from(f32::EPSILON) * size(stated);
-        let same = |(a, b): (&[f64; D], &[f64; D])| (0..D).all(|c| (a[c] - b[c]).abs() <= tolerance);
-        stated.iter().zip(&now.displacement).all(same).then(|| stated.to_vec())
-    }
-
     /// R_n of the surface: M a + K u − F where a plane can act, without what is noise. None if a_n is not known.
     pub(super) fn reactions(&self, window: Window<'_, D>) -> Option<Vec<[f64; D]>> {
         let (problem, now, n) = (self.balance.problem(), window.now, window.now.index);
@@ -96,12 +86,18 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         Some(problem.surface().nodes().iter().enumerate().map(of).collect())
     }
 
-    /// Whether a node is on its plane at t_n or t_{n+1}.
+    /// Whether a node is on its plane at t_n or t_{n+1}. The step of the solver after a sample is at most the critical one.
     fn near(&self, at: usize, window: Window<'_, D>, unsure: f64) -> bool {
         let surface = self.balance.problem().surface();
-        let node = surface.nodes()[at].node.index();
-        let gaps = [Some(window.now), window.after].into_iter().flatten();
-        gaps.map(|held| surface.gap(at, &held.displacement[node])).any(|gap| gap <= self.nearness.tolerance(unsure))
+        let (node, now, critical) = (surface.nodes()[at].node.index(), window.now, 2.0 / self.stiffest.sqrt());
+        let sampled = !is_stable(self.balance.times().step(now.index), critical);
+        let on_its_way = now.velocity.as_ref().filter(|_| sampled).map(|velocity| {
+            let next = std::array::from_fn(|c| now.displacement[node][c] + critical * velocity[node][c]);
+            surface.gap(at, &next)
+        });
+        let held = [Some(now), window.after].into_iter().flatten();
+        let gaps = held.map(|held| surface.gap(at, &held.displacement[node])).chain(on_its_way);
+        gaps.into_iter().any(|gap| gap <= self.nearness.tolerance(unsure))
     }
 
     /// Touching status at t_{n+1}: a force acts at t_n.

@@ -20,11 +20,22 @@ pub(super) struct Ends<const D: usize> {
     /// Difference of −v of the last step from v₀, over the norm of v₀; largest difference of u_N from u_0, over the
     /// size.
     pub(super) reversed: [f64; 2],
+    /// Largest difference of u_0 less the places of the nodes from that of the problem, over the size.
+    pub(super) places: f64,
+    /// u_0 less that of the problem (m).
+    pub(super) offset: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Ends<D> {
     pub(super) fn new() -> Self {
-        Self { speed: None, start: [[0.0; D]; 2], given: None, reversed: [0.0; 2] }
+        Self {
+            speed: None,
+            start: [[0.0; D]; 2],
+            given: None,
+            reversed: [0.0; 2],
+            places: f64::INFINITY,
+            offset: Vec::new(),
+        }
     }
 
     /// Compares the state at t_0 with that of the problem; `reaction` is R_0 at all nodes (N), and
@@ -33,12 +44,15 @@ impl<const D: usize> Ends<D> {
         &mut self,
         (balance, window): (&Balance<'_, D, N>, Window<'_, D>),
         motion: &Motion<D>,
-        (reaction, open): (&[[f64; D]], &[bool]),
+        (reaction, open): (&[[f64; D]], &dyn Fn(usize) -> bool),
         found: &mut Consistency,
     ) {
         let (problem, now) = (balance.problem(), window.now);
         let moved = widest(&now.displacement, problem.initial_displacement());
         found.initial_displacement = moved[0] / problem.mesh().size();
+        let less = |(a, b): (&[f64; D], &[f64; D])| std::array::from_fn(|c| a[c] - b[c]);
+        self.offset = now.displacement.iter().zip(problem.initial_displacement()).map(less).collect();
+        self.places = widest(&self.offset, problem.mesh().points())[0] / problem.mesh().size();
         let (terms, h) = (balance.terms(now, &motion.forward), balance.times().velocity_step(0));
         let without = |(node, v): (usize, &[f64; D])| {
             let change = |c: usize| terms.load[node][c] - terms.stiffness[node][c] + reaction[node][c];
@@ -47,7 +61,7 @@ impl<const D: usize> Ends<D> {
         let derived = supported(problem, motion.forward.iter().enumerate().map(without).collect());
         let given = now.velocity.clone().map(|given| supported(problem, given));
         let stated = problem.initial_velocity();
-        let quiet = |node: usize| !open[node] && reaction[node] == [0.0; D];
+        let quiet = |node: usize| !open(node) && reaction[node] == [0.0; D];
         self.speed = factor(&derived, stated, quiet);
         self.given = given.as_ref().and_then(|given| factor(given, stated, |_| true));
         let started = given.clone().unwrap_or(derived);

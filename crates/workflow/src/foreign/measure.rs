@@ -6,8 +6,9 @@ use super::contact::Contact;
 use super::ends::Ends;
 use super::figures::Consistency;
 use super::residual::Residual;
-use super::widest;
+use super::velocities::Rates;
 use super::window::{Window, windows};
+use super::{take_in, widest};
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
 
@@ -21,6 +22,9 @@ pub(super) struct Evidence<'p, const D: usize, const N: usize> {
     pub(super) residual: Residual,
     pub(super) contact: Contact<'p, D, N>,
     pub(super) ends: Ends<D>,
+    pub(super) rates: Rates<D>,
+    /// Whether velocities and accelerations are given.
+    pub(super) given: [bool; 2],
 }
 
 /// Measures a history, of which parts were derived, with the contact forces of so many steps later.
@@ -30,18 +34,22 @@ pub(super) fn measure<'p, const D: usize, const N: usize>(
     derived: &[Derived],
     shift: isize,
 ) -> Result<(Consistency, Evidence<'p, D, N>), SinkError> {
-    let mut open = vec![false; problem.mesh().node_count()];
-    if derived.contains(&Derived::Reaction) {
-        problem.surface().nodes().iter().for_each(|contact| open[contact.node.index()] = true);
-    }
+    let mut surface = vec![false; problem.mesh().node_count()];
+    problem.surface().nodes().iter().for_each(|contact| surface[contact.node.index()] = true);
+    let residual = Residual::new(surface, derived.contains(&Derived::Reaction));
     let mut pass = Pass {
         balance: Balance::new(problem, source.times()),
         shift,
         last: source.count().saturating_sub(1),
         found: Consistency::default(),
-        evidence: Evidence { residual: Residual::new(open), contact: Contact::new(problem), ends: Ends::new() },
+        evidence: Evidence {
+            residual,
+            contact: Contact::new(problem),
+            ends: Ends::new(),
+            rates: Rates::default(),
+            given: [false; 2],
+        },
         acceleration: [0.0; 2],
-        velocity: [0.0; 2],
     };
     windows(source, &mut |window| {
         pass.take(window);
@@ -56,14 +64,14 @@ struct Pass<'b, 'p, const D: usize, const N: usize> {
     last: usize,
     found: Consistency,
     evidence: Evidence<'p, D, N>,
-    /// Largest difference and largest value of given accelerations (m/s²) and velocities (m/s).
+    /// Largest difference and largest value of given accelerations (m/s²).
     acceleration: [f64; 2],
-    velocity: [f64; 2],
 }
 
 impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
     fn take(&mut self, window: Window<'_, D>) {
         let (now, n) = (window.now, window.now.index);
+        self.evidence.given = [now.velocity.is_some(), now.acceleration.is_some()];
         let motion = self.balance.motion(window);
         let reaction = match self.shift {
             0 => Some(&now.reaction),
@@ -74,7 +82,7 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
         let terms = now.acceleration.as_ref().or(derived).map(|used| self.balance.terms(now, used));
         let steps = [self.balance.times().step(n), self.balance.times().velocity_step(n)];
         if let (Some(terms), Some(reaction)) = (&terms, reaction) {
-            self.evidence.residual.add(terms, &self.nodal(reaction), now.time);
+            self.evidence.residual.add(terms, &self.nodal(reaction), n, now.time);
         }
         if let Some(motion) = &motion {
             let mass = self.balance.problem().mass();
@@ -103,35 +111,27 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
     /// problem.
     fn compare(&mut self, window: Window<'_, D>, motion: &Motion<D>) {
         let now = window.now;
-        let Some(before) = now.index.checked_sub(1) else {
+        self.evidence.rates.take(window, motion, self.balance.times());
+        if now.index == 0 {
             let reaction = self.nodal(&now.reaction);
             let Evidence { residual, ends, .. } = &mut self.evidence;
-            ends.start((&self.balance, window), motion, (&reaction, &residual.open), &mut self.found);
+            let open = |node: usize| residual.is_open(node);
+            ends.start((&self.balance, window), motion, (&reaction, &open), &mut self.found);
             return;
-        };
+        }
         if let Some(given) = &now.acceleration {
             take_in(&mut self.acceleration, widest(given, &motion.acceleration));
-        }
-        if let Some(given) = &now.velocity {
-            let half = 0.5 * self.balance.times().step(before);
-            let at_once = motion.back.iter().zip(&motion.acceleration);
-            let derived: Vec<_> = at_once.map(|(v, a)| std::array::from_fn(|c| v[c] + half * a[c])).collect();
-            take_in(&mut self.velocity, widest(given, &derived));
         }
     }
 
     fn finish(self) -> (Consistency, Evidence<'p, D, N>) {
-        let Self { mut found, evidence, acceleration, velocity, .. } = self;
+        let Self { mut found, evidence, acceleration, .. } = self;
         let given = |[difference, largest]: [f64; 2]| (largest > 0.0).then(|| difference / largest);
         found.balance = evidence.residual.relative();
-        (found.node, found.time) = evidence.residual.place;
+        (found.node, found.time) = (evidence.residual.worst.node, evidence.residual.worst.time);
         found.acceleration = given(acceleration);
-        found.velocity = given(velocity);
+        found.velocity = evidence.rates.misfit();
         evidence.contact.enter(&mut found);
         (found, evidence)
     }
-}
-
-fn take_in(largest: &mut [f64; 2], values: [f64; 2]) {
-    largest.iter_mut().zip(values).for_each(|(most, value)| *most = most.max(value));
 }

@@ -7,34 +7,45 @@ mod contact;
 mod derive;
 mod ends;
 mod figures;
+mod gaps;
+mod holding;
+mod instants;
 mod limits;
 mod measure;
+mod moduli;
 mod nearness;
+mod of_balance;
+mod orders;
+mod planes;
 mod residual;
+mod rounded;
 mod samples;
+mod start;
+mod surface;
+mod suspect;
 mod tried;
 mod units;
+mod velocities;
 mod window;
 
 pub use complete::{Completed, Derived, Lacks};
 pub use figures::Consistency;
 pub(crate) use samples::Between;
 pub use samples::Samples;
+use samples::lacking;
+pub(crate) use start::started;
 
-use crate::message::percent;
 use crate::through::Through;
 pub(crate) use causes::REVERSED;
-use causes::Suspect;
 pub(crate) use ends::runs_backwards;
-use limits::BALANCE;
 pub(crate) use limits::{by_a_penalty, exceeded};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
 use percute_core::history::{SinkError, StateSink, StepSource};
 use percute_core::problem::Problem;
-use percute_core::time::is_stable;
 use std::cell::RefCell;
 use std::path::PathBuf;
+use suspect::Suspect;
 
 /// What is known of the origin of a history of another program.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,31 +89,8 @@ impl From<SinkError> for Refusal {
     }
 }
 
-/// The samples, if the steps of the solver were shorter: beyond the critical step (s), or by the accelerations.
-fn samples<const D: usize>(
-    source: &dyn StepSource<D>,
-    found: &Consistency,
-    critical: f64,
-    accept: bool,
-) -> Result<Option<Samples>, Refusal> {
-    let (count, distance) = (source.count(), source.times().longest_step());
-    let differs = found.acceleration.filter(|differs| *differs > BALANCE);
-    if differs.is_none() && is_stable(distance, critical) {
-        return Ok(None);
-    }
-    let samples = Samples { count, distance, critical_steps: distance / critical };
-    match (found.velocity, found.acceleration) {
-        (Some(_), Some(_)) => Ok(Some(samples)),
-        (None, Some(differs)) if found.balance <= BALANCE && !accept => Err(Refusal::Inconsistent {
-            figure: format!("its accelerations differ from those of the displacements by {}", percent(differs)),
-            cause: Some("the instants are samples, not the steps of the solver; give velocities too".to_string()),
-        }),
-        _ => Ok(None),
-    }
-}
-
-/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely
-/// cause, unless they are to be accepted.
+/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely cause,
+/// unless they are to be accepted.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
@@ -118,17 +106,25 @@ pub(crate) fn check<const D: usize, const N: usize>(
     });
     let (mut found, evidence) = measure(problem, &watched, derived, 0)?;
     found.energy = energies.into_inner().1.finish().last().map_or(0.0, |last| last.energy_drift);
-    let samples = samples(source, &found, critical, accept)?;
-    let sampled = samples.is_some();
+    let samples = Samples::of(source, &found, evidence.given, critical);
     let mut exceeded = exceeded(&found);
     // These compare an instant with the next step of the solver, which a sample does not have.
     let of_steps = ["velocity", "touching", "slip", "plane", "gap_under_force"];
-    exceeded.retain(|excess| !sampled || !of_steps.contains(&excess.name));
-    if let (Some(first), false) = (exceeded.first(), accept) {
-        let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
+    exceeded.retain(|excess| samples.is_none() || !of_steps.contains(&excess.name));
+    if accept {
+        return Ok((found, samples));
+    }
+    let balance = exceeded.iter().find(|excess| excess.name == "balance");
+    let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
+    if let Some((figure, way_out)) = lacking(source, &found, evidence.given, critical) {
+        let changed = balance.map(|_| of_balance::changed(&suspect)).transpose()?.flatten();
+        let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
+        return Err(Refusal::Inconsistent { figure, cause: changed.or(Some(way_out)) });
+    }
+    if let Some(first) = exceeded.first() {
         let cause = suspect.cause(&exceeded)?;
-        let figure = exceeded.iter().find(|excess| excess.name == "balance").unwrap_or(first).what.clone();
-        return Err(Refusal::Inconsistent { figure, cause });
+        let place = if cause.is_none() && balance.is_some() { of_balance::place(&suspect) } else { String::new() };
+        return Err(Refusal::Inconsistent { figure: format!("{}{place}", balance.unwrap_or(first).what), cause });
     }
     Ok((found, samples))
 }
@@ -142,4 +138,8 @@ fn ratio(a: f64, b: f64) -> f64 {
 fn widest<const D: usize>(field: &[[f64; D]], other: &[[f64; D]]) -> [f64; 2] {
     let pairs = field.iter().flatten().zip(other.iter().flatten());
     pairs.fold([0.0; 2], |[difference, most], (a, b): (&f64, &f64)| [(a - b).abs().max(difference), a.abs().max(most)])
+}
+
+fn take_in(largest: &mut [f64; 2], values: [f64; 2]) {
+    largest.iter_mut().zip(values).for_each(|(most, value)| *most = most.max(value));
 }

@@ -44,7 +44,7 @@ pub(super) fn unsure<'h, const D: usize>(held: impl IntoIterator<Item = Option<&
 }
 
 /// The largest component.
-pub(super) fn size<const D: usize>(values: &[[f64; D]]) -> f64 {
+fn size<const D: usize>(values: &[[f64; D]]) -> f64 {
     values.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }
 

@@ -13,86 +13,145 @@ pub(super) const REACTION: usize = 3;
 /// The signs of the terms in the residual.
 const SIGNS: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
 
+/// The largest component of the residual.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Worst {
+    pub(super) node: usize,
+    pub(super) component: usize,
+    /// Its instant (s).
+    pub(super) time: f64,
+    /// M a, K u, F and R there (N).
+    pub(super) terms: [f64; 4],
+    /// Its size (N).
+    pub(super) size: f64,
+}
+
 /// Sums over all nodes and instants.
 #[derive(Clone, Debug)]
 pub(super) struct Residual {
-    /// Largest component and largest term (N).
-    largest: [f64; 2],
-    /// Node and instant (s) of the largest component.
-    pub(super) place: (usize, f64),
-    /// Sum of squares of the residual at each node (N²).
+    /// The largest component.
+    pub(super) worst: Worst,
+    /// The largest term (N).
+    largest: f64,
+    /// Sums of squares of the residual at each node and each instant (N²).
     pub(super) by_node: Vec<f64>,
-    /// Nodes whose contact forces follow from the balance: it says nothing there.
-    pub(super) open: Vec<bool>,
-    /// Scalar products of the terms with their signs at all other nodes (N²).
-    products: [[f64; 4]; 4],
+    pub(super) by_instant: Vec<f64>,
+    /// Nodes that can touch a plane.
+    surface: Vec<bool>,
+    /// Whether their contact forces follow from the balance: it says nothing there.
+    open: bool,
+    /// Scalar products of the terms with their signs (N²), inside the body and at its surface.
+    products: [[[f64; 4]; 4]; 2],
 }
 
 impl Residual {
-    pub(super) fn new(open: Vec<bool>) -> Self {
-        Self { largest: [0.0; 2], place: (0, 0.0), by_node: vec![0.0; open.len()], open, products: [[0.0; 4]; 4] }
+    /// Of a body with these nodes that can touch a plane; with `open`, the balance says nothing at them.
+    pub(super) fn new(surface: Vec<bool>, open: bool) -> Self {
+        let by_node = vec![0.0; surface.len()];
+        let (worst, by_instant) = (Worst::default(), Vec::new());
+        Self { worst, largest: 0.0, by_node, by_instant, surface, open, products: [[[0.0; 4]; 4]; 2] }
     }
 
     /// Adds an instant (s) with its contact forces at all nodes (N).
-    pub(super) fn add<const D: usize>(&mut self, terms: &Terms<D>, reaction: &[[f64; D]], time: f64) {
+    pub(super) fn add<const D: usize>(&mut self, terms: &Terms<D>, reaction: &[[f64; D]], index: usize, time: f64) {
+        self.by_instant.resize(self.by_instant.len().max(index + 1), 0.0);
         for (node, force) in reaction.iter().enumerate() {
-            for (c, r) in force.iter().enumerate() {
-                let fields = [terms.inertia[node][c], terms.stiffness[node][c], terms.load[node][c], *r];
+            for (component, r) in force.iter().enumerate() {
+                let of = |field: &[[f64; D]]| field[node][component];
+                let fields = [of(&terms.inertia), of(&terms.stiffness), of(&terms.load), *r];
                 let signed: [f64; 4] = std::array::from_fn(|k| SIGNS[k] * fields[k]);
                 let rest = signed[INERTIA] + signed[STIFFNESS] + signed[LOAD] + signed[REACTION];
                 self.expect(fields.into_iter().fold(0.0, |most: f64, x| most.max(x.abs())));
-                if rest.abs() > self.largest[0] {
-                    self.largest[0] = rest.abs();
-                    self.place = (node, time);
+                if rest.abs() > self.worst.size {
+                    self.worst = Worst { node, component, time, terms: fields, size: rest.abs() };
                 }
                 self.by_node[node] += rest * rest;
-                if !self.open[node] {
-                    let rows = self.products.iter_mut().zip(signed);
-                    rows.for_each(|(row, a)| row.iter_mut().zip(signed).for_each(|(sum, b)| *sum += a * b));
-                }
+                self.by_instant[index] += rest * rest;
+                let rows = self.products[usize::from(self.surface[node])].iter_mut().zip(signed);
+                rows.for_each(|(row, a)| row.iter_mut().zip(signed).for_each(|(sum, b)| *sum += a * b));
             }
         }
     }
 
     /// Takes in a force that the residual is compared with (N).
     pub(super) fn expect(&mut self, force: f64) {
-        self.largest[1] = self.largest[1].max(force);
+        self.largest = self.largest.max(force);
+    }
+
+    /// Whether the balance says nothing at a node.
+    pub(super) fn is_open(&self, node: usize) -> bool {
+        self.open && self.surface[node]
+    }
+
+    /// Leaves out what contact forces can change.
+    pub(super) fn leave_the_surface_open(&mut self) {
+        self.open = true;
     }
 
     /// The largest component over the largest term.
     pub(super) fn relative(&self) -> f64 {
-        let [residual, term] = self.largest;
-        if residual == 0.0 { 0.0 } else { residual / term }
+        if self.worst.size == 0.0 { 0.0 } else { self.worst.size / self.largest }
+    }
+
+    fn products(&self) -> [[f64; 4]; 4] {
+        let [inside, surface] = &self.products;
+        let share = if self.open { 0.0 } else { 1.0 };
+        std::array::from_fn(|i| std::array::from_fn(|j| inside[i][j] + share * surface[i][j]))
     }
 
     /// The norm of the residual with such factors of its terms, over that of the terms; infinite if it is no number.
     pub(super) fn norm(&self, factors: [f64; 4]) -> f64 {
-        let (mut rest, mut size) = (0.0, 0.0);
-        for (row, a) in self.products.iter().zip(factors) {
-            rest += a * row.iter().zip(factors).map(|(product, b)| b * product).sum::<f64>();
-        }
-        (0..4).for_each(|k| size += factors[k] * factors[k] * self.products[k][k]);
-        // Rounding can make a residual of zero negative.
-        let norm = (rest.max(0.0) / size).sqrt();
-        if norm.is_nan() { f64::INFINITY } else { norm }
+        norm(&self.products(), factors)
+    }
+
+    /// The same inside the body, where no contact force acts.
+    pub(super) fn inside(&self) -> f64 {
+        norm(&self.products[0], [1.0; 4])
+    }
+
+    /// The square of the residual (N²), and that of the norm of all terms.
+    pub(super) fn squares(&self) -> [f64; 2] {
+        squares(&self.products(), [1.0; 4])
     }
 
     /// The factors of one or two terms that make the residual least, among all four; none if a term is zero.
     pub(super) fn fit(&self, terms: &[usize]) -> Option<[f64; 4]> {
-        let g = &self.products;
-        let rest = |k: usize| -(0..4).filter(|j| !terms.contains(j)).map(|j| g[k][j]).sum::<f64>();
-        let mut factors = [1.0; 4];
-        match *terms {
-            [a] => factors[a] = rest(a) / g[a][a],
-            [a, b] => {
-                let determinant = g[a][a] * g[b][b] - g[a][b] * g[b][a];
-                factors[a] = (rest(a) * g[b][b] - rest(b) * g[a][b]) / determinant;
-                factors[b] = (rest(b) * g[a][a] - rest(a) * g[b][a]) / determinant;
-            }
-            _ => return None,
-        }
-        factors.iter().all(|factor| factor.is_finite()).then_some(factors)
+        fit(&self.products(), terms)
     }
+}
+
+/// The square of the residual with such factors of its terms, and the sum of the squares of the terms (N²).
+fn squares<const K: usize>(products: &[[f64; K]; K], factors: [f64; K]) -> [f64; 2] {
+    let (mut rest, mut size) = (0.0, 0.0);
+    for (row, a) in products.iter().zip(factors) {
+        rest += a * row.iter().zip(factors).map(|(product, b)| b * product).sum::<f64>();
+    }
+    (0..K).for_each(|k| size += factors[k] * factors[k] * products[k][k]);
+    // Rounding can make a residual of zero negative.
+    [rest.max(0.0), size]
+}
+
+/// The norm of the residual with such factors of its terms, over that of the terms; infinite if it is no number.
+pub(super) fn norm<const K: usize>(products: &[[f64; K]; K], factors: [f64; K]) -> f64 {
+    let [rest, size] = squares(products, factors);
+    let norm = (rest / size).sqrt();
+    if norm.is_nan() { f64::INFINITY } else { norm }
+}
+
+/// The factors of one or two terms that make the residual least, among all; none if a term is zero.
+pub(super) fn fit<const K: usize>(g: &[[f64; K]; K], terms: &[usize]) -> Option<[f64; K]> {
+    let rest = |k: usize| -(0..K).filter(|j| !terms.contains(j)).map(|j| g[k][j]).sum::<f64>();
+    let mut factors = [1.0; K];
+    match *terms {
+        [a] => factors[a] = rest(a) / g[a][a],
+        [a, b] => {
+            let determinant = g[a][a] * g[b][b] - g[a][b] * g[b][a];
+            factors[a] = (rest(a) * g[b][b] - rest(b) * g[a][b]) / determinant;
+            factors[b] = (rest(b) * g[a][a] - rest(a) * g[b][a]) / determinant;
+        }
+        _ => return None,
+    }
+    factors.iter().all(|factor| factor.is_finite()).then_some(factors)
 }
 
 #[cfg(test)]
@@ -101,7 +160,7 @@ mod tests {
 
     /// Terms of which M a is `factors[0]` times and R `factors[1]` times what balances the others.
     fn residual(factors: [f64; 2]) -> Residual {
-        let mut residual = Residual::new(vec![false; 3]);
+        let mut residual = Residual::new(vec![false; 3], false);
         let stiffness = vec![[1.0, -2.0], [0.5, 3.0], [-1.5, 0.25]];
         let load = vec![[0.1, 0.2], [-0.3, 0.4], [0.5, 0.0]];
         let reaction = [[0.0, 4.0], [1.0, 0.5], [0.0, 0.0]];
@@ -111,7 +170,7 @@ mod tests {
             stiffness: stiffness.clone(),
             load: load.clone(),
         };
-        residual.add(&terms, &reaction.map(|r| r.map(|r| factors[1] * r)), 0.0);
+        residual.add(&terms, &reaction.map(|r| r.map(|r| factors[1] * r)), 0, 0.0);
         residual
     }
 

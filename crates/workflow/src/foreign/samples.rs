@@ -1,12 +1,19 @@
 //! Histories that are sampled more coarsely than the steps of their solver.
 
+use super::figures::Consistency;
+use super::limits::BALANCE;
 use super::window::{Held, windows};
+use crate::message::{percent, trimmed};
 use percute_core::history::{SinkError, Step, StepSource};
-use percute_core::time::{TimeError, TimeGrid};
+use percute_core::time::{TimeError, TimeGrid, is_stable};
 use serde::Serialize;
 
 /// Courant number of the instants between samples.
 const COURANT: f64 = 0.9;
+/// Instants that are more critical steps apart are samples: the critical step is known to 1e-3, and other programs round theirs.
+const SAMPLED: f64 = 1.05;
+/// Samples at most so many critical steps apart have the mean of all steps within some 10 % (docs/foreign.md).
+const GOOD: f64 = 5.0;
 
 /// The samples of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -17,6 +24,62 @@ pub struct Samples {
     pub distance: f64,
     /// The same over the critical step.
     pub critical_steps: f64,
+}
+
+impl Samples {
+    /// The samples, if velocities and accelerations are `given` and the steps of the solver were shorter: beyond the critical
+    /// step (s), or by the accelerations.
+    pub(super) fn of<const D: usize>(
+        source: &dyn StepSource<D>,
+        found: &Consistency,
+        given: [bool; 2],
+        critical: f64,
+    ) -> Option<Self> {
+        let (count, distance) = (source.count(), source.times().longest_step());
+        let shorter = !is_stable(distance, critical) || found.acceleration.is_some_and(|differs| differs > BALANCE);
+        let samples = Self { count, distance, critical_steps: distance / critical };
+        (shorter && given == [true; 2]).then_some(samples)
+    }
+}
+
+/// What samples without velocities or accelerations show, and the way out.
+pub(super) fn lacking<const D: usize>(
+    source: &dyn StepSource<D>,
+    found: &Consistency,
+    given: [bool; 2],
+    critical: f64,
+) -> Option<(String, String)> {
+    let (times, distance) = (source.times(), source.times().longest_step());
+    if given == [true; 2] {
+        return None;
+    }
+    let long = (0..times.step_count()).filter(|&n| times.step(n) > SAMPLED * critical).count();
+    // A few long steps are steps, or instants are missing there: the balance tells.
+    let beyond = 2 * long > times.step_count();
+    let differs = found.acceleration.filter(|differs| given[1] && *differs > BALANCE && found.balance <= BALANCE);
+    if !beyond && differs.is_none() {
+        return None;
+    }
+    let figure = match differs {
+        Some(differs) if !beyond => {
+            format!("its accelerations differ from those of the displacements by {}", percent(differs))
+        }
+        _ => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
+    };
+    let missing = match given {
+        [false, false] => "velocities and accelerations",
+        [false, true] => "velocities",
+        _ => "accelerations",
+    };
+    let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
+    let text = format!(
+        "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or more), or give \
+         {missing} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more)",
+        trimmed(critical, 4),
+        instants(critical),
+        instants(GOOD * critical)
+    );
+    Some((figure, text))
 }
 
 /// A history with instants between its samples, less than a critical step apart. The motion between two samples is the

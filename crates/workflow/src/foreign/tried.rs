@@ -1,10 +1,68 @@
 //! Changes of a history that are tried.
 
+use crate::message::percent;
+
 /// A change must leave less than this share of the residual to be named.
 pub(super) const FALL: f64 = 0.2;
+/// Changes that leave this share of what the best one leaves are as good: the simplest is named.
+const AS_GOOD: f64 = 2.0;
+/// So is one that leaves no more than this share of the residual.
+const ALL: f64 = 1e-3;
+/// Norms below this are rounding of sums of squares.
+const ROUNDING: f64 = 1e-6;
 
-/// A change with what it leaves of the residual.
+/// A change with the norm of the residual before and after it.
+#[derive(Clone, Debug)]
 pub(super) struct Tried {
     pub(super) text: String,
+    pub(super) before: f64,
     pub(super) left: f64,
+}
+
+impl Tried {
+    /// Whether it leaves little of the residual.
+    pub(super) fn explains(&self) -> bool {
+        self.left <= FALL * self.before
+    }
+
+    /// The share that it leaves.
+    fn share(&self) -> f64 {
+        self.left / self.before
+    }
+
+    /// What it is, and what it does.
+    pub(super) fn told(&self) -> String {
+        format!("{}; with that the norm of the residual falls {}", self.text, falls(self.before, self.left))
+    }
+}
+
+/// From a figure to another.
+pub(super) fn falls(before: f64, left: f64) -> String {
+    let left = if left < ROUNDING { "less than 1e-4 %".to_string() } else { percent(left) };
+    format!("from {} to {left}", percent(before))
+}
+
+/// The change that explains the residual; of equally good ones the first.
+pub(super) fn best(tried: Vec<Tried>) -> Option<Tried> {
+    let least = tried.iter().map(Tried::share).fold(f64::INFINITY, f64::min);
+    tried.into_iter().find(|one| one.explains() && one.share() <= (AS_GOOD * least).max(ALL))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tried(text: &str, left: f64) -> Tried {
+        Tried { text: text.to_string(), before: 1.0, left }
+    }
+
+    #[test]
+    fn the_simplest_of_equally_good_changes_is_named() {
+        let named = |all: Vec<Tried>| best(all).map(|one| one.text);
+        assert_eq!(named(vec![tried("one", 0.15), tried("two", 0.1)]), Some("one".to_string()));
+        assert_eq!(named(vec![tried("one", 0.15), tried("two", 0.01)]), Some("two".to_string()));
+        assert_eq!(named(vec![tried("one", 5e-4), tried("two", 0.0)]), Some("one".to_string()));
+        assert_eq!(named(vec![tried("one", 0.5), tried("two", 0.3)]), None);
+        assert!(tried("one", 1e-9).told().ends_with("from 100 % to less than 1e-4 %"));
+    }
 }

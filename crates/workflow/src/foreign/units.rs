@@ -6,7 +6,11 @@ use super::measure::Evidence;
 use super::residual::{INERTIA, LOAD, REACTION, STIFFNESS};
 use super::tried::{FALL, Tried};
 use crate::message::times;
+use percute_core::material::Law;
+use percute_core::problem::Problem;
 
+/// What has the unit of length.
+const ALL_LENGTHS: &str = "all lengths (mesh, planes, displacements and `initial_velocity`)";
 /// Two numbers that agree to this, relatively, are taken for equal.
 const AGREE: f64 = 0.02;
 
@@ -49,44 +53,103 @@ impl Quantity {
     }
 }
 
-/// Factors of one term, or of two, that leave the least residual.
-pub(super) fn scales<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>, derived: &[Derived]) -> Vec<Tried> {
-    let (residual, open) = (&evidence.residual, derived.contains(&Derived::Reaction));
-    let speed = evidence.ends.speed;
+/// What factors are read with.
+#[derive(Clone, Copy)]
+struct Context {
+    /// Velocity of the first step over v₀.
+    speed: Option<f64>,
+    /// Without given contact forces, another modulus has the same effect as another mass.
+    open: bool,
+    dimension: usize,
+    /// The factor of the displacements that brings the nodes under force onto their plane.
+    path: Option<f64>,
+    /// The thickness of a plane body (m), if it is the same everywhere.
+    thickness: Option<f64>,
+}
+
+impl Context {
+    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, evidence: &Evidence<'_, D, N>, open: bool) -> Self {
+        let extent = problem.materials().first().map(Law::extent);
+        let same = |extent: &f64| D == 2 && problem.materials().iter().all(|other| other.extent() == *extent);
+        let path = evidence.contact.paths().first().copied();
+        Self { speed: evidence.ends.speed, open, dimension: D, path, thickness: extent.filter(same) }
+    }
+}
+
+/// Factors of one term that leave the least residual.
+pub(super) fn one_term<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    evidence: &Evidence<'_, D, N>,
+    derived: &[Derived],
+) -> Vec<Tried> {
+    let mut residual = evidence.residual.clone();
+    let silent = !evidence.contact.forced.contains(&true) && residual.inside() > FALL * residual.norm([1.0; 4]);
+    if silent {
+        // No force was given or found: the balance says nothing where one may act.
+        residual.leave_the_surface_open();
+    }
+    let open = silent || derived.contains(&Derived::Reaction);
+    let context = Context::of(problem, evidence, open);
+    let before = residual.norm([1.0; 4]);
     let one = |term: usize| {
         let factors = residual.fit(&[term])?;
         // A factor of 1 is no cause.
         ((factors[term] - 1.0).abs() > 0.5 * BALANCE).then(|| (factors[term], residual.norm(factors)))
     };
     let named = [
-        one(REACTION).map(|(factor, left)| (force(factor, speed), left)),
-        one(INERTIA).filter(|(factor, _)| *factor > 0.0).map(|(factor, left)| (mass(factor, speed, open), left)),
+        one(REACTION).map(|(factor, left)| (force(factor, context), left)),
+        one(INERTIA).filter(|(factor, _)| *factor > 0.0).map(|(factor, left)| (mass(factor, context), left)),
         one(STIFFNESS).filter(|(factor, _)| *factor > 0.0 && !open).map(|(factor, left)| (young(factor), left)),
-        one(LOAD).map(|(factor, left)| (load(factor, speed), left)),
+        one(LOAD).map(|(factor, left)| (load(factor, context), left)),
     ];
-    let mut tried: Vec<Tried> = named.into_iter().flatten().map(|(text, left)| Tried { text, left }).collect();
-    tried.extend(residual.fit(&[INERTIA, REACTION]).and_then(|factors| {
-        // Lengths in another unit: the mass of a plane body grows by its square, stiffness does not.
-        let (of_m, of_r) = (factors[INERTIA], factors[REACTION]);
-        let lengths = agree(of_m * of_r * of_r, 1.0) && speed.is_some_and(|speed| agree(speed, of_r));
-        let text = format!("mesh and displacements {}", should(1.0 / of_r, Quantity::Length));
-        lengths.then(|| Tried { text, left: residual.norm(factors) })
-    }));
-    tried
+    named.into_iter().flatten().map(|(text, left)| Tried { text, before, left }).collect()
+}
+
+/// Factors of two terms, over the stiffness: lengths in another unit, or another modulus and another density.
+pub(super) fn two_terms<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    evidence: &Evidence<'_, D, N>,
+) -> Option<Tried> {
+    let residual = &evidence.residual;
+    let factors = residual.fit(&[INERTIA, REACTION])?;
+    let (of_m, of_r) = (factors[INERTIA], factors[REACTION]);
+    let text = match (of_m > 0.0 && of_r > 0.0, evidence.ends.speed) {
+        (false, _) => return None,
+        // The mass of a plane body grows by the square of lengths, the stiffness does not.
+        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && D == 2 && agree(speed, of_r) => {
+            format!("mesh and displacements {}", should(1.0 / of_r, Quantity::Length))
+        }
+        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && D == 2 && agree(speed, 1.0) => {
+            format!("{ALL_LENGTHS} {}", should(1.0 / of_r, Quantity::Length))
+        }
+        _ if residual_is_of_materials(problem, of_m, of_r) => format!(
+            "`young` and `density` are not those of the history: `young` {}, and `density` {}",
+            should(1.0 / of_r, Quantity::Modulus),
+            should(of_m / of_r, Quantity::Density)
+        ),
+        _ => return None,
+    };
+    Some(Tried { text, before: residual.norm([1.0; 4]), left: residual.norm(factors) })
+}
+
+/// Whether both factors are no rounding, and no loads tell otherwise.
+fn residual_is_of_materials<const D: usize, const N: usize>(problem: &Problem<D, N>, of_m: f64, of_r: f64) -> bool {
+    !problem.is_loaded() && [of_m / of_r, of_r].into_iter().all(|factor| (factor - 1.0).abs() > BALANCE)
 }
 
 /// A displacement in another unit, by the velocity at the start and by the place of contact.
 pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>) -> Option<String> {
     let speed = evidence.ends.speed.filter(|speed| speed.is_finite() && (speed - 1.0).abs() > BALANCE)?;
+    if agree(speed, -1.0) {
+        return Some(displaced(-1.0));
+    }
     let paths = evidence.contact.paths();
     let whole = paths.iter().all(|path| agree(path * speed, 1.0));
     let hint = Quantity::Length.hint(1.0 / speed);
     // Missing forces of the first step change the velocity, too.
     let whole = whole && (!hint.is_empty() || evidence.contact.forced.contains(&true));
     match () {
-        () if !paths.is_empty() && whole => {
-            Some(format!("the displacements {}", should(1.0 / speed, Quantity::Length)))
-        }
+        () if !paths.is_empty() && whole => Some(displaced(speed)),
         () if paths.is_empty() && !hint.is_empty() => Some(format!(
             "`initial_velocity`, or the unit of the displacements or of `time`, is not that of the history: it starts \
              with {} the stated velocity",
@@ -97,20 +160,39 @@ pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<
 }
 
 /// A factor of the contact forces.
-fn force(factor: f64, speed: Option<f64>) -> String {
+fn force(factor: f64, context: Context) -> String {
+    if of_displacements(factor, context.speed) {
+        return displaced(factor);
+    }
     if agree(factor, -1.0) {
         return "the sign of the contact forces is wrong: they are the forces of the planes on the body".to_string();
     }
-    if of_displacements(factor, speed) {
-        return format!("the displacements {}", should(1.0 / factor, Quantity::Length));
-    }
-    let half = if agree(factor, 2.0) || agree(factor, 0.5) { " (symmetry or thickness)" } else { "" };
-    format!("the contact forces {}{half}", should(factor, Quantity::Force))
+    let half = agree(factor, 2.0) || agree(factor, 0.5);
+    let per_metre = context.thickness.is_some_and(|thickness| thickness != 1.0 && agree(factor, thickness));
+    let hint = match () {
+        () if per_metre => " (given per metre of thickness?)",
+        () if half => " (symmetry or thickness)",
+        () => "",
+    };
+    let other = if context.thickness.is_some() && !half && factor > 0.0 {
+        format!(", or `thickness` {}{}", times(1.0 / factor), Quantity::Length.hint(1.0 / factor))
+    } else {
+        String::new()
+    };
+    format!("the contact forces {}{hint}{other}", should(factor, Quantity::Force))
 }
 
-fn load(factor: f64, speed: Option<f64>) -> String {
-    if of_displacements(factor, speed) {
-        return format!("the displacements {}", should(1.0 / factor, Quantity::Length));
+/// A factor of the displacements.
+fn displaced(factor: f64) -> String {
+    if agree(factor, -1.0) {
+        return "the sign of the displacements is wrong".to_string();
+    }
+    format!("the displacements {}", should(1.0 / factor, Quantity::Length))
+}
+
+fn load(factor: f64, context: Context) -> String {
+    if of_displacements(factor, context.speed) {
+        return displaced(factor);
     }
     format!("the loads {}", should(factor, Quantity::Force))
 }
@@ -124,28 +206,57 @@ fn young(factor: f64) -> String {
     format!("`young` is not that of the history: it {}", should(factor, Quantity::Modulus))
 }
 
-/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus
-/// has the same effect as another mass.
-fn mass(factor: f64, speed: Option<f64>, open: bool) -> String {
+/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus has the
+/// same effect as another mass.
+fn mass(factor: f64, context: Context) -> String {
+    let Context { speed, open, .. } = context;
     let scale = factor.sqrt();
+    if let Some(text) = mesh(scale, context) {
+        return text;
+    }
+    let lengths = lengths(scale, context);
     let time = format!("the steps should be {} as long{}", times(1.0 / scale), Quantity::Time.hint(1.0 / scale));
     let density = format!("it {}", should(factor, Quantity::Density));
     let modulus = format!("`young` {}", should(1.0 / factor, Quantity::Modulus));
     let [of_time, of_density] = speed.map_or([1.0; 2], |speed| [(speed * scale - 1.0).abs(), (speed - 1.0).abs()]);
     match () {
-        () if of_time <= FALL * of_density => format!("`time` is not that of the history: {time}"),
+        () if of_time <= FALL * of_density => format!("`time` is not that of the history: {time}{lengths}"),
         () if of_density <= FALL * of_time && open => {
+            let both = if agree(factor, 1e6) { " (`young` given in MPa and `density` in t/mm³?)" } else { "" };
             format!(
-                "`density` or `young` is not that of the history: the density {}, or {modulus}",
+                "`density` or `young` is not that of the history: the density {}, or {modulus}{both}{lengths}",
                 should(factor, Quantity::Density)
             )
         }
-        () if of_density <= FALL * of_time => format!("`density` is not that of the history: {density}"),
+        () if of_density <= FALL * of_time => format!("`density` is not that of the history: {density}{lengths}"),
         () => format!(
             "`density` or `time` is not that of the history: the density {}, or {time}",
             should(factor, Quantity::Density)
         ),
     }
+}
+
+/// A mesh and planes in another unit than the displacements, by the way to the plane.
+fn mesh(scale: f64, context: Context) -> Option<String> {
+    let hint = Quantity::Length.hint(scale);
+    let far = context.path.is_some_and(|path| agree(path * scale, 1.0));
+    (hint.contains("given in") && far).then(|| format!("mesh and planes should be {} as large{hint}", times(scale)))
+}
+
+/// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given. In a bar
+/// they always have.
+fn lengths(scale: f64, context: Context) -> String {
+    let hint = Quantity::Length.hint(scale);
+    if !hint.contains("given in") || !(context.open || context.dimension == 1) {
+        return String::new();
+    }
+    let speed = context.speed.unwrap_or(1.0);
+    let which = match () {
+        () if agree(speed, 1.0) => ALL_LENGTHS,
+        () if agree(speed * scale, 1.0) => "mesh, planes and displacements",
+        () => return String::new(),
+    };
+    format!(". Or {which} should be {} as large{hint}", times(scale))
 }
 
 /// The factor that numbers need, with the unit that it hints at.

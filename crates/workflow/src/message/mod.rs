@@ -3,5 +3,6 @@
 mod number;
 mod spelling;
 
-pub use number::{bytes, change, counted, numbered, percent, short, times, trimmed, vector, whole_percent};
+pub use number::{bytes, change, numbered, percent, times, vector, whole_percent};
+pub use percute_core::message::{counted, rounded as short, trimmed};
 pub use spelling::{hint, list};

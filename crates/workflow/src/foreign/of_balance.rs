@@ -1,0 +1,144 @@
+//! The likely cause of a residual of the balance: changes are tried and compared.
+
+use super::contact::Contact;
+use super::holding::{MOST, holding};
+use super::limits::BALANCE;
+use super::suspect::Suspect;
+use super::tried::{FALL, Tried, best};
+use super::{instants, moduli, orders, planes, rounded, surface, units};
+use crate::message::{numbered, percent, trimmed};
+use crate::through::Through;
+use percute_core::dynamics::critical_time_step;
+use percute_core::history::{SinkError, Step};
+
+/// Nodes are few if they are no more than this, or than this share of all.
+const FEW: usize = 8;
+const FEW_OF_ALL: f64 = 0.1;
+/// The residual from which on the displacements have nothing to do with the mesh.
+const ALL_WRONG: f64 = 0.3;
+
+/// The likely cause, if the numbers single one out.
+pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
+    if let Some(text) = accelerations(suspect)? {
+        return Ok(Some(text));
+    }
+    if let Some(text) = changed(suspect)? {
+        return Ok(Some(text));
+    }
+    Ok(rounded::rounded(suspect)?.or_else(|| at_silent_nodes(suspect)).or_else(|| at_few_nodes(suspect)))
+}
+
+/// The change that leaves the least residual, if it is little.
+pub(super) fn changed<const D: usize, const N: usize>(
+    suspect: &Suspect<'_, D, N>,
+) -> Result<Option<String>, SinkError> {
+    let mut tried = shifts(suspect)?;
+    tried.extend(units::one_term(suspect.problem, suspect.evidence, suspect.derived));
+    let inside = suspect.evidence.residual.inside();
+    if inside <= FALL * suspect.residual() {
+        tried.extend(surface::tried(suspect)?);
+    } else {
+        tried.extend(moduli::tried(suspect)?);
+        tried.extend(instants::tried(suspect)?);
+        tried.extend(orders::places(suspect)?);
+        tried.extend(orders::orders(suspect)?);
+    }
+    tried.extend(units::two_terms(suspect.problem, suspect.evidence));
+    Ok(best(tried).map(|best| best.told()))
+}
+
+/// Given accelerations without which the history is consistent.
+fn accelerations<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
+    let Some(differs) = suspect.found.acceleration.filter(|differs| *differs > BALANCE) else { return Ok(None) };
+    let without = Through::new(suspect.source, |step, take| take(&Step { acceleration: None, ..*step }));
+    let text = format!(
+        "the accelerations are not those of the displacements, they differ by {} of the largest; leave them out",
+        percent(differs)
+    );
+    let tried = suspect.tried(&without, 0, text)?;
+    Ok(tried.explains().then(|| tried.told()))
+}
+
+/// Contact forces of the step before and after.
+fn shifts<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+    if !suspect.has_forces() {
+        return Ok(Vec::new());
+    }
+    let told = [(1, "late", "R_{n+1}"), (-1, "early", "R_{n-1}")];
+    let tried = told.map(|(shift, when, row)| {
+        let text =
+            format!("the contact forces are a step too {when}: the row of t_n should hold what is given as {row}");
+        suspect.tried(suspect.source, shift, text)
+    });
+    tried.into_iter().collect()
+}
+
+/// Nodes of the surface on which no force acts, although they have the residual.
+fn at_silent_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+    let squares = &suspect.evidence.residual.by_node;
+    let total: f64 = squares.iter().sum();
+    let contact: &Contact<'_, D, N> = &suspect.evidence.contact;
+    let surface = suspect.problem.surface().nodes().iter().zip(&contact.forced);
+    let silent: Vec<usize> = surface.filter(|(_, forced)| !**forced).map(|(c, _)| c.node.index()).collect();
+    if silent.iter().map(|&node| squares[node]).sum::<f64>() < MOST * total {
+        return None;
+    }
+    let place = units::displacements(suspect.evidence).or_else(|| planes::place(suspect, true));
+    if place.is_some() {
+        return place;
+    }
+    let missing: Vec<usize> = silent.into_iter().filter(|&node| squares[node] > 1e-6 * total).collect();
+    let nodes = numbered("node", &missing);
+    Some(format!("the contact forces of {nodes} are missing: a force acts there by the balance"))
+}
+
+/// Few nodes, or a single value, or a history that has nothing to do with the mesh.
+fn at_few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+    let residual = &suspect.evidence.residual;
+    let ((nodes, share), (instants, _)) = (holding(&residual.by_node, MOST), holding(&residual.by_instant, MOST));
+    let all = residual.by_node.len();
+    if nodes.len() <= FEW.max((FEW_OF_ALL * all as f64) as usize) && nodes.len() < all {
+        let worst = &residual.worst;
+        if instants.last().zip(instants.first()).is_some_and(|(last, first)| last - first <= 2) {
+            let (node, time) = (worst.node, trimmed(worst.time, 5));
+            return Some(format!(
+                "a value of node {node} at about {time} s is wrong: the residual is there and beside it alone"
+            ));
+        }
+        return Some(format!(
+            "{} of {all} nodes have {} of its square ({}): their rows, supports, loads or materials differ",
+            nodes.len(),
+            percent(share),
+            numbered("node", &nodes)
+        ));
+    }
+    (suspect.found.balance > ALL_WRONG).then(|| {
+        "the displacements do not fit the mesh and its material: is the order of the nodes that of the mesh, and are all \
+         units those of SI?"
+            .to_string()
+    })
+}
+
+/// Which terms fail, where, and how much.
+pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> String {
+    let residual = &suspect.evidence.residual;
+    let worst = &residual.worst;
+    let [inertia, stiffness, load, reaction] = worst.terms.map(|term| trimmed(term, 4));
+    let axis = ["x", "y", "z"][worst.component];
+    let (nodes, _) = holding(&residual.by_node, MOST);
+    let (instants, _) = holding(&residual.by_instant, MOST);
+    let times = suspect.source.times().instants();
+    let of = |at: Option<&usize>| at.map_or(String::new(), |&n| trimmed(times[n], 5));
+    format!(
+        "; along {axis}, M a = {inertia} N, K u = {stiffness} N, F = {load} N, R = {reaction} N; 99 % of its square are at {} of {} nodes \
+         ({}) and {} of {} instants (from {} to {} s); the instants are {} critical steps apart: are they all steps of the solver?",
+        nodes.len(),
+        residual.by_node.len(),
+        numbered("node", &nodes),
+        instants.len(),
+        suspect.source.count(),
+        of(instants.first()),
+        of(instants.last()),
+        trimmed(suspect.source.times().longest_step() / critical_time_step(suspect.problem), 3)
+    )
+}

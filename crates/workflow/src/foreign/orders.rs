@@ -1,0 +1,65 @@
+//! Displacements that are tried in other orders and from other origins.
+
+use super::holding::descending;
+use super::limits::PLACE;
+use super::suspect::Suspect;
+use super::tried::Tried;
+use percute_core::history::SinkError;
+
+/// Of so many nodes with the largest residuals, each two are exchanged.
+const WORST: usize = 4;
+
+/// Displacements that are changed at all nodes in the same way.
+pub(super) fn places<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+    let (ends, size) = (&suspect.evidence.ends, suspect.problem.mesh().size());
+    let less = |field: &[[f64; D]], rest: &[[f64; D]]| -> Vec<[f64; D]> {
+        field.iter().zip(rest).map(|(u, x)| std::array::from_fn(|c| u[c] - x[c])).collect()
+    };
+    let mut tried = Vec::new();
+    if ends.places <= PLACE {
+        let text = "the displacements are places: subtract those of the nodes, displacement - mesh.points".to_string();
+        tried.push(suspect.tried_inside(text, |u| less(u, suspect.problem.mesh().points()))?);
+    } else if suspect.found.initial_displacement > PLACE && size.is_finite() {
+        let text =
+            "all displacements have another origin: add the same field to all, so that u_0 is `initial_displacement`";
+        tried.push(suspect.tried_inside(text.to_string(), |u| less(u, &ends.offset))?);
+    }
+    if D == 2 {
+        let text = "the components of the displacements are exchanged: y comes before x".to_string();
+        tried.push(suspect.tried_inside(text, |u| u.iter().map(|u| std::array::from_fn(|c| u[D - 1 - c])).collect())?);
+    }
+    Ok(tried)
+}
+
+/// Other orders of the nodes: all reversed, counted from another number, or two of those with the largest residuals exchanged.
+pub(super) fn orders<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+    let count = suspect.evidence.residual.by_node.len();
+    let first: Vec<usize> = descending(&suspect.evidence.residual.by_node).into_iter().take(WORST).collect();
+    let mut told: Vec<(Vec<usize>, String)> = vec![
+        ((0..count).rev().collect(), "the displacements are in the opposite order of the nodes".to_string()),
+        (
+            moved(count, 1),
+            "the displacements are those of the nodes before: the row of node 1 is that of node 0".to_string(),
+        ),
+        (
+            moved(count, count - 1),
+            "the displacements are those of the nodes after: the row of node 0 is that of node 1".to_string(),
+        ),
+    ];
+    for (k, &a) in first.iter().enumerate() {
+        for &b in &first[..k] {
+            let mut exchanged: Vec<usize> = (0..count).collect();
+            exchanged.swap(a, b);
+            told.push((exchanged, format!("the displacements of nodes {} and {} are exchanged", a.min(b), a.max(b))));
+        }
+    }
+    let tried = told.into_iter().map(|(rows, text)| {
+        suspect.tried_inside(text, |field: &[[f64; D]]| rows.iter().map(|&row| field[row]).collect())
+    });
+    tried.collect()
+}
+
+/// Rows that are so many places later.
+fn moved(count: usize, by: usize) -> Vec<usize> {
+    (0..count).map(|node| (node + by) % count).collect()
+}

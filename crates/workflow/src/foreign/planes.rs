@@ -1,0 +1,73 @@
+//! Planes at another place, with another normal or with other friction than in the history.
+
+use super::limits::CONE;
+use super::suspect::Suspect;
+use crate::message::trimmed;
+
+/// A plane at another place: nodes under force, or where a force is missing, are at the same distance from it, or at one that
+/// grows along it.
+pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, missing: bool) -> Option<String> {
+    let (k, [gap, slope]) = suspect.evidence.contact.offset(missing)?;
+    let which = which(suspect, k);
+    if slope != 0.0 {
+        let place = trimmed(gap.abs(), 4);
+        let side = if gap > 0.0 { "above" } else { "below" };
+        let normal = suspect.problem.obstacles()[k].flat_frame();
+        let turned = turned(normal.normal(), slope.atan());
+        return Some(format!(
+            "the `normal` of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be {turned}, and the \
+             nodes are {place} m {side} the plane on average",
+            trimmed(slope.atan().abs(), 4)
+        ));
+    }
+    let side = if gap > 0.0 { "above" } else { "below" };
+    let (away, turn) = (trimmed(gap.abs(), 4), of_friction(suspect, k));
+    Some(format!(
+        "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} m along its \
+         normal{turn}",
+        trimmed(gap, 4)
+    ))
+}
+
+/// A normal that is turned by an angle (rad), counterclockwise.
+fn turned<const D: usize>(normal: &[f64; D], angle: f64) -> String {
+    let (sin, cos) = angle.sin_cos();
+    let n: Vec<f64> = match normal.as_slice() {
+        &[x, y] => vec![cos * x - sin * y, sin * x + cos * y],
+        other => other.to_vec(),
+    };
+    crate::message::vector(&n, 6)
+}
+
+/// A coefficient of friction that a turned normal would explain, too.
+fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize) -> String {
+    let stated = suspect.problem.obstacles()[k].law().friction();
+    let other =
+        suspect.evidence.contact.friction().filter(|&(plane, friction)| plane == k && (friction - stated).abs() > CONE);
+    other.map_or(String::new(), |(_, friction)| {
+        format!(
+            ". Or its `normal` is off by {} rad: where nodes slide, |R_t|/R_n is {}, not {stated}",
+            trimmed((friction.atan() - stated.atan()).abs(), 2),
+            trimmed(friction, 4)
+        )
+    })
+}
+
+/// A plane, for messages.
+fn which<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize) -> String {
+    if suspect.problem.obstacles().len() > 1 { format!("plane {k} (from 0)") } else { "the plane".to_string() }
+}
+
+/// Another coefficient of friction, or something else.
+pub(super) fn friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, other: &str) -> String {
+    let told = suspect.evidence.contact.friction().map_or(String::new(), |(k, friction)| {
+        let stated = suspect.problem.obstacles()[k].law().friction();
+        format!(
+            ": where nodes slide on {}, |R_t|/R_n is {} on average, not {}",
+            which(suspect, k),
+            trimmed(friction, 4),
+            trimmed(stated, 4)
+        )
+    });
+    format!("`friction` {other}is not that of the history{told}")
+}

@@ -1,0 +1,29 @@
+//! The initial state of the problem in the place of the first instant, where the two differ by less than the limits.
+
+use super::limits::{BALANCE, PLACE};
+use super::widest;
+use crate::through::{Take, Through};
+use percute_core::history::{Step, StepSource};
+use percute_core::problem::Problem;
+
+/// A history that starts exactly as its problem states: what the limits of consistency let pass is within them.
+pub(crate) fn started<'s, const D: usize, const N: usize>(
+    problem: &'s Problem<D, N>,
+    source: &'s dyn StepSource<D>,
+) -> impl StepSource<D> + 's {
+    Through::new(source, move |step: &Step<'_, D>, take: &mut Take<'_, D>| {
+        if step.index > 0 {
+            return take(step);
+        }
+        let (displacement, velocity) = (problem.initial_displacement(), problem.initial_velocity());
+        let moved = widest(step.displacement, displacement)[0];
+        let near = moved <= PLACE * problem.mesh().size();
+        let fastest = velocity.iter().flatten().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let same = |given: &&[[f64; D]]| {
+            let [difference, largest] = widest(given, velocity);
+            difference <= BALANCE * largest.max(fastest)
+        };
+        let given = step.velocity.map(|given| if same(&given) { velocity } else { given });
+        take(&Step { displacement: if near { displacement } else { step.displacement }, velocity: given, ..*step })
+    })
+}

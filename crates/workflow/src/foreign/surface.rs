@@ -1,0 +1,170 @@
+//! Contact forces against those that the balance needs at the surface: the order of their rows, their tangential parts.
+
+use super::balance::{Balance, dot};
+use super::suspect::Suspect;
+use super::tried::Tried;
+use super::window::windows;
+use crate::message::times;
+use percute_core::history::SinkError;
+
+/// On larger surfaces, orders of the rows are not searched: their products take too much memory.
+const MOST: usize = 2000;
+/// Tangential forces below this share of those that the balance needs are none (squares).
+const NONE: f64 = 1e-6;
+/// Rows that are named.
+const NAMED: usize = 4;
+
+/// Sums over all instants, of squares and scalar products of given and needed forces (N²).
+struct Needed {
+    count: usize,
+    given: Vec<f64>,
+    needed: Vec<f64>,
+    /// Of the given force of a row with the needed one of another.
+    both: Vec<f64>,
+    /// Of the tangential parts under given forces: given, needed, and their product.
+    tangential: [f64; 3],
+}
+
+impl Needed {
+    /// The square of what rows leave that hold the forces of these others.
+    fn left(&self, of: &[usize]) -> f64 {
+        let product = |(row, &at): (usize, &usize)| self.both[row * self.count + at];
+        let squares: f64 = self.given.iter().sum::<f64>() + self.needed.iter().sum::<f64>();
+        squares - 2.0 * of.iter().enumerate().map(product).sum::<f64>()
+    }
+
+    /// The rows whose needed forces are nearest to the given ones, each once.
+    fn nearest(&self) -> Vec<usize> {
+        let mut rows: Vec<usize> = (0..self.count).collect();
+        rows.sort_by(|&a, &b| self.given[b].total_cmp(&self.given[a]));
+        let (mut of, mut free) = (vec![0; self.count], vec![true; self.count]);
+        for row in rows {
+            let far = |at: usize| self.needed[at] - 2.0 * self.both[row * self.count + at];
+            let near = (0..self.count).filter(|&at| free[at]).min_by(|&a, &b| far(a).total_cmp(&far(b)));
+            let at = near.unwrap_or(row);
+            (of[row], free[at]) = (at, false);
+        }
+        of
+    }
+}
+
+/// Other orders of the rows of contact forces, and other tangential parts.
+pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+    let count = suspect.problem.surface().nodes().len();
+    if count > MOST || !suspect.has_forces() {
+        return Ok(Vec::new());
+    }
+    let needed = needed(suspect)?;
+    let [rest, size] = suspect.evidence.residual.squares();
+    let own = needed.left(&(0..count).collect::<Vec<_>>());
+    let tried = |text: String, left: f64| Tried {
+        text,
+        before: suspect.residual(),
+        left: ((rest - own + left).max(0.0) / size).sqrt(),
+    };
+    let nodes: Vec<usize> = suspect.problem.surface().nodes().iter().map(|contact| contact.node.index()).collect();
+    let mut all: Vec<Tried> = friction(&needed, own).map(|(text, left)| tried(text, left)).into_iter().collect();
+    all.extend(known(&nodes).into_iter().map(|(text, of)| tried(text, needed.left(&of))));
+    let of = needed.nearest();
+    let moved = (0..count).filter(|&row| of[row] != row && needed.given[row] > 0.0).take(NAMED);
+    let told: Vec<_> =
+        moved.map(|row| format!("that of node {} holds the force of node {}", nodes[row], nodes[of[row]])).collect();
+    if !told.is_empty() {
+        let text =
+            format!("the rows of the contact forces are in another order than `contact_nodes`: {}", told.join(", "));
+        all.push(tried(text, needed.left(&of)));
+    }
+    Ok(all)
+}
+
+/// Orders that other programs have: for each row, the row whose force it holds.
+fn known(nodes: &[usize]) -> Vec<(String, Vec<usize>)> {
+    let mut ascending: Vec<usize> = (0..nodes.len()).collect();
+    ascending.sort_by_key(|&at| nodes[at]);
+    let descending: Vec<usize> = ascending.iter().rev().copied().collect();
+    let opposite: Vec<usize> = (0..nodes.len()).rev().collect();
+    let told = [
+        ("in ascending order of the nodes", "numpy.sort(problem.contact_nodes)", ascending),
+        ("in descending order of the nodes", "numpy.sort(problem.contact_nodes)[::-1]", descending),
+        ("in the opposite order", "problem.contact_nodes[::-1]", opposite),
+    ];
+    let text = |order: &str, give: &str| {
+        format!("the rows of the contact forces are {order}, not in that of `contact_nodes`: give contact_nodes={give}")
+    };
+    let own: Vec<usize> = (0..nodes.len()).collect();
+    told.into_iter().filter(|told| told.2 != own).map(|(order, give, of)| (text(order, give), of)).collect()
+}
+
+/// Tangential forces that are left out, or need a factor, with the square of what is left.
+fn friction(needed: &Needed, own: f64) -> Option<(String, f64)> {
+    let [given, wanted, both] = needed.tangential;
+    let misfit = given + wanted - 2.0 * both;
+    if misfit <= 0.0 {
+        return None;
+    }
+    if given <= NONE * wanted {
+        let text = "the contact forces have no tangential parts: give pressure and friction together".to_string();
+        return Some((text, own - misfit));
+    }
+    let factor = both / given;
+    let text = if (factor + 1.0).abs() < 0.02 {
+        "the tangential contact forces have the wrong sign: they act on the body, against its sliding".to_string()
+    } else {
+        format!("the tangential contact forces should be {} as large", times(factor))
+    };
+    Some((text, own - misfit + (wanted - factor * both)))
+}
+
+fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Needed, SinkError> {
+    let (problem, surface) = (suspect.problem, suspect.problem.surface());
+    let balance = Balance::new(problem, suspect.source.times());
+    let count = surface.nodes().len();
+    let mut sums = Needed {
+        count,
+        given: vec![0.0; count],
+        needed: vec![0.0; count],
+        both: vec![0.0; count * count],
+        tangential: [0.0; 3],
+    };
+    windows(suspect.source, &mut |window| {
+        let now = window.now;
+        let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
+        let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
+        let terms = balance.terms(now, used);
+        let needed: Vec<[f64; D]> = surface.nodes().iter().map(|contact| terms.rest(contact.node.index())).collect();
+        for (row, force) in now.reaction.iter().enumerate() {
+            sums.needed[row] += dot(&needed[row], &needed[row]);
+            if *force == [0.0; D] {
+                continue;
+            }
+            sums.given[row] += dot(force, force);
+            for (at, other) in needed.iter().enumerate() {
+                sums.both[row * count + at] += dot(force, other);
+            }
+            let frame = surface.frame(row, &now.displacement[surface.nodes()[row].node.index()]);
+            let ((_, own), (_, wanted)) = (frame.split(force), frame.split(&needed[row]));
+            let products = [dot(&own, &own), dot(&wanted, &wanted), dot(&own, &wanted)];
+            sums.tangential.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+        }
+        Ok(())
+    })?;
+    Ok(sums)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_find_the_forces_that_they_hold() {
+        // Row 0 holds what row 2 needs, row 1 nothing, row 2 what row 0 needs: 3 and 5.
+        let both = vec![0.0, 0.0, 25.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0];
+        let needed =
+            Needed { count: 3, given: vec![25.0, 0.0, 9.0], needed: vec![9.0, 0.0, 25.0], both, tangential: [0.0; 3] };
+        assert_eq!(needed.nearest(), [2, 1, 0]);
+        assert_eq!(needed.left(&[2, 1, 0]), 0.0);
+        assert_eq!(needed.left(&[0, 1, 2]), 68.0);
+        assert_eq!(known(&[4, 9, 7]).len(), 3);
+        assert_eq!(known(&[4, 9, 7])[0].1, [0, 2, 1]);
+    }
+}
