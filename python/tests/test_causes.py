@@ -98,7 +98,7 @@ PLANE: dict[str, tuple[Mistake, str]] = {
     "pressure only": (tangential(0.0), f"the contact forces have no tangential parts: .*{FALLS}"),
     "friction the other way": (tangential(-1.0), f"the tangential contact forces have the wrong sign: .*{FALLS}"),
     "half of the friction": (tangential(0.5), f"the tangential contact forces should be 2 times as large; .*{FALLS}"),
-    "rows backwards": (rows(lambda nodes: np.arange(len(nodes))[::-1]), f"the rows .* in the opposite order, .*{FALLS}"),
+    "rows backwards": (rows(lambda nodes: np.arange(len(nodes))[::-1]), f"the rows .* in (descending order of the nodes|the opposite order), .*{FALLS}"),
     "rows by node": (rows(np.argsort), f"the rows .* in (ascending order of the nodes|the opposite order), .*{FALLS}"),
     "rows shuffled": (
         rows(lambda nodes: np.random.default_rng(2).permutation(len(nodes))),
@@ -109,14 +109,14 @@ PLANE: dict[str, tuple[Mistake, str]] = {
     "all in mm": (lambda _, parts: {**parts, "lengths": 1e3}, r"all lengths .* should be 0.001 times as large \(given in mm\?\)"),
     "MPa and t/mm³": (
         lambda _, parts: {**parts, "young": 1e-6, "density": 1e-12},
-        r"`young` should be 1e6 times .*MPa.*`density` should be 1e12 times .*t/mm³",
+        r"(`young` should be 1e6 times .*MPa.*`density` should be 1e12 times .*t/mm³|`young` given in MPa and `density` in t/mm³)",
     ),
     "Poisson's ratio": (lambda _, parts: {**parts, "poisson": 0.35}, f"`poisson` is 0.3 in the history, not 0.35; .*{FALLS}"),
     "plane strain": (lambda _, parts: {**parts, "hypothesis": "strain"}, f'`plane` is "stress" in the history; .*{FALLS}'),
     "per metre": (lambda _, parts: {**parts, "thickness": 0.01}, "should be 0.01 times as large .given per metre of thickness"),
 }
 ANY: dict[str, tuple[Mistake, str]] = {
-    "u reversed": (lambda _, parts: {**parts, "displacement": -parts["displacement"]}, f"the sign of the displacements is wrong; .*{FALLS}"),
+    "u reversed": (lambda _, parts: {**parts, "displacement": -parts["displacement"]}, f"the sign of the displacements is wrong(; .*{FALLS}|; to estimate)"),
     "places": (
         lambda history, parts: {**parts, "displacement": parts["displacement"] + history.problem.mesh.points},
         f"the displacements are places: subtract those of the nodes, .*{FALLS}",
@@ -150,6 +150,10 @@ def test_mistakes_are_named(name: str, lacks: tuple[str, ...], correct: pc.Histo
     spoilt = mistake(correct, parts(correct))
     if lacks and not np.array_equal(spoilt["reaction"], correct.reaction[: len(spoilt["reaction"])]):
         pytest.skip("of the contact forces alone")
+    if lacks and spoilt["thickness"] != 1.0:
+        pytest.skip("without contact forces, the thickness has no effect")
+    if name == "rows by node" and np.array_equal(spoilt["reaction"], correct.reaction):
+        pytest.skip("the nodes are in this order")
     said = cause(correct.problem, without(spoilt, *lacks))
     assert re.search(text, said), said
 

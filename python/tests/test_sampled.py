@@ -43,7 +43,11 @@ def test_the_report_says_what_is_not_seen(history: pc.History) -> None:
 
 def test_samples_without_motion_are_refused(history: pc.History) -> None:
     arrays = {name: getattr(history, name)[::10] for name in ("displacement", "reaction", "touching")}
-    with pytest.raises(pc.InputError, match="3.1 critical steps apart .limit 1.*are samples.*at most 8.38e-7 s apart .* or give velocities and accelerations too, at most 5 critical steps"):
+    said = (
+        "3.1 critical steps apart .limit 1.*are samples.*at most 8.378e-7 s apart .* or give velocities and "
+        "accelerations too, at most 5 critical steps"
+    )
+    with pytest.raises(pc.InputError, match=said):
         pc.estimate(pc.History.from_arrays(history.problem, history.time[::10], **arrays))
     with pytest.raises(pc.InputError, match="accelerations differ from those of the displacements.*give velocities too"):
         pc.estimate(

@@ -37,7 +37,10 @@ pub enum TimeError {
     #[error("`steps` is empty; give at least one time step in seconds")]
     Empty,
     /// Instants that make no step.
-    #[error("{} given; at least 2 make a step", if *.count == 1 { "a single instant is".to_string() } else { format!("{count} instants are") })]
+    #[error("{} given; at least 2 make a step", match *.count {
+        1 => "a single instant is".to_string(),
+        count => format!("{count} instants are"),
+    })]
     TooFew { count: usize },
     /// A first instant that is not 0.
     #[error("the first instant is {} s; it must be 0", trimmed(*.time, 5))]
@@ -57,7 +60,10 @@ pub enum TimeError {
     )]
     Reversed { first: f64, last: f64 },
     /// A step that is lost in the sum, or a sum that is infinite.
-    #[error("`steps[{index}]` is {} s, which cannot be added to the {} s before it", trimmed(*.step, 5), trimmed(*.time, 12))]
+    #[error(
+        "`steps[{index}]` is {} s, which cannot be added to the {} s before it",
+        trimmed(*.step, 5), trimmed(*.time, 12)
+    )]
     Lost { index: usize, step: f64, time: f64 },
     /// More steps than any run can have.
     #[error(

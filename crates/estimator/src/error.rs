@@ -61,8 +61,9 @@ pub enum EstimateError {
     Scratch(#[from] ScratchError),
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
-        "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s: the steps of the history are too long \
-         for its central differences (the longest is {} s); estimate this history with reconstruction = \"consistent\", or store shorter steps",
+        "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s: the steps of the history are \
+         too long for its central differences (the longest is {} s); estimate this history with reconstruction = \
+         \"consistent\", or store shorter steps",
         trimmed(*.time, 7), trimmed(*.longest_step, 5)
     )]
     AuxiliarySolution { step: usize, time: f64, longest_step: f64 },

@@ -94,7 +94,10 @@ pub enum Cause {
         everywhere: bool,
     },
     /// A nodal field of the wrong length.
-    #[error("the field has {}, but the mesh has {}; give a value for each node, or one for all", counted(*.given, "value"), counted(*.nodes, "node"))]
+    #[error(
+        "the field has {}, but the mesh has {}; give a value for each node, or one for all",
+        counted(*.given, "value"), counted(*.nodes, "node")
+    )]
     FieldLength { given: usize, nodes: usize },
     /// A nodal field with NaN or infinity.
     #[error("the value at node {node} is {value}; all values must be finite numbers")]
@@ -185,8 +188,8 @@ pub enum Cause {
     Penetrates { node: usize, depth: f64, clear: Vec<f64> },
     /// A node on the plane that moves into it.
     #[error(
-        "node {node} starts on the plane (gap {} m) and moves into it at {} m/s; leave a gap before the impact, of more than a \
-         quarter of this speed times the first time step", short(*.gap), short(*.speed)
+        "node {node} starts on the plane (gap {} m) and moves into it at {} m/s; leave a gap before the impact, of \
+         more than a quarter of this speed times the first time step", short(*.gap), short(*.speed)
     )]
     StrikesAtStart { node: usize, gap: f64, speed: f64 },
 }

@@ -163,8 +163,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * dt);
     }
 
-    /// The first plane at another place than the contact, with the mean gap (m) and its slope along the plane: under forces, or
-    /// where they are missing.
+    /// The first plane at another place than the contact, with the mean gap (m) and its slope along the plane: under
+    /// forces, or where they are missing.
     pub(super) fn offset(&self, missing: bool) -> Option<(usize, [f64; 2])> {
         let tolerance = self.nearness.tolerance(self.unsure);
         let of = |plane: &PlaneSums| if missing { plane.missing.line() } else { plane.forced.line() };

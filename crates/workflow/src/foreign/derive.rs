@@ -86,7 +86,8 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         Some(problem.surface().nodes().iter().enumerate().map(of).collect())
     }
 
-    /// Whether a node is on its plane at t_n or t_{n+1}. The step of the solver after a sample is at most the critical one.
+    /// Whether a node is on its plane at t_n or t_{n+1}. The step of the solver after a sample is at most the critical
+    /// one.
     fn near(&self, at: usize, window: Window<'_, D>, unsure: f64) -> bool {
         let surface = self.balance.problem().surface();
         let (node, now, critical) = (surface.nodes()[at].node.index(), window.now, 2.0 / self.stiffest.sqrt());

@@ -1,7 +1,8 @@
-//! Gaps of nodes under contact forces: the same everywhere, or growing along the plane, where the plane is at another place.
+//! Gaps of nodes under contact forces: the same everywhere, or growing along the plane, where the plane is at another
+//! place.
 
-/// Gaps under a force lie on a line if their standard deviation from it is below their size over this. Contact by a penalty has
-/// a deviation of 0.05 (a bar) to 6 times the mean.
+/// Gaps under a force lie on a line if their standard deviation from it is below their size over this. Contact by a
+/// penalty has a deviation of 0.05 (a bar) to 6 times the mean.
 const SAME: f64 = 100.0;
 /// A slope follows from the gaps of so many nodes at least: a single node that slides into a penalty has a line, too.
 const NODES: usize = 3;
@@ -29,8 +30,8 @@ impl Line {
 /// Sums over gaps under forces, weighted with the square of the normal force (N²).
 #[derive(Clone, Debug)]
 pub(super) struct Gaps {
-    /// The weights, gap, gap², undeformed gap times path along the normal, path² (m), and the place along the plane (m), its
-    /// square and its product with the gap.
+    /// The weights, gap, gap², undeformed gap times path along the normal, path² (m), and the place along the plane
+    /// (m), its square and its product with the gap.
     sums: [f64; 8],
     /// Nodes of the surface that count.
     nodes: Vec<bool>,

@@ -42,8 +42,8 @@ impl<const D: usize> StepSource<D> for Retimed<'_, D> {
     }
 }
 
-/// The step at which the residual is, with what the body moves in it over the mean of the steps beside it, and the same of
-/// its length.
+/// The step at which the residual is, with what the body moves in it over the mean of the steps beside it, and the same
+/// of its length.
 struct Jump {
     step: usize,
     way: f64,
@@ -93,7 +93,8 @@ fn retimed<const D: usize, const N: usize>(
     suspect.tried(&Retimed { source: suspect.source, times, left_out }, 0, text)
 }
 
-/// The step whose motion differs most from that of the steps beside it, among those that change the balance at some instants.
+/// The step whose motion differs most from that of the steps beside it, among those that change the balance at some
+/// instants.
 fn jump<const D: usize>(source: &dyn StepSource<D>, first: usize, last: usize) -> Result<Option<Jump>, SinkError> {
     let start = first.saturating_sub(2);
     let mut held: Vec<Vec<[f64; D]>> = Vec::new();

@@ -89,8 +89,8 @@ impl From<SinkError> for Refusal {
     }
 }
 
-/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely cause,
-/// unless they are to be accepted.
+/// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely
+/// cause, unless they are to be accepted.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,

@@ -113,8 +113,8 @@ fn at_few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> 
         ));
     }
     (suspect.found.balance > ALL_WRONG).then(|| {
-        "the displacements do not fit the mesh and its material: is the order of the nodes that of the mesh, and are all \
-         units those of SI?"
+        "the displacements do not fit the mesh and its material: is the order of the nodes that of the mesh, and are \
+         all units those of SI?"
             .to_string()
     })
 }
@@ -130,8 +130,9 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     let times = suspect.source.times().instants();
     let of = |at: Option<&usize>| at.map_or(String::new(), |&n| trimmed(times[n], 5));
     format!(
-        "; along {axis}, M a = {inertia} N, K u = {stiffness} N, F = {load} N, R = {reaction} N; 99 % of its square are at {} of {} nodes \
-         ({}) and {} of {} instants (from {} to {} s); the instants are {} critical steps apart: are they all steps of the solver?",
+        "; along {axis}, M a = {inertia} N, K u = {stiffness} N, F = {load} N, R = {reaction} N; 99 % of its square \
+         are at {} of {} nodes ({}) and {} of {} instants (from {} to {} s); the instants are {} critical steps apart: \
+         are they all steps of the solver?",
         nodes.len(),
         residual.by_node.len(),
         numbered("node", &nodes),

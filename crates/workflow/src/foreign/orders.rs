@@ -31,7 +31,8 @@ pub(super) fn places<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>
     Ok(tried)
 }
 
-/// Other orders of the nodes: all reversed, counted from another number, or two of those with the largest residuals exchanged.
+/// Other orders of the nodes: all reversed, counted from another number, or two of those with the largest residuals
+/// exchanged.
 pub(super) fn orders<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
     let count = suspect.evidence.residual.by_node.len();
     let first: Vec<usize> = descending(&suspect.evidence.residual.by_node).into_iter().take(WORST).collect();

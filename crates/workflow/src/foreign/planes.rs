@@ -4,8 +4,8 @@ use super::limits::CONE;
 use super::suspect::Suspect;
 use crate::message::trimmed;
 
-/// A plane at another place: nodes under force, or where a force is missing, are at the same distance from it, or at one that
-/// grows along it.
+/// A plane at another place: nodes under force, or where a force is missing, are at the same distance from it, or at
+/// one that grows along it.
 pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, missing: bool) -> Option<String> {
     let (k, [gap, slope]) = suspect.evidence.contact.offset(missing)?;
     let which = which(suspect, k);
@@ -15,16 +15,16 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>,
         let normal = suspect.problem.obstacles()[k].flat_frame();
         let turned = turned(normal.normal(), slope.atan());
         return Some(format!(
-            "the `normal` of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be {turned}, and the \
-             nodes are {place} m {side} the plane on average",
+            "the `normal` of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be \
+             {turned}, and the nodes are {place} m {side} the plane on average",
             trimmed(slope.atan().abs(), 4)
         ));
     }
     let side = if gap > 0.0 { "above" } else { "below" };
     let (away, turn) = (trimmed(gap.abs(), 4), of_friction(suspect, k));
     Some(format!(
-        "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} m along its \
-         normal{turn}",
+        "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} \
+         m along its normal{turn}",
         trimmed(gap, 4)
     ))
 }

@@ -41,8 +41,8 @@ pub(super) fn rounded<const D: usize, const N: usize>(
     let effect = residual.relative() * force / residual.worst.size;
     Ok((force >= residual.worst.size).then(|| {
         format!(
-            "the displacements are rounded to about {digits} digits, which alone can make a residual of {}: write them with \
-             {} digits or more",
+            "the displacements are rounded to about {digits} digits, which alone can make a residual of {}: write \
+             them with {} digits or more",
             percent(effect.min(1.0)),
             MOST_DIGITS + 1
         )

@@ -10,7 +10,8 @@ use serde::Serialize;
 
 /// Courant number of the instants between samples.
 const COURANT: f64 = 0.9;
-/// Instants that are more critical steps apart are samples: the critical step is known to 1e-3, and other programs round theirs.
+/// Instants that are more critical steps apart are samples: the critical step is known to 1e-3, and other programs
+/// round theirs.
 const SAMPLED: f64 = 1.05;
 /// Samples at most so many critical steps apart have the mean of all steps within some 10 % (docs/foreign.md).
 const GOOD: f64 = 5.0;
@@ -27,8 +28,8 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// The samples, if velocities and accelerations are `given` and the steps of the solver were shorter: beyond the critical
-    /// step (s), or by the accelerations.
+    /// The samples, if velocities and accelerations are `given` and the steps of the solver were shorter: beyond the
+    /// critical step (s), or by the accelerations.
     pub(super) fn of<const D: usize>(
         source: &dyn StepSource<D>,
         found: &Consistency,
@@ -54,8 +55,8 @@ pub(super) fn lacking<const D: usize>(
         return None;
     }
     let long = (0..times.step_count()).filter(|&n| times.step(n) > SAMPLED * critical).count();
-    // A few long steps are steps, or instants are missing there: the balance tells.
-    let beyond = 2 * long > times.step_count();
+    // A few long steps are steps, or instants are missing there: the balance tells. Where it holds, all are steps.
+    let beyond = 2 * long > times.step_count() && found.balance > BALANCE;
     let differs = found.acceleration.filter(|differs| given[1] && *differs > BALANCE && found.balance <= BALANCE);
     if !beyond && differs.is_none() {
         return None;
@@ -73,8 +74,8 @@ pub(super) fn lacking<const D: usize>(
     };
     let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
     let text = format!(
-        "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or more), or give \
-         {missing} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more)",
+        "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or \
+         more), or give {missing} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more)",
         trimmed(critical, 4),
         instants(critical),
         instants(GOOD * critical)

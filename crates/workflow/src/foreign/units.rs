@@ -140,7 +140,8 @@ fn residual_is_of_materials<const D: usize, const N: usize>(problem: &Problem<D,
 /// A displacement in another unit, by the velocity at the start and by the place of contact.
 pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>) -> Option<String> {
     let speed = evidence.ends.speed.filter(|speed| speed.is_finite() && (speed - 1.0).abs() > BALANCE)?;
-    if agree(speed, -1.0) {
+    // Without any contact force, those of the first step change the velocity.
+    if agree(speed, -1.0) || (speed < -0.5 && !evidence.contact.forced.contains(&true)) {
         return Some(displaced(-1.0));
     }
     let paths = evidence.contact.paths();
@@ -206,8 +207,8 @@ fn young(factor: f64) -> String {
     format!("`young` is not that of the history: it {}", should(factor, Quantity::Modulus))
 }
 
-/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus has the
-/// same effect as another mass.
+/// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus
+/// has the same effect as another mass.
 fn mass(factor: f64, context: Context) -> String {
     let Context { speed, open, .. } = context;
     let scale = factor.sqrt();
@@ -243,8 +244,8 @@ fn mesh(scale: f64, context: Context) -> Option<String> {
     (hint.contains("given in") && far).then(|| format!("mesh and planes should be {} as large{hint}", times(scale)))
 }
 
-/// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given. In a bar
-/// they always have.
+/// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given.
+/// In a bar they always have.
 fn lengths(scale: f64, context: Context) -> String {
     let hint = Quantity::Length.hint(scale);
     if !hint.contains("given in") || !(context.open || context.dimension == 1) {

@@ -9,8 +9,10 @@ use percute_core::time::TimeGrid;
 
 /// What rows of velocities may hold instead of v_n.
 const ELSEWHERE: [&str; 4] = [
-    "the row of t_n holds the velocity of the middle of the step before it, v_{n-1/2}: it should be v_{n-1/2} + a_n dt/2",
-    "the row of t_n holds the velocity of the middle of the step after it, v_{n+1/2}: it should be v_{n+1/2} - a_n dt/2",
+    "the row of t_n holds the velocity of the middle of the step before it, v_{n-1/2}: it should be \
+     v_{n-1/2} + a_n dt/2",
+    "the row of t_n holds the velocity of the middle of the step after it, v_{n+1/2}: it should be \
+     v_{n+1/2} - a_n dt/2",
     "they are a step too late: the row of t_n holds v_{n-1}",
     "they are a step too early: the row of t_n holds v_{n+1}",
 ];
@@ -61,7 +63,8 @@ impl<const D: usize> Rates<D> {
         let (left, text) = others.min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(if left <= FALL * misfit {
             format!(
-                "the velocities are not those of t_n: {text}; read so, their largest difference falls {}. Or leave them out",
+                "the velocities are not those of t_n: {text}; read so, their largest difference falls {}. Or leave \
+                 them out",
                 falls(misfit, left)
             )
         } else {
