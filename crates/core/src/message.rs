@@ -31,7 +31,12 @@ pub fn counted(count: usize, thing: &str) -> String {
 
 /// A number in at most four digits.
 pub(crate) fn short(x: f64) -> String {
-    trimmed(x, 4)
+    let rounded = format!("{x:.3e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-3..1e5).contains(&f64::abs(rounded)) {
+        (rounded + 0.0).to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 /// A vector as users write it, in nine digits: a number for a bar. Components that are rounding are zero.
@@ -76,8 +81,9 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let shown = [0.0, -0.0, 1.0 / 3.0, 5091.75, 7.85e-9, 69_999_999_999.0, -400.0, f64::INFINITY].map(short);
-        assert_eq!(shown, ["0", "0", "0.3333", "5092", "7.85e-9", "7e10", "-400", "inf"]);
+        let shown =
+            [0.0, -0.0, 1.0 / 3.0, 5091.75, 26_487.0, 4e5, 7.85e-9, 69_999_999_999.0, -400.0, f64::INFINITY].map(short);
+        assert_eq!(shown, ["0", "0", "0.3333", "5092", "26490", "4e5", "7.85e-9", "7e10", "-400", "inf"]);
     }
 
     #[test]
