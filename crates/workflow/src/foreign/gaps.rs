@@ -63,7 +63,7 @@ impl Gaps {
         let spread = along_square / weight - place * place;
         let slope = (product / weight - mean * place) / spread;
         let many = self.nodes.iter().filter(|counts| **counts).count() >= NODES;
-        if flat.common() > 0.0 || !many || !(slope.abs() <= STEEP) {
+        if flat.common() > 0.0 || !many || slope.is_nan() || slope.abs() > STEEP {
             return Some(flat);
         }
         let linear = slope * slope * spread;
