@@ -104,7 +104,7 @@ impl Attempt {
         }
         fs::remove_file(self.folder.join(LOCK))?;
         match fs::remove_dir_all(&self.place) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
             _ => fs::rename(&self.folder, &self.place),
         }
     }
