@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Arguments of `percute sweep`.
 #[derive(Clone, Debug, Default, Args)]
 pub struct SweepArguments {
-    /// The sweep file (TOML): the `case`, and values of its keys in [grid], [list] or a `table`
+    /// The sweep file (TOML): the `case`, and values of its keys in `grid`, `list` or a `table`
     pub sweep: PathBuf,
     /// The folder of all cases and of the table [default: as in the file, or named after it in the working directory]
     #[arg(short = 'o', long, value_name = "FOLDER")]
