@@ -99,7 +99,7 @@ PLANE: dict[str, tuple[Mistake, str]] = {
     "friction the other way": (tangential(-1.0), f"the tangential contact forces have the wrong sign: .*{FALLS}"),
     "half of the friction": (tangential(0.5), f"the tangential contact forces should be 2 times as large; .*{FALLS}"),
     "rows backwards": (rows(lambda nodes: np.arange(len(nodes))[::-1]), f"the rows .* in (descending order of the nodes|the opposite order), .*{FALLS}"),
-    "rows by node": (rows(np.argsort), f"the rows .* in (ascending order of the nodes|the opposite order), .*{FALLS}"),
+    "rows by node": (rows(np.argsort), f"the rows .* in (ascending|the opposite) order.*{FALLS}"),
     "rows shuffled": (
         rows(lambda nodes: np.random.default_rng(2).permutation(len(nodes))),
         f"the rows .* in another order than `contact_nodes`: that of node [0-9]+ holds the force of node .*{FALLS}",
@@ -148,7 +148,7 @@ def test_mistakes_are_named(name: str, lacks: tuple[str, ...], correct: pc.Histo
     if name in PLANE and correct.problem.mesh.dimension == 1:
         pytest.skip("of plane bodies")
     spoilt = mistake(correct, parts(correct))
-    if lacks and not np.array_equal(spoilt["reaction"], correct.reaction[: len(spoilt["reaction"])]):
+    if lacks and name in PLANE and np.any(spoilt["reaction"] != correct.reaction):
         pytest.skip("of the contact forces alone")
     if lacks and spoilt["thickness"] != 1.0:
         pytest.skip("without contact forces, the thickness has no effect")
@@ -156,6 +156,70 @@ def test_mistakes_are_named(name: str, lacks: tuple[str, ...], correct: pc.Histo
         pytest.skip("the nodes are in this order")
     said = cause(correct.problem, without(spoilt, *lacks))
     assert re.search(text, said), said
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction", "touching")])
+@pytest.mark.parametrize("turn", [-1e-3, -2e-2])
+def test_a_turned_normal_is_named(turn: float, lacks: tuple[str, ...]) -> None:
+    history = pc.simulate(block(), end=20e-6, courant=0.8)
+    # Turned so that the plane does not cut through the block.
+    said = cause(history.problem, without({**parts(history), "turn": turn}, *lacks))
+    found = re.search(r"the `normal` of the plane is off by (\S+) rad.* it should be (\S+), (\S+), ", said)
+    assert found, said
+    assert float(found[1]) == pytest.approx(abs(turn), rel=1e-3) and found[2] == "(0" and found[3] == "1)", said
+
+
+def test_velocities_within_the_limit_are_graded(correct: pc.History) -> None:
+    whole = parts(correct)
+    estimate = pc.estimate(given(correct.problem, {**whole, "velocity": 1.009 * correct.velocity}))
+    # The first step alone starts with another velocity.
+    assert estimate.sup == pytest.approx(pc.estimate(correct).sup, rel=0.05)
+    assert (estimate.consistency or {})["initial_velocity"] == pytest.approx(0.009 / 1.009, rel=1e-6)
+    said = cause(correct.problem, {**whole, "velocity": 1.02 * correct.velocity})
+    assert "the velocities are not those of the displacements" in said, said
+    moved = (correct.time >= 0)[:, None, None] * (5e-7 * np.ptp(correct.problem.mesh.points))
+    shifted_start = given(correct.problem, without({**whole, "displacement": whole["displacement"] + moved}, "touching"))
+    assert (pc.estimate(shifted_start, force=True).consistency or {})["initial_displacement"] > 1e-7
+
+
+def test_a_wrong_value_and_lost_digits_are_named(correct: pc.History) -> None:
+    whole = parts(correct)
+    node = int(np.argmax(correct.problem.mesh.points.sum(axis=1)))
+    spoilt = whole["displacement"].copy()
+    spoilt[12, node] *= 1.05
+    said = cause(correct.problem, without({**whole, "displacement": spoilt}, "touching"))
+    assert re.search("a value of node [0-9]+, or of a node beside it, is wrong at about", said), said
+    rounded = np.array([float(f"{x:.2e}") for x in whole["displacement"].ravel()]).reshape(whole["displacement"].shape)
+    said = cause(correct.problem, without({**whole, "displacement": rounded}, "touching"))
+    assert "the displacements are rounded to about 3 digits" in said and "write them with 9 digits or more" in said, said
+    noise = 3e-4 * np.abs(whole["displacement"]).max() * np.random.default_rng(1).standard_normal(rounded.shape)
+    noise[0], noise[:, correct.contact_nodes] = 0.0, 0.0
+    said = cause(correct.problem, without({**whole, "displacement": whole["displacement"] + noise}, "touching"))
+    assert re.search("along [xy], M a = .* N, K u = .* N, F = 0 N, R = .* N; 99 % of its square are at .* instants", said), said
+
+
+def test_forces_above_the_plane_are_named(correct: pc.History) -> None:
+    """Noise of 1e-7 m at the nodes that touch."""
+    whole = parts(correct)
+    noise = 1e-7 * np.random.default_rng(1).standard_normal(correct.displacement.shape)
+    noise[0] = 0.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pc.InputWarning)
+        history = given(correct.problem, without({**whole, "displacement": whole["displacement"] + noise}, "touching"))
+    with pytest.raises(pc.InputError) as refused:
+        pc.estimate(history)
+    said = str(refused.value)
+    assert "leave `touching` out" not in said, said
+    assert re.search("contact forces act at [0-9]+ nodes and instants where the node is more than 1e-5 of an element above", said), said
+
+
+def test_the_numbers_of_messages_are_short(correct: pc.History) -> None:
+    whole = parts(correct)
+    assert "has 0 m/s" in (said := cause(correct.problem, {**whole, "speed": 0.0})) or "has (0, 0) m/s" in said, said
+    with pytest.raises(pc.InputError, match=r"the instants go down from 2(\.0+\d)?e-5 s to 0 s"):
+        pc.History.from_arrays(correct.problem, correct.time[::-1].copy(), correct.displacement)
+    with pytest.raises(pc.InputError, match="a single instant is given; at least 2 make a step"):
+        pc.History.from_arrays(correct.problem, correct.time[:1], correct.displacement[:1])
 
 
 def test_a_density_that_is_a_little_off_is_no_time_step(correct: pc.History) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import block
+from percute.verification.consistency import FIGURES, Cases, table
 
 ROOT = Path(__file__).parents[2]
 
@@ -52,3 +53,17 @@ def test_three_components_are_told(block_history: pc.History) -> None:
     padded = np.pad(block_history.displacement, ((0, 0), (0, 0), (0, 1)))
     with pytest.raises(pc.InputError, match=r"three components: give displacement\[\.\.\., :2\]"):
         pc.History.from_arrays(block_history.problem, block_history.time, padded)
+
+
+def test_the_largest_figures_of_correct_histories_hold() -> None:
+    """Some histories of the table of the page; none is refused, and none has larger figures than the page."""
+    page = (ROOT / "docs" / "foreign.md").read_text()
+    found, count = table(Cases((400.0,), (0.5,), (1.0,)))
+    assert count == 16
+    for (kind, forces), figures in found.items():
+        row = next(line for line in page.splitlines() if line.startswith(f"| `{kind}`, {forces} |"))
+        # The last column is that of two figures.
+        told = [float(cell) for cell in row.split("|")[2:-1]]
+        for name, limit in zip(FIGURES, [*told, told[-1]], strict=True):
+            # One digit of the page is rounded.
+            assert figures[name] <= 1.5 * limit, (kind, forces, name)

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,9 @@ def test_samples_without_motion_are_refused(history: pc.History) -> None:
     )
     with pytest.raises(pc.InputError, match=said):
         pc.estimate(pc.History.from_arrays(history.problem, history.time[::10], **arrays))
+    few = {name: array[::2] for name, array in arrays.items()}
+    with pytest.raises(pc.InputError, match="6.21 critical steps apart .limit 1.*are samples"):
+        pc.estimate(pc.History.from_arrays(history.problem, history.time[::20], **few))
     with pytest.raises(pc.InputError, match="accelerations differ from those of the displacements.*give velocities too"):
         pc.estimate(
             pc.History.from_arrays(history.problem, history.time[::10], acceleration=history.acceleration[::10], **arrays)
@@ -74,3 +78,22 @@ def test_the_command_takes_samples(history: pc.History, tmp_path: Path) -> None:
         expected = pc.estimate(samples)
     found = pc.open(tmp_path / "error.vtkhdf")
     assert isinstance(found, pc.Estimate) and found.relative_sup == pytest.approx(expected.relative_sup, rel=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+@pytest.mark.parametrize("every", [25, 50])
+def test_samples_far_apart_are_told_the_way_out(every: int, history: pc.History) -> None:
+    """Two or three samples: their velocities and accelerations are enough, whatever the distance."""
+    rows = {name: getattr(history, name)[::every] for name in ("displacement", "velocity", "acceleration")}
+    with pytest.warns(pc.InputWarning, match="samples"):
+        assert pc.estimate(pc.History.from_arrays(history.problem, history.time[::every], **rows)).trust == "low"
+    place, velocity = {"displacement": rows["displacement"]}, {"velocity": rows["velocity"]}
+    forces = {name: getattr(history, name)[::every] for name in ("reaction", "touching")}
+    for motion, missing in ((place, "velocities and accelerations"), (place | velocity, "accelerations")):
+        with pytest.raises(pc.InputError, match=f"are samples, not the steps .* or give {missing} too, at most 5 critical"):
+            pc.estimate(pc.History.from_arrays(history.problem, history.time[::every], **motion, **forces))
+        # Without forces the last instant is left out; two instants are too few for that.
+        said = f"or give {missing} too" if every == 25 else "2 instants: too few"
+        with warnings.catch_warnings(), pytest.raises(pc.InputError, match=said):
+            warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+            pc.estimate(pc.History.from_arrays(history.problem, history.time[::every], **motion))

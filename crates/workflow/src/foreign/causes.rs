@@ -1,10 +1,12 @@
 //! The likely cause of an inconsistency.
 
+use super::complete::Derived;
 use super::limits::{BALANCE, Excess, PLACE};
+use super::nearness::NEAR;
 use super::suspect::Suspect;
 use super::tried::FALL;
 use super::{of_balance, planes, units};
-use crate::message::{percent, times, vector};
+use crate::message::{percent, times, trimmed, vector};
 use percute_core::history::SinkError;
 
 /// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to
@@ -97,6 +99,11 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let rest =
             "a node touches at t_{n+1} if and only if a force acts at t_n; leave `touching` out, and it is derived";
         match () {
+            () if self.derived.contains(&Derived::Touching) => format!(
+                "contact forces act at {given} nodes and instants where the node is more than {} of an element above \
+                 its plane one step later: are displacements and forces of the same run, and exact to that?",
+                trimmed(NEAR, 1)
+            ),
             () if late <= FALL * given => format!("`touching` is a step late: {rest}"),
             () if early <= FALL * given => format!("`touching` is a step early: {rest}"),
             () => format!("`touching` and the contact forces disagree at {given} nodes and instants: {rest}"),

@@ -115,8 +115,9 @@ pub(crate) fn check<const D: usize, const N: usize>(
         return Ok((found, samples));
     }
     let balance = exceeded.iter().find(|excess| excess.name == "balance");
+    let touches = evidence.contact.forced.contains(&true);
     let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
-    if let Some((figure, way_out)) = lacking(source, &found, evidence.given, critical) {
+    if let Some((figure, way_out)) = lacking(source, &found, (evidence.given, touches), critical) {
         let changed = balance.map(|_| of_balance::changed(&suspect)).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
         return Err(Refusal::Inconsistent { figure, cause: changed.or(Some(way_out)) });

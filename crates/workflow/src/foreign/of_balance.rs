@@ -102,7 +102,8 @@ fn at_few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> 
         if instants.last().zip(instants.first()).is_some_and(|(last, first)| last - first <= 2) {
             let (node, time) = (worst.node, trimmed(worst.time, 5));
             return Some(format!(
-                "a value of node {node} at about {time} s is wrong: the residual is there and beside it alone"
+                "a value of node {node}, or of a node beside it, is wrong at about {time} s: the residual is there \
+                 alone"
             ));
         }
         return Some(format!(

@@ -2,7 +2,7 @@
 
 use super::limits::CONE;
 use super::suspect::Suspect;
-use crate::message::trimmed;
+use crate::message::{percent, trimmed, vector};
 
 /// A plane at another place: nodes under force, or where a force is missing, are at the same distance from it, or at
 /// one that grows along it.
@@ -21,7 +21,7 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>,
         ));
     }
     let side = if gap > 0.0 { "above" } else { "below" };
-    let (away, turn) = (trimmed(gap.abs(), 4), of_friction(suspect, k));
+    let (away, turn) = (trimmed(gap.abs(), 4), of_friction(suspect));
     Some(format!(
         "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} \
          m along its normal{turn}",
@@ -36,20 +36,16 @@ fn turned<const D: usize>(normal: &[f64; D], angle: f64) -> String {
         &[x, y] => vec![cos * x - sin * y, sin * x + cos * y],
         other => other.to_vec(),
     };
-    crate::message::vector(&n, 6)
+    // The sums of squares lose half of the digits.
+    let clean: Vec<f64> = n.into_iter().map(|x| if x.abs() < 1e-8 { 0.0 } else { x }).collect();
+    vector(&clean, 6)
 }
 
-/// A coefficient of friction that a turned normal would explain, too.
-fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize) -> String {
-    let stated = suspect.problem.obstacles()[k].law().friction();
-    let other =
-        suspect.evidence.contact.friction().filter(|&(plane, friction)| plane == k && (friction - stated).abs() > CONE);
-    other.map_or(String::new(), |(_, friction)| {
-        format!(
-            ". Or its `normal` is off by {} rad: where nodes slide, |R_t|/R_n is {}, not {stated}",
-            trimmed((friction.atan() - stated.atan()).abs(), 2),
-            trimmed(friction, 4)
-        )
+/// Friction that does not fit either, as with another normal: the gaps of one or two nodes do not tell the two apart.
+fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> String {
+    let misfit = suspect.found.slip.filter(|misfit| *misfit > CONE);
+    misfit.map_or(String::new(), |misfit| {
+        format!(". Or its `normal` is off: where nodes slide, the friction is off by {}, too", percent(misfit))
     })
 }
 

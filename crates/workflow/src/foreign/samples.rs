@@ -13,6 +13,8 @@ const COURANT: f64 = 0.9;
 /// Instants that are more critical steps apart are samples: the critical step is known to 1e-3, and other programs
 /// round theirs.
 const SAMPLED: f64 = 1.05;
+/// Instants that balance to this are all steps of a solver, however long: it may be unstable.
+const EXACT: f64 = 1e-6;
 /// Samples at most so many critical steps apart have the mean of all steps within some 10 % (docs/foreign.md).
 const GOOD: f64 = 5.0;
 
@@ -43,11 +45,12 @@ impl Samples {
     }
 }
 
-/// What samples without velocities or accelerations show, and the way out.
+/// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in long
+/// steps.
 pub(super) fn lacking<const D: usize>(
     source: &dyn StepSource<D>,
     found: &Consistency,
-    given: [bool; 2],
+    (given, touches): ([bool; 2], bool),
     critical: f64,
 ) -> Option<(String, String)> {
     let (times, distance) = (source.times(), source.times().longest_step());
@@ -55,17 +58,20 @@ pub(super) fn lacking<const D: usize>(
         return None;
     }
     let long = (0..times.step_count()).filter(|&n| times.step(n) > SAMPLED * critical).count();
-    // A few long steps are steps, or instants are missing there: the balance tells. Where it holds, all are steps.
-    let beyond = 2 * long > times.step_count() && found.balance > BALANCE;
+    // A few long steps are steps, or instants are missing there: the balance tells.
+    let flight = !touches && found.balance.max(found.initial_velocity) <= BALANCE;
+    // An instant between two others has a balance.
+    let exact = found.balance <= EXACT && source.count() > 2;
+    let beyond = 2 * long > times.step_count() && !exact && !flight;
     let differs = found.acceleration.filter(|differs| given[1] && *differs > BALANCE && found.balance <= BALANCE);
     if !beyond && differs.is_none() {
         return None;
     }
     let figure = match differs {
-        Some(differs) if !beyond => {
+        Some(differs) => {
             format!("its accelerations differ from those of the displacements by {}", percent(differs))
         }
-        _ => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
+        None => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
     };
     let missing = match given {
         [false, false] => "velocities and accelerations",
