@@ -12,7 +12,6 @@ import percute as pc
 import pytest
 
 ROOT = Path(__file__).parents[2]
-TABLES = ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"]
 
 
 class Page(HTMLParser):
@@ -110,27 +109,6 @@ def test_the_gallery_shows_what_its_cases_give(site: Path) -> None:
         relative = 100 * pc.run(case).relative_sup
         assert re.search(r"(?m)^result    sup (\S+) % ", text)[1] == f"{relative:.3g}".ljust(4, "0"), case.name  # type: ignore[index]
         assert re.search(rf"(?m)^case      examples/{case.name} \(percute [\d.]+\)$", text), "a time, or no summary"
-
-
-def test_the_page_on_case_files_has_the_keys_of_the_code() -> None:
-    """A wrong key is refused with the names of all that are allowed, here for a bar and a plane body."""
-    page = (ROOT / "docs" / "case.md").read_text()
-    keys = set()
-    for name in ("bar", "stack"):
-        case = (ROOT / "examples" / f"{name}.toml").read_text()
-        for table in TABLES:
-            header = re.search(rf"(?m)^\[+{table}\]+$", case)
-            wrong = case + f"\n[{table}]\nwrong = 1\n" if header is None else case[: header.end()] + "\nwrong = 1" + case[header.end() :]
-            if header is None and table not in ("estimate", "output"):
-                continue
-            with pytest.raises(pc.InputError, match="there is no key `wrong` here; allowed are") as refused:
-                pc.run(wrong)
-            keys |= {(table, key) for key in re.findall(r"`(\w+)`", str(refused.value).split("allowed are")[1].splitlines()[0])}
-    assert len(keys) > 40 and {table for table, _ in keys} == set(TABLES)
-    for table, key in keys:
-        section = re.findall(rf"(?ms)^## [^\n]*`\[+{table}\]+`.*?(?=^## |\Z)", page)
-        assert section, f"docs/case.md has no section on [{table}]"
-        assert re.search(rf"`{key}\b", section[0]), f"docs/case.md has no key `{key}` of [{table}]"
 
 
 def test_the_page_on_verdicts_quotes_the_program(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

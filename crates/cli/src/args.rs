@@ -41,6 +41,8 @@ pub struct Arguments {
 pub enum Command {
     /// Print a commented case to start from (bar, block or drop): percute new block > case.toml
     New(NewArguments),
+    /// Print the JSON schema of case files, with which editors complete and check them
+    Schema,
     /// Simulate a case and estimate its error
     Run(RunArguments),
     /// Simulate a case and store its history, to be estimated later

@@ -10,6 +10,7 @@ mod recover;
 mod report;
 mod result;
 mod run;
+mod schema;
 mod simulate;
 mod sweep;
 mod verify;
@@ -57,6 +58,7 @@ where
     let outcome = match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command }) => match command {
             Command::New(arguments) => new::command(&arguments, console),
+            Command::Schema => schema::command(console),
             Command::Run(arguments) => run::command(&arguments, console),
             Command::Simulate(arguments) => simulate::command(&arguments, console),
             Command::Estimate(arguments) => estimate::command(&arguments, console),

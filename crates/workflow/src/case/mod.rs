@@ -76,6 +76,10 @@ const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectang
 /// Names of the components.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// The JSON schema (draft 2020-12) of the case files, with which editors complete and check them. What needs numbers of
+/// the mesh, sums or several values at once is left to the reader.
+pub const SCHEMA: &str = include_str!("schema.json");
+
 /// A case of one dimension, ready to run.
 #[derive(Clone, Debug)]
 pub struct CaseOf<const D: usize, const N: usize> {

@@ -1,0 +1,137 @@
+//! The schema of case files has the keys and the names that the readers accept, no more and no fewer.
+
+// A test that cannot go on fails.
+#![allow(clippy::unwrap_used)]
+
+use percute_estimator::{Acceleration, Reconstruction};
+use percute_workflow::case::{FIELDS, SCHEMA, Source, parse};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A table with a stranger among its keys, `?`; the tables that are read before it are added. A material has two readers.
+const TABLES: [(&str, &str); 17] = [
+    ("", "?"),
+    ("mesh", "mesh = { ? }"),
+    ("mesh.rectangle", "mesh = { rectangle = { ? } }"),
+    ("mesh.disc", "mesh = { disc = { ? } }"),
+    ("mesh.bar", "mesh = { bar = { ? } }"),
+    ("material", "material = { ? }"),
+    ("material", "material = { ? }\nmesh = { disc = { radius = 1, rings = 1 } }"),
+    ("initial", "initial = { ? }"),
+    ("obstacle", "obstacle = { ? }"),
+    ("support", "support = { ? }"),
+    ("support.velocity", "support = { group = \"end\", components = [\"x\"], velocity = { ? } }"),
+    ("traction", "traction = { ? }"),
+    ("traction.profile", "traction = { group = \"end\", profile = { ? } }"),
+    ("body_force", "body_force = { ? }"),
+    ("time", "time = { ? }"),
+    ("estimate", "estimate = { ? }"),
+    ("output", "output = { ? }"),
+];
+
+/// What is read first, unless the table has it.
+const BEFORE: [(&str, &str); 3] = [
+    ("mesh", "mesh = { bar = { length = 1, elements = 1 } }"),
+    ("material", "material = { young = 1, density = 1, section = 1 }"),
+    ("time", "time = { end = 1, courant = 0.9 }"),
+];
+
+fn schema() -> Value {
+    serde_json::from_str(SCHEMA).unwrap()
+}
+
+/// What the schema says of one place, with what it refers to.
+fn parts<'a>(schema: &'a Value, here: &'a Value) -> Vec<&'a Value> {
+    let referred = here["$ref"].as_str().map(|name| schema.pointer(&name[1..]).unwrap());
+    let ways = here["anyOf"].as_array().into_iter().flatten();
+    let inner = referred.into_iter().chain(ways).chain(here.get("items"));
+    std::iter::once(here).chain(inner.flat_map(|part| parts(schema, part))).collect()
+}
+
+/// The keys of each table of the schema, by its path.
+fn keys_of(schema: &Value) -> BTreeMap<String, BTreeSet<String>> {
+    let mut found = BTreeMap::new();
+    let mut ahead = vec![(String::new(), schema)];
+    while let Some((path, here)) = ahead.pop() {
+        for part in parts(schema, here) {
+            let Some(properties) = part["properties"].as_object() else { continue };
+            assert_eq!(part["additionalProperties"], Value::Bool(false), "other keys of `{path}`");
+            found.insert(path.clone(), properties.keys().cloned().collect());
+            let joint = if path.is_empty() { "" } else { "." };
+            ahead.extend(properties.iter().map(|(key, value)| (format!("{path}{joint}{key}"), value)));
+        }
+    }
+    found
+}
+
+/// The words in quotes of this kind after the last `before` of the message that refuses a case.
+fn refusal(table: &str, before: &str, quote: char) -> BTreeSet<String> {
+    let begins = |key: &str| table.lines().any(|line| line.starts_with(&format!("{key} = ")));
+    let needed = BEFORE.iter().filter(|(key, _)| !begins(key)).map(|(_, text)| *text);
+    let text = needed.chain([table]).collect::<Vec<_>>().join("\n");
+    let message = parse(Source::new("case.toml", text)).unwrap_err().message;
+    let (_, allowed) = message.rsplit_once(before).unwrap_or_else(|| panic!("{table}: {message}"));
+    allowed.split(quote).skip(1).step_by(2).map(str::to_string).collect()
+}
+
+#[test]
+fn the_keys_are_those_of_the_readers() {
+    let mut accepted = BTreeMap::<String, BTreeSet<String>>::new();
+    for (path, table) in TABLES {
+        let keys = refusal(&table.replace('?', "stranger = 1"), "allowed are ", '`');
+        accepted.entry(path.to_string()).or_default().extend(keys);
+    }
+    assert_eq!(accepted, keys_of(&schema()));
+}
+
+#[test]
+fn materials_have_the_keys_of_their_body() {
+    let schema = schema();
+    let all = &keys_of(&schema)["material"];
+    for (body, mesh) in [("bar_material", ""), ("plane_material", "\nmesh = { disc = { radius = 1, rings = 1 } }")] {
+        let excluded = schema["$defs"][body]["properties"].as_object().unwrap();
+        assert!(excluded.values().all(|value| *value == Value::Bool(false)));
+        let left: BTreeSet<String> = all.iter().filter(|key| !excluded.contains_key(*key)).cloned().collect();
+        assert_eq!(left, refusal(&format!("material = {{ stranger = 1 }}{mesh}"), "allowed are ", '`'));
+    }
+}
+
+#[test]
+fn the_names_are_those_of_the_readers() {
+    let schema = schema();
+    let names = |place: &str| -> BTreeSet<String> {
+        let names = schema.pointer(place).and_then(Value::as_array).unwrap_or_else(|| panic!("{place}"));
+        names.iter().map(|name| name.as_str().unwrap().to_string()).collect()
+    };
+    let estimate = "/$defs/estimate/properties";
+    let reconstructions = Reconstruction::ALL.iter().map(ToString::to_string).collect();
+    assert_eq!(names(&format!("{estimate}/reconstruction/enum")), reconstructions);
+    let accelerations = Acceleration::ALL.iter().map(ToString::to_string).collect();
+    assert_eq!(names(&format!("{estimate}/acceleration/enum")), accelerations);
+    let fields = FIELDS.iter().chain(&["admissible"]).map(ToString::to_string).collect();
+    assert_eq!(names("/$defs/output/properties/fields/anyOf/1/items/enum"), fields);
+    let plane = "material = { young = 1, density = 1, poisson = 0, plane = \"none\" }\n\
+                 mesh = { disc = { radius = 1, rings = 1 } }";
+    assert_eq!(names("/$defs/material/properties/plane/enum"), refusal(plane, "must be ", '"'));
+    let axis = "support = { group = \"boundary\", components = [\"w\"] }\n\
+                material = { young = 1, density = 1, poisson = 0, plane = \"strain\" }\n\
+                mesh = { disc = { radius = 1, rings = 1 } }";
+    assert_eq!(names("/$defs/support/properties/components/items/enum"), refusal(axis, "must be ", '`'));
+}
+
+#[test]
+fn each_key_is_described() {
+    let schema = schema();
+    let mut ahead = vec![&schema];
+    let mut described = 0;
+    while let Some(here) = ahead.pop() {
+        for (key, value) in here["properties"].as_object().into_iter().flatten() {
+            let told = parts(&schema, value).iter().any(|part| part["description"].is_string());
+            assert!(told, "`{key}` has no description");
+            described += 1;
+            ahead.extend(parts(&schema, value));
+        }
+    }
+    // Ten tables and the keys of docs/case.md.
+    assert!(described > 50, "{described}");
+}
