@@ -73,8 +73,8 @@ class ForeignArrays:
         if acts.any():
             node = int(listed[np.flatnonzero(acts)[0]])
             raise InputError(
-                f"`{name}` is not zero at node {node}, which can touch no plane of the problem; give forces of contact only, and "
-                "for each plane of the other program an obstacle, with the nodes in the order of the mesh"
+                f"`{name}` is not zero at node {node}, which can touch no plane of the problem: is the order of the nodes that of the "
+                "mesh? Otherwise give forces of contact only, and for each plane of the other program an obstacle"
             )
         found = np.zeros((len(array), self._sizes["c"], *array.shape[2:]), dtype=array.dtype)
         place = {int(node): i for i, node in enumerate(self._surface)}

@@ -65,10 +65,11 @@ fn residuals(document: &Document) -> String {
 }
 
 /// Figures of a history of another program.
-const CONSISTENCY: [Named; 14] = [
+const CONSISTENCY: [Named; 15] = [
     ("balance", "residual M a + K u − F − R over its largest term", "%"),
     ("node", "at node", "#"),
     ("time", "at t", "s"),
+    ("long_step", "residual at the ends of longer steps, less ten times the rest", "%"),
     ("initial_displacement", "u_0 off that of the problem, over the size of the body", "%"),
     ("initial_velocity", "v_0 off that of the problem, over the largest", "%"),
     ("velocity", "velocities off those of the displacements", "%"),

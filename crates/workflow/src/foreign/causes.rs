@@ -5,7 +5,7 @@ use super::limits::{BALANCE, Excess, PLACE};
 use super::nearness::NEAR;
 use super::suspect::Suspect;
 use super::tried::FALL;
-use super::{of_balance, planes, units};
+use super::{of_balance, planes, skipped, units};
 use crate::message::{percent, times, trimmed, vector};
 use percute_core::history::SinkError;
 
@@ -22,13 +22,18 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(reversed) = self.reversed(over("initial_velocity") || over("initial_displacement")) {
             return Ok(Some(reversed));
         }
-        if over("balance") {
+        if over("balance") || over("long_step") {
             if !over("initial_displacement") {
                 return of_balance::cause(self);
             }
             if let Some(text) = of_balance::changed(self)? {
                 return Ok(Some(text));
             }
+        }
+        if ["velocity", "touching", "slip", "gap_under_force"].into_iter().any(over)
+            && let Some(text) = skipped::skipped(self)?
+        {
+            return Ok(Some(text));
         }
         Ok(self.of_the_state(&over))
     }

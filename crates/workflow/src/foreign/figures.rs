@@ -12,6 +12,9 @@ pub struct Consistency {
     pub node: usize,
     /// Its instant (s).
     pub time: f64,
+    /// The same at the ends of steps that are 1.5 times as long as those beside them, or longer, less ten times that at
+    /// all other instants; 0 without such steps, or if most instants are ends of them.
+    pub long_step: f64,
     /// Largest difference of the given accelerations from those of the displacements, over the largest acceleration.
     pub acceleration: Option<f64>,
     /// Largest difference of the given velocities from those of the displacements, over the largest velocity.

@@ -42,22 +42,20 @@ impl<const D: usize> StepSource<D> for Retimed<'_, D> {
     }
 }
 
-/// The step at which the residual is, with what the body moves in it over the mean of the steps beside it, and the same
-/// of its length.
+/// The step at which the residual is, with what the body moves in it over the mean of the steps beside it.
 struct Jump {
     step: usize,
     way: f64,
-    length: f64,
 }
 
 /// An instant that is missing or doubled where the residual is.
 pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<Tried>, SinkError> {
-    let (at, share) = holding(&suspect.evidence.residual.by_instant, MOST);
+    let (at, _) = holding(&suspect.evidence.residual.by_instant, MOST);
     let [Some(&first), Some(&last)] = [at.first(), at.last()] else { return Ok(None) };
     if last + 1 > first + FEW {
         return Ok(None);
     }
-    let Some(Jump { step, way, length }) = jump(suspect.source, first, last)? else { return Ok(None) };
+    let Some(Jump { step, way }) = jump(suspect.source, first, last)? else { return Ok(None) };
     let instants = suspect.source.times().instants();
     let told = |n: usize| format!("instant {n} ({} s)", trimmed(instants[n], 5));
     let (whole, place) = (way.round(), format!("between {} and {}", told(step), told(step + 1)));
@@ -65,11 +63,6 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
         let text =
             format!("{} repeats the one before it: leave it out of all arrays but the last of `time`", told(step + 1));
         return retimed(suspect, instants[..instants.len() - 1].to_vec(), Some(step + 1), text).map(Some);
-    }
-    if length > 1.5 && (way - 1.0).abs() < 0.5 {
-        let text = format!("an instant is missing {place}: that step is {} as long as those beside it", times(length));
-        let before = suspect.residual();
-        return Ok(Some(Tried { text, before, left: before * (1.0 - share).max(0.0).sqrt() }));
     }
     if whole >= 2.0 && (way - whole).abs() < 0.5 {
         let text = format!(
@@ -114,11 +107,10 @@ fn jump<const D: usize>(source: &dyn StepSource<D>, first: usize, last: usize) -
             [along + dot(&beside[1][node], &mean), own + dot(&mean, &mean)]
         });
         let step = start + k + 1;
-        let length = 2.0 * times.step(step) / (times.step(step - 1) + times.step(step + 1));
-        Jump { step, way: along / own, length }
+        Jump { step, way: along / own }
     };
     let jumps = rates.windows(3).enumerate().map(of).filter(|jump| jump.way.is_finite());
     // Beside a step of rest, the others are twice as far as the mean of their neighbours.
-    let odd = |jump: &Jump| (jump.way.max(REST).ln()).abs() + (jump.length.ln()).abs();
+    let odd = |jump: &Jump| jump.way.max(REST).ln().abs();
     Ok(jumps.max_by(|a, b| odd(a).total_cmp(&odd(b))))
 }

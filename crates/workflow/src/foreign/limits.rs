@@ -16,6 +16,8 @@ pub(crate) struct Excess {
 /// Limits of `balance`, `velocity` and `initial_velocity`. Percute's own histories and those of an independent solver
 /// have 1e-13 to 1e-9, in single precision 1e-6 to 1e-3; a density that is wrong by 2 % has 1e-2.
 pub(super) const BALANCE: f64 = 1e-2;
+/// Limit of `long_step`: less does not limit the trust in an estimate.
+pub(super) const LONG_STEP: f64 = 5e-4;
 /// Limit of `initial_displacement`, a share of the body: single precision has 1e-7.
 pub(super) const PLACE: f64 = 1e-6;
 /// Limit of `cone`: single precision has 1e-6.
@@ -43,55 +45,78 @@ pub(crate) fn by_a_penalty(found: &Consistency) -> bool {
 
 /// The figures over their limits, the most telling first.
 pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
+    of_motion(found).into_iter().chain(of_contact(found)).flatten().collect()
+}
+
+/// A figure over its limit.
+fn excess(value: f64, limit: f64, name: &'static str, what: &str) -> Option<Excess> {
+    // A figure that is no number must not pass.
+    let over = value.is_nan() || value > limit;
+    over.then(|| Excess { what: format!("{what} is {} (limit {})", percent(value), percent(limit)), name })
+}
+
+/// Of the start, the balance and the velocities.
+fn of_motion(found: &Consistency) -> [Option<Excess>; 5] {
     let place = format!("at node {}, {} s", found.node, trimmed(found.time, 5));
-    let of = |value: f64, limit: f64, name, what: &str| {
-        // A figure that is no number must not pass.
-        let over = value.is_nan() || value > limit;
-        over.then(|| Excess { what: format!("{what} is {} (limit {})", percent(value), percent(limit)), name })
-    };
     [
-        of(
+        excess(
             found.initial_displacement,
             PLACE,
             "initial_displacement",
             "the difference of u_0 from that of the problem, over the size of the body,",
         ),
-        of(
+        excess(
             found.initial_velocity,
             BALANCE,
             "initial_velocity",
             "the difference of the initial velocity from that of the problem, over the largest,",
         ),
-        of(
+        excess(
             found.balance,
             BALANCE,
             "balance",
             &format!("the largest residual M a + K u - F - R, over its largest term, {place},"),
         ),
-        of(
+        excess(
+            found.long_step,
+            LONG_STEP,
+            "long_step",
+            "the largest residual M a + K u - F - R at the ends of a longer step, less ten times that of all other \
+             instants, over its largest term,",
+        ),
+        excess(
             found.velocity.unwrap_or(0.0),
             BALANCE,
             "velocity",
             "the difference of the velocities from those of the displacements, over the largest,",
         ),
-        of(found.plane, PLANE, "plane", "the gap under contact forces, the same everywhere, over the element size,"),
-        of(
+    ]
+}
+
+/// Of contact forces against gaps, touching status and Coulomb's law.
+fn of_contact(found: &Consistency) -> [Option<Excess>; 6] {
+    let slip = if by_a_penalty(found) { f64::INFINITY } else { SLIP };
+    [
+        excess(
+            found.plane,
+            PLANE,
+            "plane",
+            "the gap under contact forces, the same everywhere, over the element size,",
+        ),
+        excess(
             found.touching,
             TOUCHING,
             "touching",
             "the number of disagreements of touching status and forces one step before, over that of their changes,",
         ),
-        of(found.cone, CONE, "cone", "the contact force in tension or beyond Coulomb's limit, over the largest,"),
-        of(
+        excess(found.cone, CONE, "cone", "the contact force in tension or beyond Coulomb's limit, over the largest,"),
+        excess(
             found.slip.unwrap_or(0.0),
-            if by_a_penalty(found) { f64::INFINITY } else { SLIP },
+            slip,
             "slip",
             "the misfit of Coulomb's law at nodes that slide, over the work of its limit,",
         ),
-        of(found.gap_under_force, GAP, "gap_under_force", "the gap under a contact force, over the element size,"),
-        of(found.penetration, GAP, "penetration", "the penetration, over the element size,"),
+        excess(found.gap_under_force, GAP, "gap_under_force", "the gap under a contact force, over the element size,"),
+        excess(found.penetration, GAP, "penetration", "the penetration, over the element size,"),
     ]
-    .into_iter()
-    .flatten()
-    .collect()
 }

@@ -5,6 +5,7 @@ use super::complete::Derived;
 use super::contact::Contact;
 use super::ends::Ends;
 use super::figures::Consistency;
+use super::lost::at_long_steps;
 use super::residual::Residual;
 use super::velocities::Rates;
 use super::window::{Window, windows};
@@ -125,9 +126,11 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
     }
 
     fn finish(self) -> (Consistency, Evidence<'p, D, N>) {
-        let Self { mut found, evidence, acceleration, .. } = self;
+        let Self { mut found, evidence, acceleration, balance, .. } = self;
         let given = |[difference, largest]: [f64; 2]| (largest > 0.0).then(|| difference / largest);
         found.balance = evidence.residual.relative();
+        let at_long_steps = at_long_steps(balance.times(), &evidence.residual.largest_at);
+        found.long_step = evidence.residual.share(at_long_steps);
         (found.node, found.time) = (evidence.residual.worst.node, evidence.residual.worst.time);
         found.acceleration = given(acceleration);
         found.velocity = evidence.rates.misfit();

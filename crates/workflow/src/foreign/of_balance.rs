@@ -5,7 +5,7 @@ use super::holding::{MOST, holding};
 use super::limits::BALANCE;
 use super::suspect::Suspect;
 use super::tried::{FALL, Tried, best};
-use super::{instants, moduli, orders, planes, rounded, surface, units};
+use super::{instants, lost, moduli, orders, planes, rounded, skipped, surface, units};
 use crate::message::{numbered, percent, trimmed};
 use crate::through::Through;
 use percute_core::dynamics::critical_time_step;
@@ -25,6 +25,9 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     if let Some(text) = changed(suspect)? {
         return Ok(Some(text));
     }
+    if let Some(text) = skipped::skipped(suspect)? {
+        return Ok(Some(text));
+    }
     Ok(rounded::rounded(suspect)?.or_else(|| at_silent_nodes(suspect)).or_else(|| at_few_nodes(suspect)))
 }
 
@@ -33,6 +36,7 @@ pub(super) fn changed<const D: usize, const N: usize>(
     suspect: &Suspect<'_, D, N>,
 ) -> Result<Option<String>, SinkError> {
     let mut tried = shifts(suspect)?;
+    tried.extend(lost::tried(suspect));
     tried.extend(units::one_term(suspect.problem, suspect.evidence, suspect.derived));
     let inside = suspect.evidence.residual.inside();
     if inside <= FALL * suspect.residual() {
@@ -132,8 +136,7 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     let of = |at: Option<&usize>| at.map_or(String::new(), |&n| trimmed(times[n], 5));
     format!(
         "; along {axis}, M a = {inertia} N, K u = {stiffness} N, F = {load} N, R = {reaction} N; 99 % of its square \
-         are at {} of {} nodes ({}) and {} of {} instants (from {} to {} s); the instants are {} critical steps apart: \
-         are they all steps of the solver?",
+         are at {} of {} nodes ({}) and {} of {} instants (from {} to {} s); the instants are {} critical steps apart",
         nodes.len(),
         residual.by_node.len(),
         numbered("node", &nodes),

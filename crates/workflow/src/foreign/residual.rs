@@ -1,6 +1,7 @@
 //! The residual of the balance at all nodes and instants, and factors of its terms that make it least.
 
 use super::balance::Terms;
+use super::ratio;
 
 /// M a.
 pub(super) const INERTIA: usize = 0;
@@ -36,6 +37,8 @@ pub(super) struct Residual {
     /// Sums of squares of the residual at each node and each instant (N²).
     pub(super) by_node: Vec<f64>,
     pub(super) by_instant: Vec<f64>,
+    /// The largest component at each instant (N).
+    pub(super) largest_at: Vec<f64>,
     /// Nodes that can touch a plane.
     surface: Vec<bool>,
     /// Whether their contact forces follow from the balance: it says nothing there.
@@ -48,13 +51,15 @@ impl Residual {
     /// Of a body with these nodes that can touch a plane; with `open`, the balance says nothing at them.
     pub(super) fn new(surface: Vec<bool>, open: bool) -> Self {
         let by_node = vec![0.0; surface.len()];
-        let (worst, by_instant) = (Worst::default(), Vec::new());
-        Self { worst, largest: 0.0, by_node, by_instant, surface, open, products: [[[0.0; 4]; 4]; 2] }
+        let (worst, by_instant, largest_at) = (Worst::default(), Vec::new(), Vec::new());
+        Self { worst, largest: 0.0, by_node, by_instant, largest_at, surface, open, products: [[[0.0; 4]; 4]; 2] }
     }
 
     /// Adds an instant (s) with its contact forces at all nodes (N).
     pub(super) fn add<const D: usize>(&mut self, terms: &Terms<D>, reaction: &[[f64; D]], index: usize, time: f64) {
-        self.by_instant.resize(self.by_instant.len().max(index + 1), 0.0);
+        for sizes in [&mut self.by_instant, &mut self.largest_at] {
+            sizes.resize(sizes.len().max(index + 1), 0.0);
+        }
         for (node, force) in reaction.iter().enumerate() {
             for (component, r) in force.iter().enumerate() {
                 let of = |field: &[[f64; D]]| field[node][component];
@@ -67,6 +72,7 @@ impl Residual {
                 }
                 self.by_node[node] += rest * rest;
                 self.by_instant[index] += rest * rest;
+                self.largest_at[index] = self.largest_at[index].max(rest.abs());
                 let rows = self.products[usize::from(self.surface[node])].iter_mut().zip(signed);
                 rows.for_each(|(row, a)| row.iter_mut().zip(signed).for_each(|(sum, b)| *sum += a * b));
             }
@@ -90,7 +96,12 @@ impl Residual {
 
     /// The largest component over the largest term.
     pub(super) fn relative(&self) -> f64 {
-        if self.worst.size == 0.0 { 0.0 } else { self.worst.size / self.largest }
+        self.share(self.worst.size)
+    }
+
+    /// A force (N) over the largest term.
+    pub(super) fn share(&self, force: f64) -> f64 {
+        ratio(force, self.largest)
     }
 
     fn products(&self) -> [[f64; 4]; 4] {

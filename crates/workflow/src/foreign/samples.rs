@@ -73,20 +73,25 @@ pub(super) fn lacking<const D: usize>(
         }
         None => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
     };
-    let missing = match given {
-        [false, false] => "velocities and accelerations",
-        [false, true] => "velocities",
-        _ => "accelerations",
-    };
     let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
     let text = format!(
         "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or \
-         more), or give {missing} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more)",
+         more), or give {} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more)",
         trimmed(critical, 4),
         instants(critical),
+        missing(given),
         instants(GOOD * critical)
     );
     Some((figure, text))
+}
+
+/// What samples need that is not `given`.
+pub(super) fn missing(given: [bool; 2]) -> &'static str {
+    match given {
+        [false, false] => "velocities and accelerations",
+        [false, true] => "velocities",
+        _ => "accelerations",
+    }
 }
 
 /// A history with instants between its samples, less than a critical step apart. The motion between two samples is the

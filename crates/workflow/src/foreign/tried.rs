@@ -9,7 +9,7 @@ const AS_GOOD: f64 = 2.0;
 /// So is one that leaves no more than this share of the residual.
 const ALL: f64 = 1e-3;
 /// Norms below this are rounding of sums of squares.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// A change with the norm of the residual before and after it.
 #[derive(Clone, Debug)]

@@ -6,13 +6,16 @@ use super::measure::Evidence;
 use super::residual::{INERTIA, LOAD, REACTION, STIFFNESS};
 use super::tried::{FALL, Tried};
 use crate::message::times;
-use percute_core::material::Law;
+use percute_core::material::{Elastic, Law};
 use percute_core::problem::Problem;
 
 /// What has the unit of length.
 const ALL_LENGTHS: &str = "all lengths (mesh, planes, displacements and `initial_velocity`)";
 /// Two numbers that agree to this, relatively, are taken for equal.
 const AGREE: f64 = 0.02;
+
+/// Densities (kg/m³) and wave speeds (m/s) of solids: foam and rubber to tungsten and diamond.
+const SOLID: [[f64; 2]; 2] = [[50.0, 25e3], [20.0, 2e4]];
 
 /// A quantity, the factor that its numbers need, and the unit in which they are.
 const UNITS: [(Quantity, f64, &str); 14] = [
@@ -65,6 +68,8 @@ struct Context {
     path: Option<f64>,
     /// The thickness of a plane body (m), if it is the same everywhere.
     thickness: Option<f64>,
+    /// Whether all materials have the density and the wave speed of solids: their units are those of SI.
+    solid: bool,
 }
 
 impl Context {
@@ -72,7 +77,8 @@ impl Context {
         let extent = problem.materials().first().map(Law::extent);
         let same = |extent: &f64| D == 2 && problem.materials().iter().all(|other| other.extent() == *extent);
         let path = evidence.contact.paths().first().copied();
-        Self { speed: evidence.ends.speed, open, dimension: D, path, thickness: extent.filter(same) }
+        let solid = problem.materials().iter().all(is_solid);
+        Self { speed: evidence.ends.speed, open, dimension: D, path, thickness: extent.filter(same), solid }
     }
 }
 
@@ -215,21 +221,31 @@ fn mass(factor: f64, context: Context) -> String {
     if let Some(text) = mesh(scale, context) {
         return text;
     }
-    let lengths = lengths(scale, context);
     let time = format!("the steps should be {} as long{}", times(1.0 / scale), Quantity::Time.hint(1.0 / scale));
     let density = format!("it {}", should(factor, Quantity::Density));
     let modulus = format!("`young` {}", should(1.0 / factor, Quantity::Modulus));
+    let plain = |text: String, certain: bool| match lengths(scale, context) {
+        None => text,
+        Some(lengths) if certain => format!("{lengths}. Or {text}"),
+        Some(lengths) => format!("{text}. Or {lengths}"),
+    };
     let [of_time, of_density] = speed.map_or([1.0; 2], |speed| [(speed * scale - 1.0).abs(), (speed - 1.0).abs()]);
     match () {
-        () if of_time <= FALL * of_density => format!("`time` is not that of the history: {time}{lengths}"),
+        // A factor of time that no unit has comes from lengths.
+        () if of_time <= FALL * of_density => {
+            plain(format!("`time` is not that of the history: {time}"), !time.contains("given in"))
+        }
         () if of_density <= FALL * of_time && open => {
             let both = if agree(factor, 1e6) { " (`young` given in MPa and `density` in t/mm³?)" } else { "" };
-            format!(
-                "`density` or `young` is not that of the history: the density {}, or {modulus}{both}{lengths}",
+            let text = format!(
+                "`density` or `young` is not that of the history: the density {}, or {modulus}{both}",
                 should(factor, Quantity::Density)
-            )
+            );
+            plain(text, context.solid)
         }
-        () if of_density <= FALL * of_time => format!("`density` is not that of the history: {density}{lengths}"),
+        () if of_density <= FALL * of_time => {
+            plain(format!("`density` is not that of the history: {density}"), context.solid)
+        }
         () => format!(
             "`density` or `time` is not that of the history: the density {}, or {time}",
             should(factor, Quantity::Density)
@@ -246,18 +262,25 @@ fn mesh(scale: f64, context: Context) -> Option<String> {
 
 /// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given.
 /// In a bar they always have.
-fn lengths(scale: f64, context: Context) -> String {
+fn lengths(scale: f64, context: Context) -> Option<String> {
     let hint = Quantity::Length.hint(scale);
     if !hint.contains("given in") || !(context.open || context.dimension == 1) {
-        return String::new();
+        return None;
     }
     let speed = context.speed.unwrap_or(1.0);
     let which = match () {
         () if agree(speed, 1.0) => ALL_LENGTHS,
         () if agree(speed * scale, 1.0) => "mesh, planes and displacements",
-        () => return String::new(),
+        () => return None,
     };
-    format!(". Or {which} should be {} as large{hint}", times(scale))
+    Some(format!("{which} should be {} as large{hint}", times(scale)))
+}
+
+/// Whether a material has the density and the wave speed of a solid.
+fn is_solid(material: &Elastic) -> bool {
+    let (density, speed) = (material.density(), (material.young() / material.density()).sqrt());
+    let [densities, speeds] = SOLID.map(|[least, most]| least..=most);
+    densities.contains(&density) && speeds.contains(&speed)
 }
 
 /// The factor that numbers need, with the unit that it hints at.
