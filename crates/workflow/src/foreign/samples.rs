@@ -45,8 +45,8 @@ impl Samples {
     }
 }
 
-/// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in long
-/// steps.
+/// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in
+/// long steps.
 pub(super) fn lacking<const D: usize>(
     source: &dyn StepSource<D>,
     found: &Consistency,

@@ -13,8 +13,8 @@ use percute_core::history::SinkError;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// w of two steps, 1/16, to that of many, 1/12, a fifth less and more: up to the critical step, terms of higher order add
-/// up to 15 %.
+/// w of two steps, 1/16, to that of many, 1/12, a fifth less and more: up to the critical step, terms of higher order
+/// add up to 15 %.
 const WEIGHTS: [f64; 2] = [0.8 / 16.0, 1.2 / 12.0];
 /// Steps beside each other that agree to this, relatively, are equal; instants in single precision are known to less.
 const EQUAL: f64 = 1e-2;
@@ -33,8 +33,8 @@ pub(super) fn skipped<const D: usize, const N: usize>(
     let fits = (WEIGHTS[0]..=WEIGHTS[1]).contains(&weight) && before > ROUNDING && left <= FALL * before;
     Ok(fits.then(|| {
         format!(
-            "the instants are samples, not the steps of the solver: give all steps, or give {} too; with the changes of \
-             the forces between the instants, the norm of the residual away from the planes falls {}",
+            "the instants are samples, not the steps of the solver: give all steps, or give {} too; with the changes \
+             of the forces between the instants, the norm of the residual away from the planes falls {}",
             missing(given),
             falls(before, left)
         )
