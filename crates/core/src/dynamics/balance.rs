@@ -1,7 +1,8 @@
 //! Balance of energy and impulse.
 
+use super::work_meter::WorkMeter;
 use crate::contact::{dissipation, dot};
-use crate::history::State;
+use crate::history::{SUMS, State, Sums};
 use crate::ids::NodeId;
 use crate::problem::{PrescribedComponent, Problem};
 use crate::ratio;
@@ -42,43 +43,6 @@ pub struct Balance {
     largest_impulse: f64,
 }
 
-/// Work of a set of nodal forces: Σ ½(F_n + F_{n+1})·(u_{n+1} − u_n), for which the central
-/// differences balance to O(Δt²).
-#[derive(Clone, Debug)]
-struct WorkMeter<const D: usize> {
-    nodes: Vec<NodeId>,
-    force: Vec<[f64; D]>,
-    displacement: Vec<[f64; D]>,
-}
-
-impl<const D: usize> WorkMeter<D> {
-    fn new(nodes: Vec<NodeId>) -> Self {
-        Self { force: vec![[0.0; D]; nodes.len()], displacement: vec![[0.0; D]; nodes.len()], nodes }
-    }
-
-    /// Work since the last call, node by node where a force acts; `force` gives F_n of the i-th node.
-    fn advance(
-        &mut self,
-        u: &[[f64; D]],
-        force: impl Fn(usize) -> [f64; D],
-        mut each: impl FnMut(usize, [f64; D], [f64; D]),
-    ) {
-        for (i, node) in self.nodes.iter().enumerate() {
-            let (now, at) = (force(i), u[node.index()]);
-            let (mut mean, mut path) = ([0.0; D], [0.0; D]);
-            for c in 0..D {
-                mean[c] = 0.5 * (self.force[i][c] + now[c]);
-                path[c] = at[c] - self.displacement[i][c];
-            }
-            if mean != [0.0; D] {
-                each(i, mean, path);
-            }
-            self.force[i] = now;
-            self.displacement[i] = at;
-        }
-    }
-}
-
 /// Keeps the balance beside the integrator.
 #[derive(Clone, Debug)]
 pub(super) struct BalanceKeeper<const D: usize> {
@@ -87,8 +51,9 @@ pub(super) struct BalanceKeeper<const D: usize> {
     supports: WorkMeter<D>,
     contact: WorkMeter<D>,
     external: Vec<[f64; D]>,
-    initial_momentum: [f64; D],
-    impulse: [f64; D],
+    /// Components beyond the dimension are 0.
+    initial_momentum: [f64; 3],
+    impulse: [f64; 3],
     /// Sum of the sizes of all works put in by loads and supports (J).
     energy_put_in: f64,
     /// Largest kinetic energy that the loads or supports of one instant give by themselves (J).
@@ -106,12 +71,79 @@ impl<const D: usize> BalanceKeeper<D> {
             supports: WorkMeter::new(problem.prescribed().iter().map(|p| p.node).collect()),
             contact: WorkMeter::new(problem.surface().nodes().iter().map(|c| c.node).collect()),
             external: vec![[0.0; D]; loaded],
-            initial_momentum: [0.0; D],
-            impulse: [0.0; D],
+            initial_momentum: [0.0; 3],
+            impulse: [0.0; 3],
             energy_put_in: 0.0,
             kick: 0.0,
             rounding: rounding_energy(problem, times),
         }
+    }
+
+    /// The keeper of a run that goes on from a state, with the sums until then.
+    pub(super) fn resumed<const N: usize>(
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        now: &State<'_, D>,
+        sums: &Sums,
+    ) -> Self {
+        let mut keeper = Self::new(problem, times);
+        // The works of the next step begin at this state. Those until here are among the sums.
+        keeper.advance_works(problem, times, now);
+        keeper.numbers().into_iter().zip(sums).for_each(|(number, sum)| *number = *sum);
+        keeper
+    }
+
+    /// All numbers that one step hands to the next.
+    pub(super) fn sums(&mut self) -> Sums {
+        self.numbers().map(|number| *number)
+    }
+
+    fn numbers(&mut self) -> [&mut f64; SUMS] {
+        let Self { balance, initial_momentum, impulse, energy_put_in, kick, .. } = self;
+        let Balance {
+            kinetic,
+            strain,
+            initial,
+            work_of_loads,
+            work_of_supports,
+            work_of_contact,
+            friction,
+            energy_drift,
+            impulse_drift,
+            momentum,
+            largest_energy_gap,
+            largest_energy,
+            largest_impulse_gap,
+            largest_impulse,
+        } = balance;
+        let [[x, y, z], [initial_x, initial_y, initial_z], [impulse_x, impulse_y, impulse_z]] =
+            [momentum, initial_momentum, impulse].map(<[f64; 3]>::each_mut);
+        [
+            kinetic,
+            strain,
+            initial,
+            work_of_loads,
+            work_of_supports,
+            work_of_contact,
+            friction,
+            energy_drift,
+            impulse_drift,
+            x,
+            y,
+            z,
+            largest_energy_gap,
+            largest_energy,
+            largest_impulse_gap,
+            largest_impulse,
+            initial_x,
+            initial_y,
+            initial_z,
+            impulse_x,
+            impulse_y,
+            impulse_z,
+            energy_put_in,
+            kick,
+        ]
     }
 
     pub(super) fn balance(&self) -> &Balance {
@@ -135,7 +167,7 @@ impl<const D: usize> BalanceKeeper<D> {
         let energy = b.kinetic + b.strain;
         if now.step().index == 0 {
             b.initial = energy;
-            self.initial_momentum = momentum;
+            self.initial_momentum = b.momentum;
         }
         let forward = times.velocity_step(now.step().index) - now.back();
         for c in 0..D {

@@ -11,14 +11,19 @@ mod internal_force;
 mod moving;
 mod node_update;
 mod pass;
+mod simulation;
+mod start;
 mod update;
+mod work_meter;
 
 pub use balance::Balance;
 pub use balancing::Balancing;
-pub use central_difference::{Simulation, SimulationError, check_start, simulate, simulate_threaded};
+pub use central_difference::{resume, simulate, simulate_threaded};
 pub use critical_step::{critical_time_step, element_time_step};
 pub use evaluation::{Evaluation, replay};
 pub use internal_force::Stiffness;
+pub use simulation::{Simulation, SimulationError};
+pub use start::check_start;
 pub use update::advance;
 
 use crate::problem::Problem;

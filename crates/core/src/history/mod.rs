@@ -1,11 +1,13 @@
 //! Steps, and who takes and gives them.
 
 mod check;
+mod checkpoint;
 mod memory;
 mod state;
 
 pub(crate) use check::StepCheck;
 pub use check::StepError;
+pub use checkpoint::{Checkpoint, SUMS, Sums};
 pub use memory::{History, MemoryError};
 pub use state::State;
 pub(crate) use state::{StepForces, half_of_last};

@@ -1,6 +1,6 @@
 //! A checked step with the fields that follow from it.
 
-use super::Step;
+use super::{Checkpoint, Step, Sums};
 use crate::contact::ContactSurface;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -43,6 +43,8 @@ pub struct State<'a, const D: usize> {
     /// ½Δt_{n−1} (s), 0 at the start.
     back: f64,
     inverse_mass: &'a [f64],
+    /// Of the balance, beside the integrator.
+    sums: Option<&'a Sums>,
 }
 
 impl<'a, const D: usize> State<'a, D> {
@@ -54,7 +56,21 @@ impl<'a, const D: usize> State<'a, D> {
         half_step: &'a [[f64; D]],
         inverse_mass: &'a [f64],
     ) -> Self {
-        Self { step, forces, half_step, back: half_of_last(times, step.index), inverse_mass }
+        Self { step, forces, half_step, back: half_of_last(times, step.index), inverse_mass, sums: None }
+    }
+
+    /// The same state with the sums of the balance.
+    pub(crate) fn with_sums(self, sums: &'a Sums) -> Self {
+        Self { sums: Some(sums), ..self }
+    }
+
+    /// The state from which a run can go on. None for a step that is replayed: only the integrator has the sums of the
+    /// balance.
+    #[must_use]
+    pub fn checkpoint(&self) -> Option<Checkpoint<D>> {
+        let Step { index, displacement, .. } = self.step;
+        let (displacement, half_step) = (displacement.to_vec(), self.half_step.to_vec());
+        self.sums.map(|sums| Checkpoint { step: index, displacement, half_step, sums: *sums })
     }
 
     /// The step.

@@ -1,0 +1,96 @@
+//! How a simulation ended, and why it stopped before.
+
+use super::{Balance, Dynamics, critical_time_step};
+use crate::history::SinkError;
+use thiserror::Error;
+
+/// Why a simulation stopped before its end.
+#[derive(Debug, Error)]
+pub enum SimulationError {
+    /// Energy out of nothing.
+    #[error(
+        "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the \
+         energy exceeds ten times the sum of the initial energy and the work of loads and supports; take smaller time \
+         steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), or steps that do not \
+         jump from one to the next"
+    )]
+    Unstable {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        time: f64,
+        /// The node with the most kinetic energy.
+        node: usize,
+        /// Its speed (m/s).
+        speed: f64,
+        /// Longest step of the grid (s).
+        longest_step: f64,
+        /// Critical step (s).
+        critical_step: f64,
+    },
+    /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
+    #[error(
+        "node {node} starts {gap:.6e} m from its plane at {speed} m/s and touches in the first step of {step:.4e} s, \
+         too near to come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most \
+         {largest_step:.4e} s"
+    )]
+    StartsTooNear {
+        /// The node.
+        node: usize,
+        /// Which obstacle, from 0.
+        obstacle: usize,
+        /// Its gap (m).
+        gap: f64,
+        /// Its speed towards the obstacle (m/s).
+        speed: f64,
+        /// The first step (s).
+        step: f64,
+        /// The smallest gap that will do (m).
+        smallest_gap: f64,
+        /// The largest first step that will do (s).
+        largest_step: f64,
+    },
+    /// Whoever takes the steps failed.
+    #[error("step {step} could not be passed on: {cause}")]
+    Sink {
+        /// The step.
+        step: usize,
+        /// Why.
+        cause: SinkError,
+    },
+}
+
+/// How a simulation ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Energies, works and drifts at the last step.
+    pub balance: Balance,
+    /// The same at every step of this run, from 0 on, or from the one after its checkpoint on.
+    pub balance_over_time: Vec<Balance>,
+    /// Number of steps done, all of them unless it was interrupted.
+    pub steps: usize,
+    /// Whether the observer stopped it.
+    pub interrupted: bool,
+}
+
+/// The error of an unstable run, with the node that has the most kinetic energy.
+pub(super) fn unstable<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    step: usize,
+    velocity: &[[f64; D]],
+) -> SimulationError {
+    let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let energy = |(v, m): (&[f64; D], &f64)| m * speed(v) * speed(v);
+    let energies: Vec<f64> = velocity.iter().zip(dynamics.problem.mass()).map(energy).collect();
+    // Beyond the range of numbers counts as most.
+    let rank = |e: f64| if e.is_nan() { f64::INFINITY } else { e };
+    let node = (0..energies.len()).fold(0, |best, i| if rank(energies[i]) > rank(energies[best]) { i } else { best });
+    SimulationError::Unstable {
+        step,
+        time: dynamics.times.instants()[step],
+        node,
+        speed: speed(&velocity[node]),
+        longest_step: dynamics.times.longest_step(),
+        critical_step: critical_time_step(dynamics.problem),
+    }
+}

@@ -1,0 +1,87 @@
+//! The state from which the steps go on: that at t_0, or a checkpoint.
+
+use super::balance::BalanceKeeper;
+use super::contact::Contact;
+use super::moving::MovingBody;
+use super::node_update::Motion;
+use super::{Dynamics, SimulationError};
+use crate::history::{Checkpoint, State, Step};
+use crate::problem::Problem;
+use crate::time::TimeGrid;
+
+/// The forces and the contact at t_0.
+pub(super) fn start<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    body: &mut MovingBody<D>,
+    contact: &mut Contact<D>,
+) -> Result<(), SimulationError> {
+    body.step(dynamics, 0, Motion::Start);
+    contact.react(dynamics, 0, &body.displacement, &body.velocity, &mut body.forces.total);
+    contact.settle_start(dynamics);
+    refuse_a_start_too_near(dynamics, contact)
+}
+
+/// The forces and the contact at the step of a checkpoint; its sums are those of the balance.
+pub(super) fn restart<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    checkpoint: &Checkpoint<D>,
+    body: &mut MovingBody<D>,
+    contact: &mut Contact<D>,
+) -> BalanceKeeper<D> {
+    let Dynamics { problem, times, .. } = *dynamics;
+    let Checkpoint { step: n, displacement, half_step, sums } = checkpoint;
+    body.displacement.copy_from_slice(displacement);
+    body.velocity.copy_from_slice(half_step);
+    body.step(dynamics, *n, Motion::Start);
+    contact.react(dynamics, *n, displacement, half_step, &mut body.forces.total);
+    body.sum_up(dynamics, *n);
+    let (index, time) = (*n, times.instants()[*n]);
+    let (reaction, touching) = (&contact.reaction[..], &contact.touching[..]);
+    let step = Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None };
+    let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
+    BalanceKeeper::resumed(problem, times, &state, sums)
+}
+
+/// Refuses a start that a simulation refuses, before anything is made for it.
+///
+/// # Errors
+/// [`SimulationError::StartsTooNear`].
+pub fn check_start<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+) -> Result<(), SimulationError> {
+    let dynamics = &Dynamics::new(problem, times);
+    start(dynamics, &mut MovingBody::new(dynamics), &mut Contact::new(problem.surface().nodes().len()))
+}
+
+/// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at
+/// least |v_n|Δt₀/4, or no admissible kinematic field exists (problem P_CA).
+fn refuse_a_start_too_near<const D: usize, const N: usize>(
+    dynamics: &Dynamics<'_, D, N>,
+    contact: &Contact<D>,
+) -> Result<(), SimulationError> {
+    let problem = dynamics.problem;
+    let step = dynamics.times.step(0);
+    for (at, node) in problem.surface().nodes().iter().enumerate() {
+        if contact.touching[at] || !contact.touching_next[at] {
+            continue;
+        }
+        let (gap, normal) = problem.start_of_contact(at);
+        let speed = -normal;
+        let smallest_gap = 0.25 * speed * step;
+        if gap < smallest_gap {
+            let largest_step = 4.0 * gap / speed;
+            let obstacle = node.obstacle;
+            return Err(SimulationError::StartsTooNear {
+                node: node.node.index(),
+                obstacle,
+                gap,
+                speed,
+                step,
+                smallest_gap,
+                largest_step,
+            });
+        }
+    }
+    Ok(())
+}

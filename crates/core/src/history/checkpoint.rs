@@ -1,0 +1,20 @@
+//! The state from which a run goes on.
+
+/// What the balance has summed up until an instant; `dynamics` alone knows the meaning of each number.
+pub type Sums = [f64; SUMS];
+
+/// Count of the numbers in [`Sums`].
+pub const SUMS: usize = 24;
+
+/// All that the scheme needs to go on from t_n; forces and contact at t_n follow from it, bit by bit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint<const D: usize> {
+    /// n.
+    pub step: usize,
+    /// u_n at the nodes (m).
+    pub displacement: Vec<[f64; D]>,
+    /// v_{n−½} at the nodes (m/s), at the start v₀.
+    pub half_step: Vec<[f64; D]>,
+    /// Sums of the balance.
+    pub sums: Sums,
+}

@@ -1,0 +1,94 @@
+//! A run that goes on from a checkpoint gives the bits of one that was not interrupted.
+
+use crate::run::aluminium;
+use percute_core::contact::Obstacle;
+use percute_core::dynamics::{Simulation, replay, resume, simulate};
+use percute_core::history::{Checkpoint, History, SinkError, State, StateSink};
+use percute_core::load::{BodyForce, Support, Table};
+use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::observer::Unobserved;
+use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::time::TimeGrid;
+
+/// Steps of the runs below.
+const STEPS: usize = 60;
+
+/// Keeps each step as it comes, and the checkpoint of each.
+#[derive(Default)]
+struct Kept<const D: usize> {
+    steps: Vec<(usize, Vec<[f64; D]>, Vec<[f64; D]>, Vec<bool>)>,
+    checkpoints: Vec<Checkpoint<D>>,
+}
+
+impl<const D: usize> StateSink<D> for Kept<D> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let step = state.step();
+        self.steps.push((step.index, step.displacement.to_vec(), step.reaction.to_vec(), step.touching.to_vec()));
+        self.checkpoints.push(state.checkpoint().ok_or("the integrator has the sums of the balance")?);
+        Ok(())
+    }
+}
+
+fn goes_on_from_every_step<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) {
+    let mut whole = Kept::default();
+    let all: Simulation = simulate(problem, times, &mut whole, &mut Unobserved).unwrap();
+    assert!(whole.steps.iter().any(|(_, _, reaction, _)| reaction.iter().flatten().any(|r| *r != 0.0)), "no contact");
+    for checkpoint in &whole.checkpoints {
+        let (mut rest, after) = (Kept::default(), checkpoint.step + 1);
+        let done = resume(problem, times, None, checkpoint, &mut rest, &mut Unobserved).unwrap();
+        assert!(rest.steps[..] == whole.steps[after..], "steps from {after} on");
+        assert!(rest.checkpoints[..] == whole.checkpoints[after..], "checkpoints from {after} on");
+        assert_eq!(done.balance_over_time[..], all.balance_over_time[after..], "from {after} on");
+        assert_eq!((done.balance, done.steps, done.interrupted), (all.balance, STEPS, false), "from {after} on");
+    }
+}
+
+/// Friction, moving supports, body forces and steps of different lengths.
+#[test]
+fn a_block_goes_on_from_every_step() {
+    let mesh = TriangleMesh::rectangle(0.03, 0.02, 6, 4).unwrap();
+    let step = 4e-7;
+    let problem = TriangleProblem::builder(mesh)
+        .material(aluminium())
+        .initial_velocity(Initial::Uniform([60.0, -400.0]))
+        .support(Support {
+            group: "top".into(),
+            components: [false, true],
+            velocity: Some(Table::new(vec![0.0, 40.0 * step], vec![[0.0, -400.0], [0.0, 300.0]]).unwrap()),
+        })
+        .body_force(BodyForce { group: None, value: Table::constant([1e9, -9.81]) })
+        .obstacle(Obstacle::plane([0.0, -10_000.0 * step * 0.5], [0.0, 1.0], 0.3, None).unwrap())
+        .build()
+        .unwrap();
+    let instants = (0..=STEPS).map(|n| step * (n as f64 + if n > 20 { 0.1 * (n - 20) as f64 } else { 0.0 })).collect();
+    goes_on_from_every_step(&problem, &TimeGrid::from_instants(instants).unwrap());
+}
+
+#[test]
+fn a_bar_goes_on_from_every_step() {
+    let step = 1.6e-6;
+    let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+        .material(aluminium())
+        .initial_velocity(Initial::Uniform([-5.0]))
+        .obstacle(Obstacle::plane([-5.0 * 6.4 * step], [1.0], 0.0, None).unwrap())
+        .build()
+        .unwrap();
+    goes_on_from_every_step(&problem, &TimeGrid::uniform(STEPS as f64 * step, STEPS).unwrap());
+}
+
+/// The steps of a history have no sums of the balance.
+#[test]
+fn a_replayed_step_is_no_checkpoint() {
+    struct Without;
+    impl StateSink<1> for Without {
+        fn accept(&mut self, state: &State<'_, 1>) -> Result<(), SinkError> {
+            assert!(state.checkpoint().is_none());
+            Ok(())
+        }
+    }
+    let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 4).unwrap()).material(aluminium()).build().unwrap();
+    let times = TimeGrid::uniform(1e-5, 10).unwrap();
+    let mut history = History::new(&times);
+    simulate(&problem, &times, &mut history, &mut Unobserved).unwrap();
+    replay(&problem, &history, &mut Without).unwrap();
+}
