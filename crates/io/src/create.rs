@@ -65,11 +65,7 @@ impl Unnamed {
             _ => cause,
         })?;
         let length = temporary.as_file().metadata().map_err(|source| FileCause::Create { source })?.len();
-        match fallocate(temporary.as_file(), FallocateFlags::empty(), 0, length.max(1)) {
-            // Not all file systems can reserve space. On those a full disk is detected when it is full.
-            Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => {}
-            Err(error) => return Err(no_room(error.into(), folder, bytes.max(length))),
-        }
+        reserve(temporary.as_file(), &path, length)?;
         texts.put(temporary.as_file()).map_err(|error| no_room(error, folder, bytes))?;
         Ok((Self { temporary, unfinished, path, old, overwrite }, made))
     }
@@ -124,6 +120,15 @@ pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(
     let (mut temporary, unfinished) = temporary(folder, length)?;
     temporary.write_all(bytes).map_err(|error| no_room(error, folder, length))?;
     Unnamed { temporary, unfinished, path, old, overwrite }.put().map(|_| ())
+}
+
+/// Reserves the room of a file of this length, also where it has holes; `path` is its name.
+pub(crate) fn reserve(file: &File, path: &Path, bytes: u64) -> Result<(), FileCause> {
+    match fallocate(file, FallocateFlags::empty(), 0, bytes.max(1)) {
+        // Not all file systems can reserve space. On those a full disk is detected when it is full.
+        Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
+        Err(error) => Err(no_room(error.into(), folder_of(path), bytes)),
+    }
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -49,6 +49,14 @@ pub enum FileCause {
          recover` completes it"
     )]
     Finish { detail: String, steps: usize },
+    /// A run of another program or machine.
+    #[error(
+        "its run cannot go on: it was written by {written}, and this is {here}, whose numbers may differ; run again"
+    )]
+    Other { written: String, here: String },
+    /// Steps with their own velocities or accelerations.
+    #[error("its run cannot go on: it has velocities or accelerations of its own, which the scheme does not give")]
+    GivenMotion,
     /// The file of a run that was killed before its first step.
     #[error("the run was killed before it wrote its first step: the file holds nothing; delete it, and run again")]
     NoStep,

@@ -23,6 +23,11 @@ impl Held {
         taken(file.try_lock()).map(|()| Self(file))
     }
 
+    /// Lets others read.
+    pub(crate) fn share(self) -> Result<Self, FileCause> {
+        taken(self.0.try_lock_shared()).map(|()| self)
+    }
+
     pub(crate) fn file(&self) -> &File {
         &self.0
     }

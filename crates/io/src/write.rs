@@ -41,7 +41,7 @@ impl Provenance {
     }
 
     /// This program on this machine.
-    fn here() -> Self {
+    pub(crate) fn here() -> Self {
         Self {
             program: concat!("percute ", env!("CARGO_PKG_VERSION")).to_string(),
             architecture: std::env::consts::ARCH.to_string(),

@@ -7,7 +7,7 @@
 use crate::failure::Failure;
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::SimulationError;
-use percute_core::history::{SinkError, State, StateSink, Step, StepError, StepSource};
+use percute_core::history::{Checkpoint, SinkError, Step, StepError, StepSource};
 use percute_core::ids::NodeId;
 use percute_core::mesh::Numbering;
 use percute_core::problem::Problem;
@@ -45,10 +45,27 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
         OrderedSource { source, numbering: self.numbering() }
     }
 
-    /// A sink that hands the steps on in the numbers of the user.
-    /// The steps in `motion`, ascending, have their velocity and acceleration.
-    pub(crate) fn sink<'s>(&'s self, take: &'s mut TakeStep<'s, D>, motion: Vec<usize>) -> RestoringSink<'s, D> {
-        RestoringSink { take, motion, numbering: self.numbering(), fields: Fields::default() }
+    /// A step in the numbers of the user.
+    pub(crate) fn stated_step<'s>(&self, step: &Step<'s, D>, fields: &'s mut Fields<D>) -> Step<'s, D> {
+        let Some(numbering) = self.numbering() else { return *step };
+        fields.reordered(step, |new, old| numbering.restore_nodal(new, old))
+    }
+
+    /// A checkpoint in the numbers of the user.
+    pub(crate) fn stated(&self, checkpoint: Checkpoint<D>) -> Checkpoint<D> {
+        let Checkpoint { displacement, half_step, .. } = checkpoint;
+        Checkpoint { displacement: self.nodal(displacement), half_step: self.nodal(half_step), ..checkpoint }
+    }
+
+    /// A checkpoint in the numbers of the problem to be solved.
+    pub(crate) fn local(&self, mut checkpoint: Checkpoint<D>) -> Checkpoint<D> {
+        let Some(numbering) = self.numbering() else { return checkpoint };
+        for field in [&mut checkpoint.displacement, &mut checkpoint.half_step] {
+            let mut local = Vec::new();
+            numbering.order_nodal(field, &mut local);
+            *field = local;
+        }
+        checkpoint
     }
 
     /// A nodal field in the numbers of the user.
@@ -145,7 +162,7 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
 
 /// The nodal fields of a step in another order; their memory is used again.
 #[derive(Debug, Default)]
-struct Fields<const D: usize> {
+pub(crate) struct Fields<const D: usize> {
     displacement: Vec<[f64; D]>,
     velocity: Vec<[f64; D]>,
     acceleration: Vec<[f64; D]>,
@@ -198,31 +215,5 @@ impl<const D: usize> StepSource<D> for OrderedSource<'_, D> {
                 take(step)
             }
         })
-    }
-}
-
-/// Hands steps on in the numbers of the user.
-pub(crate) struct RestoringSink<'s, const D: usize> {
-    take: &'s mut TakeStep<'s, D>,
-    motion: Vec<usize>,
-    numbering: Option<&'s Numbering>,
-    fields: Fields<D>,
-}
-
-impl<const D: usize> StateSink<D> for RestoringSink<'_, D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        let mut step = *state.step();
-        let wanted = self.motion.binary_search(&step.index).is_ok();
-        let motion = wanted.then(|| (state.velocity(), state.acceleration()));
-        if let Some((velocity, acceleration)) = &motion {
-            (step.velocity, step.acceleration) = (Some(velocity.as_slice()), Some(acceleration.as_slice()));
-        }
-        match self.numbering {
-            None => (self.take)(&step),
-            Some(numbering) => {
-                let restored = self.fields.reordered(&step, |new, old| numbering.restore_nodal(new, old));
-                (self.take)(&restored)
-            }
-        }
     }
 }

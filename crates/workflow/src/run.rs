@@ -4,22 +4,25 @@
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
+use crate::history::Stored;
 use crate::info::memory;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
+pub use crate::storing::{Outcome, Storage};
 use crate::outline::{LastOutline, Outline};
 use crate::report::Warning;
+use crate::storing::drive;
 use crate::until::{Found, Leaving, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
+use percute_core::simplex::{Element, Simplex};
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
-use percute_io::FileError;
-use percute_io::history::Writer;
+use percute_io::history::Unended;
 use std::any::Any;
 use std::sync::atomic::AtomicBool;
 
@@ -47,40 +50,6 @@ pub struct Results<const D: usize> {
     pub outline: Option<Outline>,
 }
 
-/// What a run gave, though its history file may not be what it should.
-#[derive(Debug)]
-pub struct Outcome<T> {
-    /// The results.
-    pub results: T,
-    /// Why the file could not be completed: it was moved or removed, or the disk is full.
-    pub unstored: Option<FileError>,
-}
-
-impl<T> Outcome<T> {
-    /// The results of a run whose file is complete.
-    ///
-    /// # Errors
-    /// A file that could not be completed.
-    pub fn stored(self) -> Result<T, Failure> {
-        self.unstored.map_or(Ok(self.results), |error| Err(error.into()))
-    }
-
-    fn map<U>(self, results: impl FnOnce(T) -> Result<U, Failure>) -> Result<Outcome<U>, Failure> {
-        Ok(Outcome { results: results(self.results)?, unstored: self.unstored })
-    }
-}
-
-/// The places of the history of a run; each is optional.
-#[derive(Default)]
-pub struct Storage<'s, const D: usize> {
-    /// A file.
-    pub file: Option<Writer<D>>,
-    /// Memory.
-    pub memory: Option<&'s mut TakeStep<'s, D>>,
-    /// Dropped as soon as the file is closed.
-    pub open: Option<Box<dyn Any + Send>>,
-}
-
 impl Analysis {
     fn recorder<'p, const D: usize, const N: usize>(
         &self,
@@ -103,7 +72,26 @@ pub fn simulate<const D: usize, const N: usize>(
     storage: Storage<'_, D>,
     observer: &mut dyn Observer,
 ) -> Result<Outcome<Simulation>, Failure> {
-    drive(&Ordered::new(problem), times, None, storage, &mut Discard, observer)
+    drive(&Ordered::new(problem), times, (None, None), storage, &mut Discard, observer)
+}
+
+/// Lets the run of a history go on, which was killed or stopped. Its file then is, byte by byte, that of a run that was
+/// not. `open` is dropped as soon as the file is closed.
+///
+/// # Errors
+/// A history whose run cannot go on; as [`simulate`].
+pub fn resume<const D: usize, const N: usize>(
+    stored: &Stored<D, N>,
+    open: Option<Box<dyn Any + Send>>,
+    observer: &mut dyn Observer,
+) -> Result<Outcome<Simulation>, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    let Unended { checkpoint, writer } = stored.file.resume(&stored.problem)?;
+    let (ordered, storage) = (Ordered::new(&stored.problem), Storage { file: Some(writer), memory: None, open });
+    let checkpoint = checkpoint.map(|checkpoint| ordered.local(checkpoint));
+    drive(&ordered, stored.file.run_times(), (None, checkpoint.as_ref()), storage, &mut Discard, observer)
 }
 
 /// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the
@@ -169,7 +157,7 @@ pub(crate) fn beside<const D: usize, const N: usize>(
     let mut estimator = estimator.map_err(RunError::from)?;
     let mut outline = LastOutline::new(ordered.problem().mesh());
     let mut sinks = ((&mut estimator, (&mut contact, &mut outline)), sink);
-    let done = drive(ordered, times, analysis.options.threads, storage, &mut sinks, observer)?;
+    let done = drive(ordered, times, (analysis.options.threads, None), storage, &mut sinks, observer)?;
     done.map(|simulation| {
         let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
         let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
@@ -335,56 +323,5 @@ pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Fai
             case.refused_start(&error).map_or_else(|| error.into(), Failure::from)
         }
         other => other,
-    }
-}
-
-/// Hands every step to the history and then to `beside`. A run that was stopped is finished like a complete one; a
-/// refused start leaves no file; after any other error the file remains.
-fn drive<const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
-    times: &TimeGrid,
-    threads: Option<usize>,
-    storage: Storage<'_, D>,
-    beside: &mut dyn StateSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Outcome<Simulation>, Failure> {
-    let Storage { file, memory, open } = storage;
-    let done = drive_into(ordered, times, threads, (file, memory), beside, observer);
-    drop(open);
-    done
-}
-
-fn drive_into<'s, const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
-    times: &TimeGrid,
-    threads: Option<usize>,
-    (mut file, mut memory): (Option<Writer<D>>, Option<&'s mut TakeStep<'s, D>>),
-    beside: &mut dyn StateSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Outcome<Simulation>, Failure> {
-    let stored = file.is_some() || memory.is_some();
-    let kept = file.as_ref().and_then(Writer::kept);
-    let [velocity, acceleration] = kept.map_or([false; 2], |kept| [kept.velocity, kept.acceleration]);
-    let motion = kept.filter(|_| velocity || acceleration).map_or_else(Vec::new, |kept| kept.steps.clone());
-    let mut store = |step: &Step<'_, D>| {
-        let motion = [step.velocity.filter(|_| velocity), step.acceleration.filter(|_| acceleration)];
-        let with = |[velocity, acceleration]: [_; 2]| Step { velocity, acceleration, ..*step };
-        file.as_mut().map_or(Ok(()), |file| file.push(&with(motion)))?;
-        memory.as_mut().map_or(Ok(()), |keep| keep(&with([None; 2])))
-    };
-    // The history first: a step that cannot be estimated is still stored.
-    let mut sinks = (stored.then(|| ordered.sink(&mut store, motion)), beside);
-    let simulation = simulate_threaded(ordered.problem(), times, threads, &mut sinks, observer);
-    match (simulation, file) {
-        // A file that was lost must not cost the results.
-        (Ok(results), file) => Ok(Outcome { results, unstored: file.and_then(|history| history.finish().err()) }),
-        (Err(error @ SimulationError::StartsTooNear { .. }), Some(history)) => {
-            let file = history.path().to_path_buf();
-            drop(history);
-            // A file that cannot be removed does no harm: it holds no step.
-            let _ = std::fs::remove_file(file);
-            Err(ordered.failure(error.into()))
-        }
-        (Err(error), _) => Err(ordered.failure(error.into())),
     }
 }

@@ -1,10 +1,12 @@
 //! Histories in files.
 
+mod checkpoints;
 mod file;
 mod kept;
 mod open;
 mod plan;
 mod recover;
+mod resume;
 mod rows;
 mod source;
 mod sums;
@@ -17,6 +19,7 @@ pub use open::open;
 pub(crate) use open::{case, provenance};
 pub use plan::Plan;
 pub use recover::{Recovered, recover};
+pub use resume::Unended;
 pub use source::{HistorySource, StoredSteps};
 pub use writer::Writer;
 

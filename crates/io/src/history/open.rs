@@ -34,7 +34,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     })
 }
 
-fn contents<const D: usize, const N: usize>(
+pub(super) fn contents<const D: usize, const N: usize>(
     path: &Path,
     identity: Identity,
     opened: &Opened,

@@ -1,9 +1,10 @@
 //! A history file before its run: its size and its parts.
 
+use super::checkpoints;
 use super::kept::Kept;
 use super::rows::{FIELDS, Places, write_vectors};
 use super::sums::fixed_part;
-use super::writer::Writer;
+use super::writer::{Begun, Writer};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -77,7 +78,17 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
         let groups = PER_GROUP * (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
         let texts = self.statement.len() + self.case.as_ref().map_or(0, |case| case.name.len() + case.text.len());
-        let fixed = grid + facets + elements + groups + 8 * d * nodes + 8 * contact + texts as u64 + run + LIBRARY;
+        let checkpoints = checkpoints::size(self.times.step_count(), mesh.node_count(), D);
+        let fixed = grid
+            + facets
+            + elements
+            + groups
+            + 8 * d * nodes
+            + 8 * contact
+            + texts as u64
+            + run
+            + checkpoints
+            + LIBRARY;
         instants.saturating_mul(step + steps).saturating_add(fixed)
     }
 
@@ -107,7 +118,9 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement()).map_err(create)?;
         let path = unnamed.path().to_path_buf();
         let held = unnamed.put()?;
-        Writer::new(&path, held, places, self.times.step_count(), (self.given, self.kept.clone())).map_err(create)
+        let begun =
+            Begun { last: self.times.step_count(), next: 0, stored: 0, given: self.given, kept: self.kept.clone() };
+        Writer::new(&path, held, places, begun).map_err(create)
     }
 
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<Places, FileCause> {
@@ -123,6 +136,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let sum = fixed_part(mesh, velocity, &self.statement, self.case.as_ref(), &self.stored_times(), nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
         let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
+        let checkpoints = checkpoints::make_room(&ours, self.times.step_count(), mesh.node_count(), D)?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
         let instants = &self.stored_times();
@@ -150,9 +164,11 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             steps_written: offset(&steps_written)?,
             complete: offset(&complete)?,
             checksums: offset(&checksums)?,
+            checkpoints,
             nodes: mesh.node_count(),
             contact_nodes: self.problem.surface().nodes().len(),
             has_contact: self.has_contact(),
+            had: 0,
         })
     }
 

@@ -1,5 +1,6 @@
 //! The rows of a step as bytes at their place in the file.
 
+use super::checkpoints::CheckpointPlaces;
 use crate::checksum::Checksum;
 use crate::mesh::in_space;
 use percute_core::history::Step;
@@ -22,10 +23,13 @@ pub(super) struct Places {
     pub(super) complete: u64,
     /// Of a row of checksums for each step.
     pub(super) checksums: u64,
+    pub(super) checkpoints: Option<CheckpointPlaces>,
     pub(super) nodes: usize,
     pub(super) contact_nodes: usize,
     /// Whether the file has reactions and touching status.
     pub(super) has_contact: bool,
+    /// Number of instants in the file before the run went on: the count in the file never falls.
+    pub(super) had: usize,
 }
 
 impl Places {
@@ -91,7 +95,8 @@ impl<const D: usize> Row<D> {
         }
         let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
         file.write_all_at(&sums, places.checksums + n * sums.len() as u64)?;
-        file.write_all_at(&(n + 1).to_ne_bytes(), places.steps_written)
+        let count = (self.place + 1).max(places.had) as u64;
+        file.write_all_at(&count.to_ne_bytes(), places.steps_written)
     }
 
     /// The checksums of the fields, in the order of [`FIELDS`]; 0 of those that are not stored.
@@ -114,6 +119,6 @@ pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[
 }
 
 /// Numbers as in memory, the layout of HDF5's native types.
-fn bytes(values: &[f64]) -> Vec<u8> {
+pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }

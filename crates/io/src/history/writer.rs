@@ -1,12 +1,13 @@
 //! Writes the steps of a run during the run.
 
+use super::checkpoints::is_due;
 use super::kept::Kept;
 use super::recover::{give_back_room, set_steps};
 use super::rows::{Places, Row};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::unfinished::Unfinished;
-use percute_core::history::{SinkError, State, StateSink, Step, StepError};
+use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step, StepError};
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
@@ -32,10 +33,31 @@ pub struct Writer<const D: usize> {
     kept: Option<Kept>,
     /// Until there is a step, the file is of no use.
     unfinished: Option<Unfinished>,
-    rows: Option<SyncSender<Row<D>>>,
+    rows: Option<SyncSender<Entry<D>>>,
     used: Receiver<Row<D>>,
     thread: Option<JoinHandle<Result<(), Failure>>>,
     failed: Option<Failure>,
+}
+
+/// A copy of what is to be written.
+enum Entry<const D: usize> {
+    Row(Row<D>),
+    Checkpoint(Checkpoint<D>),
+}
+
+/// The part of a run that its file is to hold, and that is there already.
+#[derive(Debug)]
+pub(super) struct Begun {
+    /// Number of the last step.
+    pub(super) last: usize,
+    /// The next step to be taken.
+    pub(super) next: usize,
+    /// Number of instants in the file.
+    pub(super) stored: usize,
+    /// Whether the steps have their own velocities and accelerations.
+    pub(super) given: [bool; 2],
+    /// The part of the run that the file keeps; all without one.
+    pub(super) kept: Option<Kept>,
 }
 
 /// The step that could not be written.
@@ -54,21 +76,16 @@ impl Failure {
 }
 
 impl<const D: usize> Writer<D> {
-    pub(super) fn new(
-        path: &Path,
-        held: Held,
-        places: Places,
-        last: usize,
-        (given, kept): ([bool; 2], Option<Kept>),
-    ) -> io::Result<Self> {
+    pub(super) fn new(path: &Path, held: Held, places: Places, begun: Begun) -> io::Result<Self> {
+        let Begun { last, next, stored, given, kept } = begun;
         let (rows, taken) = sync_channel(WAITING);
         let (back, used) = channel();
         let own = held.file().try_clone()?;
         let work = move || write_all(&own, &places, &taken, &back);
         let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
         let (rows, thread) = (Some(rows), Some(thread));
-        let (path, unfinished) = (path.to_path_buf(), Some(Unfinished::new(path)));
-        let (next, stored, failed) = (0, 0, None);
+        let unfinished = (places.had == 0).then(|| Unfinished::new(path));
+        let (path, failed) = (path.to_path_buf(), None);
         Ok(Self { path, held, places, last, next, stored, given, kept, unfinished, rows, used, thread, failed })
     }
 
@@ -106,15 +123,19 @@ impl<const D: usize> Writer<D> {
     }
 
     fn complete(&self) -> Result<(), FileCause> {
-        let failed = |detail: String| FileCause::Finish { detail, steps: self.stored };
+        let stored = self.stored.max(self.places.had);
+        let failed = |detail: String| FileCause::Finish { detail, steps: stored };
         let told = |error: io::Error| failed(error.to_string());
         self.held.file().sync_data().map_err(told)?;
         let place = self.held.place(&self.path);
         let Some(now) = place else { return Err(FileCause::Lost { now: None }) };
-        set_steps(&now, self.stored).map_err(failed)?;
+        set_steps(&now, stored).map_err(failed)?;
         self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
         let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
-        give_back_room(self.held.file(), self.places.rooms(D as u64), planned, self.stored);
+        give_back_room(self.held.file(), self.places.rooms(D as u64), planned, stored);
+        if let Some(checkpoints) = self.places.checkpoints.filter(|_| self.next > self.last) {
+            checkpoints.give_back(self.held.file());
+        }
         self.held.file().sync_all().map_err(told)?;
         if now == self.path { Ok(()) } else { Err(FileCause::Lost { now: Some(now) }) }
     }
@@ -172,16 +193,34 @@ impl<const D: usize> Writer<D> {
         self.check(step)?;
         let mut row = self.used.try_recv().unwrap_or_default();
         row.take(step, place);
-        let sent = self.rows.as_ref().is_some_and(|rows| rows.send(row).is_ok());
-        if !sent {
-            self.stop();
-            let failure =
-                self.failed.get_or_insert(Failure { step: self.next, kind: io::ErrorKind::Other, code: None });
-            return Err(failure.cause());
-        }
+        self.pass_on(Entry::Row(row))?;
         (self.next, self.stored) = (self.next + 1, place + 1);
         self.unfinished = None;
         Ok(())
+    }
+
+    /// Hands an entry to the thread that writes.
+    fn pass_on(&mut self, entry: Entry<D>) -> Result<(), FileCause> {
+        if self.rows.as_ref().is_some_and(|rows| rows.send(entry).is_ok()) {
+            return Ok(());
+        }
+        self.stop();
+        let failure = self.failed.get_or_insert(Failure { step: self.next, kind: io::ErrorKind::Other, code: None });
+        Err(failure.cause())
+    }
+
+    /// Whether the run can go on from this step, if it is kept by [`Writer::keep`].
+    #[must_use]
+    pub fn is_due(&self, step: usize) -> bool {
+        self.places.checkpoints.is_some() && is_due(step)
+    }
+
+    /// Keeps the state of the step appended last, from which the run can go on if it is killed.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn keep(&mut self, checkpoint: Checkpoint<D>) -> Result<(), SinkError> {
+        Ok(self.pass_on(Entry::Checkpoint(checkpoint)).map_err(|cause| cause.at(&self.path))?)
     }
 
     /// Appends a step; one that the file does not keep is only counted.
@@ -195,7 +234,9 @@ impl<const D: usize> Writer<D> {
 
 impl<const D: usize> StateSink<D> for Writer<D> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.push(state.step())
+        self.push(state.step())?;
+        let due = self.is_due(state.step().index);
+        due.then(|| state.checkpoint()).flatten().map_or(Ok(()), |checkpoint| self.keep(checkpoint))
     }
 }
 
@@ -205,18 +246,26 @@ impl<const D: usize> Drop for Writer<D> {
     }
 }
 
-/// Writes rows in order, until the last one or a failure.
+/// Writes entries in order, until the last one or a failure.
 fn write_all<const D: usize>(
     file: &File,
     places: &Places,
-    taken: &Receiver<Row<D>>,
+    taken: &Receiver<Entry<D>>,
     back: &Sender<Row<D>>,
 ) -> Result<(), Failure> {
-    for row in taken {
-        let failure = |error: io::Error| Failure { step: row.index, kind: error.kind(), code: error.raw_os_error() };
-        row.write(file, places).map_err(failure)?;
-        // There is no receiver once the run has ended.
-        let _ = back.send(row);
+    for entry in taken {
+        let failure = |step| move |error: io::Error| Failure { step, kind: error.kind(), code: error.raw_os_error() };
+        match entry {
+            Entry::Row(row) => {
+                row.write(file, places).map_err(failure(row.index))?;
+                // There is no receiver once the run has ended.
+                let _ = back.send(row);
+            }
+            Entry::Checkpoint(checkpoint) => {
+                let written = places.checkpoints.map_or(Ok(()), |places| places.write(file, &checkpoint));
+                written.map_err(failure(checkpoint.step))?;
+            }
+        }
     }
     Ok(())
 }

@@ -9,4 +9,5 @@ mod foreign;
 mod kill;
 mod places;
 mod refusals;
+mod resume;
 mod round_trip;

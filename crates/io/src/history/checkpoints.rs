@@ -1,0 +1,125 @@
+//! The checkpoints of a history: the two newest states from which its run can go on.
+//!
+//! They are rows of numbers: the step, the sums of the balance, u_n and v_{n−½}. A row that was being written when the
+//! run was killed does not have its checksum; the other one does.
+
+use super::rows::bytes;
+use crate::checksum::Checksum;
+use crate::error::FileCause;
+use crate::read::Part;
+use crate::write::{offset, room};
+use hdf5::Group;
+use percute_core::history::{Checkpoint, SUMS};
+use rustix::fs::{FallocateFlags, fallocate};
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+
+/// Steps from one to the next. A checkpoint has less than three times the numbers of a step.
+const EVERY: usize = 64;
+/// Number of rows; they are written in turn.
+const ROWS: usize = 2;
+/// Numbers of a row before its fields.
+const HEAD: usize = 1 + SUMS;
+
+const NUMBERS: &str = "checkpoints";
+const CHECKSUMS: &str = "checkpoint_checksums";
+
+/// The place of the rows and of their checksums in the file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CheckpointPlaces {
+    numbers: u64,
+    checksums: u64,
+    /// Numbers of a row.
+    row: u64,
+}
+
+/// Whether a step is one from which the run can go on.
+pub(super) fn is_due(step: usize) -> bool {
+    step > 0 && step.is_multiple_of(EVERY)
+}
+
+/// Bytes of all of them in a run of so many steps.
+pub(super) fn size(steps: usize, nodes: usize, dimension: usize) -> u64 {
+    if steps < EVERY { 0 } else { (8 * ROWS * (row(nodes, dimension) + 1)) as u64 }
+}
+
+fn row(nodes: usize, dimension: usize) -> usize {
+    HEAD + 2 * nodes * dimension
+}
+
+/// Makes room for them. A run that ends before the first one needs none.
+pub(super) fn make_room(
+    ours: &Group,
+    steps: usize,
+    nodes: usize,
+    dimension: usize,
+) -> Result<Option<CheckpointPlaces>, FileCause> {
+    if steps < EVERY {
+        return Ok(None);
+    }
+    let row = row(nodes, dimension);
+    let numbers = offset(&room::<f64>(ours, NUMBERS, &[ROWS, row])?)?;
+    let checksums = offset(&room::<i64>(ours, CHECKSUMS, &[ROWS])?)?;
+    Ok(Some(CheckpointPlaces { numbers, checksums, row: row as u64 }))
+}
+
+/// Finds the places in a file.
+pub(super) fn places(ours: &Part<'_>) -> Result<Option<CheckpointPlaces>, FileCause> {
+    let Some(stored) = ours.optional(NUMBERS)? else { return Ok(None) };
+    let row = stored.shape.last().copied().unwrap_or_default() as u64;
+    let (numbers, checksums) = (stored.native_offset::<f64>()?, ours.data(CHECKSUMS)?.native_offset::<i64>()?);
+    Ok(numbers.zip(checksums).map(|(numbers, checksums)| CheckpointPlaces { numbers, checksums, row }))
+}
+
+impl CheckpointPlaces {
+    /// Writes a checkpoint over the older one.
+    pub(super) fn write<const D: usize>(&self, file: &File, checkpoint: &Checkpoint<D>) -> io::Result<()> {
+        let Checkpoint { step, displacement, half_step, sums } = checkpoint;
+        let head = std::iter::once(*step as f64).chain(*sums);
+        let fields = displacement.iter().chain(half_step).flatten().copied();
+        let numbers: Vec<f64> = head.chain(fields).collect();
+        let at = (step / EVERY % ROWS) as u64;
+        file.write_all_at(&bytes(&numbers), self.numbers + 8 * self.row * at)?;
+        file.write_all_at(&sum(&numbers).to_ne_bytes(), self.checksums + 8 * at)
+    }
+
+    /// Gives back the room of a run that has ended: the rows become holes. Checksums of 0 are those of no row.
+    pub(super) fn give_back(&self, file: &File) {
+        let flags = FallocateFlags::PUNCH_HOLE | FallocateFlags::KEEP_SIZE;
+        // File systems without holes keep the room.
+        let _ = fallocate(file, flags, self.numbers, 8 * self.row * ROWS as u64);
+        let _ = file.write_all_at(&[0; 8 * ROWS], self.checksums);
+    }
+}
+
+fn sum(numbers: &[f64]) -> i64 {
+    Checksum::new().numbers(numbers).stored()
+}
+
+/// The newest whole checkpoint that `fits`; none if the run was killed before the first one.
+pub(super) fn newest<const D: usize>(
+    ours: &Part<'_>,
+    nodes: usize,
+    fits: impl Fn(usize) -> bool,
+) -> Result<Option<Checkpoint<D>>, FileCause> {
+    let Some(stored) = ours.optional(NUMBERS)? else { return Ok(None) };
+    let row = row(nodes, D);
+    stored.expect(&[ROWS, row], "step, sums, displacement and half-step velocity in each row")?;
+    let checksums = ours.data(CHECKSUMS)?;
+    checksums.expect(&[ROWS], "one for each row")?;
+    let (numbers, checksums) = (stored.floats()?, checksums.integers()?);
+    let whole = numbers.chunks_exact(row).zip(checksums).filter(|(numbers, stored)| sum(numbers) == *stored);
+    let newest = whole.map(|(numbers, _)| numbers).filter(|numbers| fits(numbers[0] as usize));
+    Ok(newest.max_by(|a, b| a[0].total_cmp(&b[0])).map(|numbers| {
+        let (displacement, half_step) = numbers[HEAD..].split_at(nodes * D);
+        let mut sums = [0.0; SUMS];
+        sums.copy_from_slice(&numbers[1..HEAD]);
+        Checkpoint {
+            step: numbers[0] as usize,
+            displacement: displacement.as_chunks().0.to_vec(),
+            half_step: half_step.as_chunks().0.to_vec(),
+            sums,
+        }
+    }))
+}

@@ -1,0 +1,137 @@
+//! Opens the file of a run that was killed or stopped, so that the run goes on.
+
+use super::checkpoints;
+use super::file::{HistoryFile, Identity};
+use super::kept::Kept;
+use super::open::contents;
+use super::rows::Places;
+use super::writer::{Begun, Writer};
+use crate::create::reserve;
+use crate::error::{FileCause, FileError};
+use crate::held::Held;
+use crate::read::{Data, Opened};
+use crate::write::Provenance;
+use percute_core::history::Checkpoint;
+use percute_core::problem::Problem;
+use percute_core::simplex::{Element, Simplex};
+use percute_core::time::TimeGrid;
+use std::fs::File;
+use std::os::unix::fs::FileExt;
+
+/// A history to which its run goes on to add steps.
+#[derive(Debug)]
+pub struct Unended<const D: usize> {
+    /// The state from which the run goes on; without one, it begins again at its first step.
+    pub checkpoint: Option<Checkpoint<D>>,
+    /// Writes the steps after it.
+    pub writer: Writer<D>,
+}
+
+impl<const D: usize, const N: usize> HistoryFile<D, N>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    /// All planned instants of the run (s), those that a thinned history does not keep included.
+    #[must_use]
+    pub fn run_times(&self) -> &TimeGrid {
+        self.kept().map_or(self.times(), |kept| &kept.times)
+    }
+
+    /// Whether the file holds all that its run was to give.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.is_complete() && self.count() == self.times().instants().len()
+    }
+
+    /// The part of the run that the file keeps; none for one with all steps and without velocities and accelerations.
+    #[must_use]
+    pub fn keeps(&self) -> Option<Kept> {
+        let [velocity, acceleration] = self.stored();
+        let whole = self.kept().is_none() && !self.lacks_reactions();
+        let all = || (0..self.times().instants().len()).collect();
+        let steps = || self.kept().map_or_else(all, |kept| kept.steps.clone());
+        let reaction = !self.lacks_reactions();
+        (!whole || velocity || acceleration).then(|| Kept { steps: steps(), velocity, acceleration, reaction })
+    }
+
+    /// Number of instants in a file with all steps of the run until this one.
+    fn rows_until(&self, step: usize) -> usize {
+        self.kept().map_or(step + 1, |kept| kept.steps.partition_point(|kept| *kept <= step))
+    }
+
+    /// Lets the run of this problem go on, after it was killed or stopped. Other writers are refused from then on;
+    /// readers see the steps written so far.
+    ///
+    /// # Errors
+    /// A file of another program, version or instruction set, whose numbers would be others, or one with velocities
+    /// and accelerations of its own; one that is being written or cannot be written to; a disk without enough space.
+    pub fn resume(&self, problem: &Problem<D, N>) -> Result<Unended<D>, FileError> {
+        self.go_on(problem).map_err(|cause| cause.at(self.path()))
+    }
+
+    fn go_on(&self, problem: &Problem<D, N>) -> Result<Unended<D>, FileCause> {
+        let (writer, here) = (self.provenance(), Provenance::here());
+        if *writer != here {
+            let told = |by: &Provenance| format!("{} on {} {}", by.program, by.architecture, by.system);
+            return Err(FileCause::Other { written: told(writer), here: told(&here) });
+        }
+        if self.given() != [false; 2] {
+            return Err(FileCause::GivenMotion);
+        }
+        let path = self.path();
+        let create = |source| FileCause::Create { source };
+        let held = Held::alone(File::options().read(true).write(true).open(path).map_err(create)?)?.share()?;
+        // Another run may have gone on with the file since it was opened.
+        let opened = Opened::new(path)?;
+        let now: Self = contents(path, Identity::of(path)?, &opened)?;
+        let places = now.places(&opened, problem)?;
+        let fits = |step: usize| step <= now.run_times().step_count() && now.rows_until(step) <= now.count();
+        let checkpoint = checkpoints::newest::<D>(&opened.root().group("percute")?, now.mesh().node_count(), fits)?;
+        let bytes = opened.bytes();
+        drop(opened);
+        reserve(held.file(), path, bytes)?;
+        held.file().write_all_at(&[0], places.complete).map_err(create)?;
+        let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint<D>| checkpoint.step + 1);
+        let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
+        let (kept, given) = (now.keeps(), now.stored());
+        let begun = Begun { last: now.run_times().step_count(), next, stored, given, kept };
+        Ok(Unended { checkpoint, writer: Writer::new(path, held, places, begun).map_err(create)? })
+    }
+
+    /// The places of all that a run writes.
+    fn places(&self, opened: &Opened, problem: &Problem<D, N>) -> Result<Places, FileCause> {
+        let root = opened.root();
+        let (ours, fields) = (root.group("percute")?, root.group("VTKHDF")?.group("PointData")?);
+        let [velocity, acceleration] = ["velocity", "acceleration"].map(|name| fields.optional(name));
+        let nodal = |data: Option<Data<'_>>| data.map(|data| place(data.native_offset::<f64>()?, &data)).transpose();
+        let displacement = fields.data("displacement")?;
+        let contact = ours.optional_group("contact")?;
+        let of_contact = |name: &str| contact.as_ref().map(|contact| contact.data(name)).transpose();
+        let reaction = of_contact("reaction")?.map(|data| place(data.native_offset::<f64>()?, &data)).transpose()?;
+        let touching = of_contact("touching")?.map(|data| place(data.native_offset::<u8>()?, &data)).transpose()?;
+        let counter = ours.data("steps_written")?;
+        let (complete, checksums) = (ours.data("complete")?, ours.data("checksums")?);
+        Ok(Places {
+            displacement: place(displacement.native_offset::<f64>()?, &displacement)?,
+            velocity: nodal(velocity?)?,
+            acceleration: nodal(acceleration?)?,
+            reaction: reaction.unwrap_or_default(),
+            touching: touching.unwrap_or_default(),
+            steps_written: place(counter.native_offset::<i64>()?, &counter)?,
+            complete: place(complete.native_offset::<u8>()?, &complete)?,
+            checksums: place(checksums.native_offset::<i64>()?, &checksums)?,
+            checkpoints: checkpoints::places(&ours)?,
+            nodes: self.mesh().node_count(),
+            contact_nodes: problem.surface().nodes().len(),
+            has_contact: contact.is_some(),
+            had: self.count(),
+        })
+    }
+}
+
+/// The place of an array, which must be as percute writes it.
+fn place(offset: Option<u64>, data: &Data<'_>) -> Result<u64, FileCause> {
+    let given = || "numbers in pieces or of another type".to_string();
+    let needed = "numbers in one piece, as percute writes them";
+    offset.ok_or_else(|| FileCause::Type { name: data.name.clone(), given: given(), needed })
+}

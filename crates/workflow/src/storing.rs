@@ -1,0 +1,116 @@
+//! The simulation with its history: each step is stored before it is analysed.
+
+use crate::failure::Failure;
+use crate::numbering::{Fields, Ordered, TakeStep};
+use percute_core::dynamics::{Simulation, SimulationError, resume, simulate_threaded};
+use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step};
+use percute_core::observer::Observer;
+use percute_core::time::TimeGrid;
+use percute_io::FileError;
+use percute_io::history::{Kept, Writer};
+use std::any::Any;
+
+/// What a run gave, though its history file may not be what it should.
+#[derive(Debug)]
+pub struct Outcome<T> {
+    /// The results.
+    pub results: T,
+    /// Why the file could not be completed: it was moved or removed, or the disk is full.
+    pub unstored: Option<FileError>,
+}
+
+impl<T> Outcome<T> {
+    /// The results of a run whose file is complete.
+    ///
+    /// # Errors
+    /// A file that could not be completed.
+    pub fn stored(self) -> Result<T, Failure> {
+        self.unstored.map_or(Ok(self.results), |error| Err(error.into()))
+    }
+
+    pub(crate) fn map<U>(self, results: impl FnOnce(T) -> Result<U, Failure>) -> Result<Outcome<U>, Failure> {
+        Ok(Outcome { results: results(self.results)?, unstored: self.unstored })
+    }
+}
+
+/// The places of the history of a run; each is optional.
+#[derive(Default)]
+pub struct Storage<'s, const D: usize> {
+    /// A file.
+    pub file: Option<Writer<D>>,
+    /// Memory.
+    pub memory: Option<&'s mut TakeStep<'s, D>>,
+    /// Dropped as soon as the file is closed.
+    pub open: Option<Box<dyn Any + Send>>,
+}
+
+/// Stores steps in the numbers of the user.
+struct Storing<'o, 'p, 's, const D: usize, const N: usize> {
+    ordered: &'o Ordered<'p, D, N>,
+    file: Option<Writer<D>>,
+    memory: Option<&'s mut TakeStep<'s, D>>,
+    fields: Fields<D>,
+}
+
+impl<const D: usize, const N: usize> Storing<'_, '_, '_, D, N> {
+    /// Velocities and accelerations by the scheme at a step, as far as the file keeps them.
+    fn motion(&self, state: &State<'_, D>) -> [Option<Vec<[f64; D]>>; 2] {
+        let kept = self.file.as_ref().and_then(Writer::kept);
+        let kept = kept.filter(|kept| kept.row_of(state.step().index).is_some());
+        let has = |has: fn(&Kept) -> bool| kept.is_some_and(has);
+        [has(|kept| kept.velocity).then(|| state.velocity()), has(|kept| kept.acceleration).then(|| state.acceleration())]
+    }
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for Storing<'_, '_, '_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let [velocity, acceleration] = self.motion(state);
+        let Self { ordered, file, memory, fields } = self;
+        let step = Step { velocity: velocity.as_deref(), acceleration: acceleration.as_deref(), ..*state.step() };
+        let step = ordered.stated_step(&step, fields);
+        if let Some(file) = file {
+            file.push(&step)?;
+        }
+        if let Some(keep) = memory {
+            keep(&Step { velocity: None, acceleration: None, ..step })?;
+        }
+        let due = file.as_mut().filter(|file| file.is_due(state.step().index)).zip(state.checkpoint());
+        due.map_or(Ok(()), |(file, checkpoint)| file.keep(ordered.stated(checkpoint)))
+    }
+}
+
+/// Hands every step to the history and then to `beside`, from the start or from a checkpoint on. A run that was stopped
+/// is finished like a complete one; a refused start leaves no file; after any other error the file remains.
+pub(crate) fn drive<const D: usize, const N: usize>(
+    ordered: &Ordered<'_, D, N>,
+    times: &TimeGrid,
+    (threads, checkpoint): (Option<usize>, Option<&Checkpoint<D>>),
+    storage: Storage<'_, D>,
+    beside: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Outcome<Simulation>, Failure> {
+    let Storage { file, memory, open } = storage;
+    let stored = file.is_some() || memory.is_some();
+    // The history first: a step that cannot be estimated is still stored.
+    let storing = stored.then(|| Storing { ordered, file, memory, fields: Fields::default() });
+    let (problem, mut sinks) = (ordered.problem(), (storing, beside));
+    let simulation = match checkpoint {
+        None => simulate_threaded(problem, times, threads, &mut sinks, observer),
+        Some(checkpoint) => resume(problem, times, threads, checkpoint, &mut sinks, observer),
+    };
+    let file = sinks.0.and_then(|storing| storing.file);
+    let done = match (simulation, file) {
+        // A file that was lost must not cost the results.
+        (Ok(results), file) => Ok(Outcome { results, unstored: file.and_then(|history| history.finish().err()) }),
+        (Err(error @ SimulationError::StartsTooNear { .. }), Some(history)) => {
+            let file = history.path().to_path_buf();
+            drop(history);
+            // A file that cannot be removed does no harm: it holds no step.
+            let _ = std::fs::remove_file(file);
+            Err(ordered.failure(error.into()))
+        }
+        (Err(error), _) => Err(ordered.failure(error.into())),
+    };
+    drop(open);
+    done
+}
