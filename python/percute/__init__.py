@@ -36,7 +36,7 @@ from percute.estimating import estimate
 from percute.estimation import Estimate
 from percute.evidence import reproduce
 from percute.exact import Effectivity, TrueError
-from percute.files import open, run
+from percute.files import open, resume, run
 from percute.history import History
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
@@ -91,6 +91,7 @@ __all__ = [
     "exact",
     "open",
     "reproduce",
+    "resume",
     "run",
     "simulate",
     "sweep",

@@ -10,7 +10,7 @@ from percute import _percute
 from percute.attached import attached
 from percute.checks import encodable, flag, text, warn, warn_of_result, wrong
 from percute.checks import path as file_name
-from percute.errors import InputError, MissingFileError, StorageError
+from percute.errors import InputError, MissingFileError, SimulationWarning, StorageError
 from percute.estimating import pace
 from percute.estimation import Estimate
 from percute.history import History
@@ -20,7 +20,7 @@ from percute.simulation import absolute, history_done
 from percute.stored import StoredEstimate
 from percute.termination import file_closed_at_signals
 
-__all__ = ["open", "run"]
+__all__ = ["open", "resume", "run"]
 
 
 def open(path: str | os.PathLike[str]) -> History | Estimate:
@@ -50,6 +50,46 @@ def open(path: str | os.PathLike[str]) -> History | Estimate:
     if _percute.is_estimate(file):
         return Estimate._of(StoredEstimate(file), None, encodable(given))
     return History._of(_percute.open_history(file), name=encodable(given))
+
+
+def resume(path: str | os.PathLike[str], *, progress: ProgressOption = None) -> History:
+    """Let the simulation of a history go on, after it was killed or stopped.
+
+    It goes on from the newest checkpoint in the file, at most 64 steps before its end. The file then is, byte by byte, that of a
+    simulation that was not interrupted. A history that holds all its steps is opened.
+
+    Parameters
+    ----------
+    path : str or path
+        The history file of a simulation or a run, thinned or not.
+    progress : bool or callable, optional
+        As for `simulate`.
+
+    Returns
+    -------
+    History
+        As `open` gives it. `estimate` then estimates its error, from all steps.
+
+    Warns
+    -----
+    SimulationWarning
+        As for `simulate`.
+
+    Raises
+    ------
+    MissingFileError, FileFormatError
+        As for `open`. Or another program, version or machine wrote the file, whose numbers may differ.
+    StorageError
+        The file cannot be written, or another process is writing it.
+    SimulationError, KeyboardInterrupt
+        As for `simulate`.
+    """
+    given = file_name("path", path)
+    file = os.path.abspath(given)
+    with file_closed_at_signals(file), shown(progress) as tell, history_done():
+        data, drift = _percute.resume(file, tell)
+    warn([] if drift is None else [drift], SimulationWarning)
+    return History._of(data, name=encodable(given))
 
 
 def run(

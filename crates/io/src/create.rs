@@ -3,14 +3,14 @@
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, refused};
+use crate::temporary::{probe, temporary};
 use crate::unfinished::Unfinished;
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
 use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
 use rustix::io::Errno;
-use std::fs::{File, Permissions};
+use std::fs::File;
 use std::io::{self, Write};
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -54,7 +54,7 @@ impl Unnamed {
     ) -> Result<(Self, T), FileCause> {
         let (path, old) = destination(path, overwrite)?;
         let folder = folder_of(&path);
-        let (temporary, unfinished) = temporary(folder, bytes)?;
+        let (temporary, unfinished) = temporary(folder).map_err(|error| no_room(error, folder, bytes))?;
         // A full disk is detected here in most cases, before the first write.
         if let Some(free) = free(folder).filter(|free| *free < bytes) {
             return Err(FileCause::NoSpace { needed: bytes, free });
@@ -117,7 +117,7 @@ pub fn write_bytes(path: impl AsRef<Path>, overwrite: Overwrite, bytes: &[u8]) -
 pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(), FileCause> {
     let (path, old) = destination(path, overwrite)?;
     let (folder, length) = (folder_of(&path), bytes.len() as u64);
-    let (mut temporary, unfinished) = temporary(folder, length)?;
+    let (mut temporary, unfinished) = temporary(folder).map_err(|error| no_room(error, folder, length))?;
     temporary.write_all(bytes).map_err(|error| no_room(error, folder, length))?;
     Unnamed { temporary, unfinished, path, old, overwrite }.put().map(|_| ())
 }
@@ -141,16 +141,7 @@ fn folder_of(path: &Path) -> &Path {
 /// # Errors
 /// Whatever the system reports.
 pub fn check_folder(path: &Path) -> io::Result<()> {
-    tempfile::Builder::new().prefix(".percute-").tempfile_in(folder_of(path)).map(drop)
-}
-
-/// A file under a temporary name, which is removed unless it is renamed.
-fn temporary(folder: &Path, bytes: u64) -> Result<(NamedTempFile, Unfinished), FileCause> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".percute-").permissions(Permissions::from_mode(0o666));
-    let made = builder.tempfile_in(folder).map_err(|error| no_room(error, folder, bytes))?;
-    let unfinished = Unfinished::new(made.path());
-    Ok((made, unfinished))
+    probe(folder_of(path))
 }
 
 /// Creates an HDF5 file and closes it.

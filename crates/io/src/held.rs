@@ -34,7 +34,12 @@ impl Held {
 
     /// Whether this file is the one at a path.
     pub(crate) fn is_at(&self, path: &Path) -> bool {
-        let (Ok(mine), Ok(there)) = (self.0.metadata(), path.metadata()) else { return false };
+        Self::same(&self.0, path)
+    }
+
+    /// Whether an open file is the one at a path.
+    pub(crate) fn same(file: &File, path: &Path) -> bool {
+        let (Ok(mine), Ok(there)) = (file.metadata(), path.metadata()) else { return false };
         (mine.dev(), mine.ino()) == (there.dev(), there.ino())
     }
 

@@ -18,6 +18,7 @@ mod mesh;
 mod names;
 mod read;
 mod steps;
+mod temporary;
 mod unfinished;
 mod write;
 

@@ -55,7 +55,7 @@ mod _percute {
     #[pymodule_export]
     use super::reference::{errors_against_history, errors_against_simulation};
     #[pymodule_export]
-    use super::simulate::{check_run, open_history, plausibility_warnings, rebound_end, run_case, simulate};
+    use super::simulate::{check_run, open_history, plausibility_warnings, rebound_end, resume, run_case, simulate};
     #[pymodule_export]
     use super::stored::{EstimateFileData, is_estimate};
     #[pymodule_export]

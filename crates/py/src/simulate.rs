@@ -242,6 +242,39 @@ pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, lon
     })
 }
 
+/// Lets the run of a history go on, which was killed or stopped; with a warning as that of [`simulate`].
+#[pyfunction]
+pub(crate) fn resume(
+    py: Python<'_>,
+    path: PathBuf,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<(HistoryData, Option<String>)> {
+    let (file, begun) = (path.clone(), Arc::new(AtomicBool::new(false)));
+    let goes_on = begun.clone();
+    let work = move |mut watch: Watch, open: Box<dyn Any + Send>| {
+        each_dimension!(percute_workflow::history::open(&file)?, stored => {
+            if stored.file.has_ended() {
+                return Ok((None, None));
+            }
+            goes_on.store(true, Relaxed);
+            let Outcome { results, unstored } = stored.resume(Some(open), &mut watch)?;
+            let drifted = drifted(results.balance.energy_drift, stored.file.run_times().varies());
+            Ok((drifted.map(|warning| warning.message), unstored))
+        })
+    };
+    let done = bridge::writing(py, progress, |watch, open| work(watch, Box::new(open)));
+    let done = done.and_then(|done: Result<_, Failure>| done.map_err(|failure| errors::run(py, &failure)));
+    match done {
+        Ok((_, Some(lost))) => {
+            let error = errors::file(py, &lost);
+            let FileCause::Lost { now } = lost.cause else { return Err(error) };
+            Err(errors::with(py, error, "history", now))
+        }
+        Ok((drifted, None)) => Ok((open_history(py, path)?, drifted)),
+        Err(error) => Err(errors::with(py, error, "history", begun.load(Relaxed).then_some(path))),
+    }
+}
+
 /// Opens the history in a file.
 #[pyfunction]
 pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryData> {

@@ -89,7 +89,7 @@ fn reversed(error: CaseError) -> CaseError {
 }
 
 impl<const D: usize, const N: usize> Stored<D, N> {
-    fn new(file: HistoryFile<D, N>, path: &Path) -> Result<Self, Failure> {
+    pub(crate) fn new(file: HistoryFile<D, N>, path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let source = Source::new(format!("{name}, statement of the problem"), file.statement());
         let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());

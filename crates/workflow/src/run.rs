@@ -4,26 +4,22 @@
 
 use crate::case::CaseOf;
 use crate::failure::Failure;
-use crate::history::Stored;
 use crate::info::memory;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
-pub use crate::storing::{Outcome, Storage};
 use crate::outline::{LastOutline, Outline};
 use crate::report::Warning;
 use crate::storing::drive;
+pub use crate::storing::{Outcome, Storage};
 use crate::until::{Found, Leaving, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, Simulation, SimulationError, replay, simulate_threaded};
+use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
-use percute_io::history::Unended;
-use std::any::Any;
 use std::sync::atomic::AtomicBool;
 
 /// The analysis of the steps of a run or of a history.
@@ -73,25 +69,6 @@ pub fn simulate<const D: usize, const N: usize>(
     observer: &mut dyn Observer,
 ) -> Result<Outcome<Simulation>, Failure> {
     drive(&Ordered::new(problem), times, (None, None), storage, &mut Discard, observer)
-}
-
-/// Lets the run of a history go on, which was killed or stopped. Its file then is, byte by byte, that of a run that was
-/// not. `open` is dropped as soon as the file is closed.
-///
-/// # Errors
-/// A history whose run cannot go on; as [`simulate`].
-pub fn resume<const D: usize, const N: usize>(
-    stored: &Stored<D, N>,
-    open: Option<Box<dyn Any + Send>>,
-    observer: &mut dyn Observer,
-) -> Result<Outcome<Simulation>, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    let Unended { checkpoint, writer } = stored.file.resume(&stored.problem)?;
-    let (ordered, storage) = (Ordered::new(&stored.problem), Storage { file: Some(writer), memory: None, open });
-    let checkpoint = checkpoint.map(|checkpoint| ordered.local(checkpoint));
-    drive(&ordered, stored.file.run_times(), (None, checkpoint.as_ref()), storage, &mut Discard, observer)
 }
 
 /// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the

@@ -58,7 +58,10 @@ impl<const D: usize, const N: usize> Storing<'_, '_, '_, D, N> {
         let kept = self.file.as_ref().and_then(Writer::kept);
         let kept = kept.filter(|kept| kept.row_of(state.step().index).is_some());
         let has = |has: fn(&Kept) -> bool| kept.is_some_and(has);
-        [has(|kept| kept.velocity).then(|| state.velocity()), has(|kept| kept.acceleration).then(|| state.acceleration())]
+        [
+            has(|kept| kept.velocity).then(|| state.velocity()),
+            has(|kept| kept.acceleration).then(|| state.acceleration()),
+        ]
     }
 }
 

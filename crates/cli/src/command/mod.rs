@@ -9,6 +9,7 @@ mod present;
 mod recover;
 mod report;
 mod result;
+mod resume;
 mod run;
 mod schema;
 mod simulate;

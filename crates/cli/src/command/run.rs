@@ -2,18 +2,21 @@
 
 use super::outputs::{begin_history, check};
 use super::result::{Finished, give};
-use super::{Console, case, resolved};
-use crate::args::{MapArguments, RunArguments};
+use super::resume::{Left, go_on, left};
+use super::{Console, case};
+use crate::args::{MapArguments, RunArguments, WorkArguments};
 use crate::exit::INTERRUPTED;
 use crate::progress::Watch;
 use percute_core::each_dimension;
+use percute_core::simplex::{Element, Simplex};
 use percute_estimator::{EstimateError, Options, Request, RunError};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants};
 use percute_workflow::effort::Long;
-use percute_workflow::history::stored_case;
+use percute_workflow::history::{Stored, stored_case};
 use percute_workflow::outputs::{OutputFile, chosen};
-use percute_workflow::run::{Analysis, Outcome, Storage, located, run};
+use percute_workflow::report::simulated;
+use percute_workflow::run::{Analysis, Outcome, Results, Storage, located, run};
 use percute_workflow::tables::Destination;
 use std::time::Instant;
 
@@ -25,12 +28,19 @@ fn run_case<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     arguments: &RunArguments,
     console: &mut Console<'_>,
-) -> Result<u8, Failure> {
+) -> Result<u8, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
-    check(&case.inputs(Some(&arguments.case)), &[history, stored], Some(print), work.force)?;
+    let left = left(case, history, arguments.resume)?;
+    let mut inputs = case.inputs(Some(&arguments.case));
+    inputs.extend(history.filter(|_| left.history().is_some()).map(|history| ("history", history.file)));
+    let new = history.filter(|_| left.history().is_none());
+    check(&inputs, &[new, stored], Some(print), work.force)?;
     let tables = print.csv.as_deref();
-    let tables = tables.map(|path| Destination::check("--csv", path, &case.inputs(Some(&arguments.case)), work.force));
+    let tables = tables.map(|path| Destination::check("--csv", path, &inputs, work.force));
     let tables = tables.transpose()?;
     let options = Options { threads: work.threads, window: work.window, ..case.options };
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
@@ -39,30 +49,79 @@ fn run_case<const D: usize, const N: usize>(
     request(stored, "--estimate", maps, Request::default)?;
     case.check_run(true, Long::asked(arguments.long, "--long"))?;
     let told = console.warn_about(case, work.quiet);
-    let Some(case) = &resolved(case, work.quiet, console)? else { return Ok(INTERRUPTED) };
+    let Some(case) = &left.resolved(case, work.quiet, console)? else { return Ok(INTERRUPTED) };
     within("--instants", instants, case.times.end())?;
     let wanted = || Request { steps: instants.steps(&case.times, options.every.stride()), fields };
     let request = request(stored, "--estimate", maps, wanted)?;
-    let history = history.map(|file| begin_history(case, file, work.force, work.quiet, console)).transpose()?;
-    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
     let start = Instant::now();
-    let (analysis, storage) = (
-        Analysis { options, request, contact_steps: stored.is_some() || print.report.is_some() },
-        Storage { file: history, memory: None, open: None },
-    );
-    let done = run(&case.problem, &case.times, &analysis, storage, watch).map_err(|failure| located(case, failure));
+    let analysis = Analysis { options, request, contact_steps: stored.is_some() || print.report.is_some() };
+    let done = match left {
+        Left::Whole(stored) | Left::Begun(stored) if stored.file.expect_all().is_err() => {
+            if !work.quiet {
+                let file = stored.file.path().display();
+                console.say(&format!(
+                    "history {file}: it keeps a part of the run, and the estimate needs all: begins again"
+                ));
+            }
+            begin(case, &analysis, history, true, work, console)
+        }
+        Left::Nothing => begin(case, &analysis, history, work.force, work, console),
+        Left::Whole(stored) => again(&stored, &analysis, work, console),
+        Left::Begun(stored) => {
+            let Outcome { results: simulation, unstored } = go_on(case, &stored, work.quiet, console)?;
+            if let Some(lost) = unstored {
+                return Err(lost.into());
+            }
+            let file = stored.file.path();
+            if simulation.interrupted {
+                console.print(&simulated(&case.subject(), &simulation, file, start.elapsed().as_secs_f64()))?;
+                return Ok(INTERRUPTED);
+            }
+            again(&Stored::of_case(case, file)?, &analysis, work, console)
+        }
+    };
     let Outcome { results, unstored } = match done {
         // Nothing can be estimated from a run stopped at its very start.
-        Err(Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))) if (console.interrupted)() => {
-            return Ok(console.interrupted_early(&error));
-        }
+        Err(
+            Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))
+            | Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. },
+        ) if (console.interrupted)() => return Ok(console.interrupted_early(&error)),
         other => other?,
     };
-    watch.clear();
     let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
     let finished = Finished { subject, options, case, results, seconds, told, tables };
     let given = give(&finished, print, stored, work, console);
     console.but_lost(unstored, given)
+}
+
+/// Simulates and estimates beside the run.
+fn begin<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    analysis: &Analysis,
+    history: Option<OutputFile<'_>>,
+    force: bool,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<Outcome<Results<D>>, Failure> {
+    let history = history.map(|file| begin_history(case, file, force, work.quiet, console)).transpose()?;
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let storage = Storage { file: history, memory: None, open: None };
+    let done = run(&case.problem, &case.times, analysis, storage, watch).map_err(|failure| located(case, failure));
+    watch.clear();
+    done
+}
+
+/// Estimates the steps of a run that has ended.
+fn again<const D: usize, const N: usize>(
+    stored: &Stored<D, N>,
+    analysis: &Analysis,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<Outcome<Results<D>>, Failure> {
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let done = stored.estimate(analysis, false, watch)?;
+    watch.clear();
+    Ok(Outcome { results: done.results, unstored: None })
 }
 
 /// The files of the history and of the estimate, as far as they are wanted.

@@ -1,11 +1,13 @@
 //! `percute simulate`.
 
 use super::outputs::{begin_history, check};
-use super::{Console, case, resolved};
+use super::resume::{Left, go_on, left};
+use super::{Console, case};
 use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
 use percute_core::each_dimension;
+use percute_core::simplex::{Element, Simplex};
 use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
@@ -23,26 +25,42 @@ fn simulate<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     arguments: &SimulateArguments,
     console: &mut Console<'_>,
-) -> Result<u8, Failure> {
+) -> Result<u8, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let SimulateArguments { force, quiet, long, .. } = *arguments;
     let named = named_after(&arguments.case);
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(OutputFile { what: "history", file: &named });
-    check(&case.inputs(Some(&arguments.case)), &[Some(history)], None, force)?;
+    let left = left(case, Some(history), arguments.resume)?;
+    let new = left.history().is_none().then_some(history);
+    check(&case.inputs(Some(&arguments.case)), &[new], None, force)?;
     case.check_run(false, Long::asked(long, "--long"))?;
     console.warn_about(case, quiet);
     if !quiet {
         console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     }
-    let Some(case) = &resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
-    let writer = begin_history(case, history, force, quiet, console)?;
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    if let Left::Whole(stored) = &left {
+        let (file, steps) = (history.file.display(), stored.file.run_times().step_count());
+        console.print(&format!("{file} holds all {steps} steps already; nothing was changed"))?;
+        return Ok(DONE);
+    }
+    let Some(case) = &left.resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
     let start = Instant::now();
-    let storage = Storage { file: Some(writer), memory: None, open: None };
-    let done = run::simulate(&case.problem, &case.times, storage, watch);
-    let Outcome { results: simulation, unstored } = done.map_err(|failure| located(case, failure))?;
-    watch.clear();
+    let Outcome { results: simulation, unstored } = match left.history() {
+        Some(stored) => go_on(case, stored, quiet, console)?,
+        None => {
+            let writer = begin_history(case, history, force, quiet, console)?;
+            let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+            let storage = Storage { file: Some(writer), memory: None, open: None };
+            let done = run::simulate(&case.problem, &case.times, storage, watch);
+            let done = done.map_err(|failure| located(case, failure))?;
+            watch.clear();
+            done
+        }
+    };
     if !quiet {
         console.warn(&drifted(simulation.balance.energy_drift, case.times.varies()));
     }

@@ -20,6 +20,7 @@ mod mesh_file;
 mod mistakes;
 mod picture;
 mod report;
+mod resume;
 mod run;
 mod steps;
 #[cfg(target_os = "linux")]

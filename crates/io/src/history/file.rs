@@ -4,6 +4,7 @@ use super::kept::KeptSteps;
 use super::sums::{check_rows, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
+use crate::held::Held;
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
@@ -13,7 +14,6 @@ use percute_core::time::TimeGrid;
 use std::fs::File;
 use std::io;
 use std::ops::Range;
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,8 +34,7 @@ impl Identity {
     }
 
     fn is_still_at(&self, path: &Path) -> bool {
-        let (Ok(mine), Ok(there)) = (self.0.metadata(), path.metadata()) else { return false };
-        (mine.dev(), mine.ino()) == (there.dev(), there.ino())
+        Held::same(&self.0, path)
     }
 }
 

@@ -34,6 +34,28 @@ pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     })
 }
 
+impl<const D: usize, const N: usize> HistoryFile<D, N>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    /// Opens a history of this dimension.
+    ///
+    /// # Errors
+    /// As [`open`], and the history of a body of another dimension.
+    pub fn of(path: &Path) -> Result<Self, FileError> {
+        let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
+        reading(path, |opened| {
+            opened.expect(Kind::History)?;
+            let given = opened.root().group("percute")?.integer_attribute("dimension")?;
+            if given != D as i64 {
+                let detail = format!("it is {given}, but the body here has the dimension {D}");
+                return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
+            }
+            contents(path, identity, opened)
+        })
+    }
+}
+
 pub(super) fn contents<const D: usize, const N: usize>(
     path: &Path,
     identity: Identity,

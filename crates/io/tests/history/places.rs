@@ -39,6 +39,38 @@ fn a_file_that_exists_is_kept_unless_asked() {
     assert_eq!(names(folder.path()), ["a.vtkhdf"]);
 }
 
+/// The next file in a folder removes what killed processes left there, and nothing else.
+#[test]
+fn files_left_behind_are_removed() {
+    let folder = folder();
+    let [left, used, other] = [".percute-left", ".percute-used", "percute-notes"].map(|name| folder.path().join(name));
+    for path in [&left, &used, &other] {
+        fs::write(path, "half a history").unwrap();
+    }
+    let lock = File::open(&used).unwrap();
+    lock.lock_shared().unwrap();
+    drop(create(&folder.path().join("a.vtkhdf"), Overwrite::Refuse).unwrap());
+    assert!(!left.exists() && used.exists() && other.exists(), "{:?}", names(folder.path()));
+}
+
+/// Processes that begin in one folder at the same time leave each other's files alone.
+#[test]
+fn files_that_are_being_made_are_not_taken_for_left_behind() {
+    let folder = folder();
+    std::thread::scope(|scope| {
+        for thread in 0..4 {
+            let folder = folder.path();
+            scope.spawn(move || {
+                for k in 0..100 {
+                    percute_io::write_bytes(folder.join(format!("{thread}-{k}")), Overwrite::Refuse, b"a picture")
+                        .unwrap();
+                }
+            });
+        }
+    });
+    assert_eq!(names(folder.path()).len(), 400);
+}
+
 /// Whatever fails before the new file is whole leaves the old one.
 #[test]
 fn a_file_to_be_replaced_stays_until_the_new_one_is_there() {

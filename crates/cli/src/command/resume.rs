@@ -1,0 +1,89 @@
+//! `--resume`: a run goes on from the history that it left.
+
+use super::{Console, resolved};
+use crate::progress::Watch;
+use percute_core::dynamics::Simulation;
+use percute_core::simplex::{Element, Simplex};
+use percute_workflow::Failure;
+use percute_workflow::case::CaseOf;
+use percute_workflow::history::Stored;
+use percute_workflow::outputs::OutputFile;
+use percute_workflow::run::{Outcome, located};
+
+/// What a run finds at its start.
+pub(super) enum Left<const D: usize, const N: usize> {
+    /// No history: it begins.
+    Nothing,
+    /// A history to which steps are missing.
+    Begun(Box<Stored<D, N>>),
+    /// A history with all that it is to hold.
+    Whole(Box<Stored<D, N>>),
+}
+
+/// Looks for the history that a run of this case left, if it is to go on.
+pub(super) fn left<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    history: Option<OutputFile<'_>>,
+    resume: bool,
+) -> Result<Left<D, N>, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    if !resume {
+        return Ok(Left::Nothing);
+    }
+    let Some(OutputFile { file, .. }) = history else {
+        let message = "--resume needs the history of the run: name it with --history FILE, or in [output] of the case";
+        return Err(Failure::Argument(message.to_string()));
+    };
+    if !file.exists() {
+        return Ok(Left::Nothing);
+    }
+    let stored = Box::new(Stored::of_case(case, file)?);
+    Ok(if stored.file.has_ended() { Left::Whole(stored) } else { Left::Begun(stored) })
+}
+
+impl<const D: usize, const N: usize> Left<D, N>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    /// The case with the end of its run, which the history knows; no case if the search for it was stopped.
+    pub(super) fn resolved(
+        &self,
+        case: &CaseOf<D, N>,
+        quiet: bool,
+        console: &mut Console<'_>,
+    ) -> Result<Option<CaseOf<D, N>>, Failure> {
+        let Some(stored) = self.history() else { return resolved(case, quiet, console) };
+        Ok(Some(CaseOf { times: stored.file.run_times().clone(), until: None, ..case.clone() }))
+    }
+
+    /// The history that is there, which is no new file then.
+    pub(super) fn history(&self) -> Option<&Stored<D, N>> {
+        match self {
+            Self::Nothing => None,
+            Self::Begun(stored) | Self::Whole(stored) => Some(stored),
+        }
+    }
+}
+
+/// Lets the simulation go on to its end.
+pub(super) fn go_on<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    stored: &Stored<D, N>,
+    quiet: bool,
+    console: &mut Console<'_>,
+) -> Result<Outcome<Simulation>, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    if !quiet {
+        let (file, held) = (stored.file.path().display(), stored.file.count());
+        let planned = stored.file.times().instants().len();
+        console.say(&format!("history {file}: {held} of {planned} instants are there; the simulation goes on"));
+    }
+    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let done = stored.resume(None, watch).map_err(|failure| located(case, failure))?;
+    watch.clear();
+    Ok(done)
+}

@@ -1,0 +1,132 @@
+//! `--resume`: a killed or stopped run ends as one that was not.
+
+use crate::common::{BLOCK, Bench, stderr, stdout};
+use crate::interrupt::{send_interrupt, start};
+use percute_core::each_dimension;
+use percute_io::history::open;
+use serde_json::Value;
+use std::process::{Child, Output};
+
+/// A run of 1 500 steps on a mesh that is large enough for it to be killed in the middle.
+fn case() -> String {
+    BLOCK
+        .replace("end = 5e-6\ncourant = 0.9", "end = 1.5e-4\nstep = 1e-7")
+        .replace("nx = 5, ny = 4", "nx = 50, ny = 40")
+}
+
+/// Starts a command and waits until `count` steps are in its file.
+fn running(bench: &Bench, arguments: &[&str], count: usize) -> Child {
+    let child = start(bench, arguments);
+    let written = || each_dimension!(open(bench.path("case.vtkhdf")).ok()?, file => Some(file.count()));
+    while written() < Some(count) {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    child
+}
+
+fn kill(mut child: Child) {
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// The document of a run without its duration.
+fn timeless(document: &str) -> Value {
+    let mut document: Value = serde_json::from_str(document).unwrap();
+    document.as_object_mut().unwrap().remove("seconds").unwrap();
+    document
+}
+
+/// A file of the run of a case that was not interrupted, and its document.
+fn undisturbed(case: &str) -> (Vec<u8>, Value) {
+    let bench = Bench::new(case);
+    let output = bench.percute(&["run", "case.toml", "--history", "case.vtkhdf", "--json", "--quiet"]);
+    (std::fs::read(bench.path("case.vtkhdf")).unwrap(), timeless(&stdout(&output)))
+}
+
+/// Exit code and message of a command that refuses.
+fn refused(output: &Output) -> (Option<i32>, String) {
+    (output.status.code(), stderr(output))
+}
+
+const RUN: [&str; 6] = ["run", "case.toml", "--history", "case.vtkhdf", "--json", "--resume"];
+
+#[test]
+fn a_killed_run_ends_as_one_that_was_not() {
+    let (file, document) = undisturbed(&case());
+    let bench = Bench::new(&case());
+    // Where there is no history, the run begins.
+    kill(running(&bench, &RUN, 200));
+    let output = bench.percute(&RUN);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains(" of 1501 instants are there; the simulation goes on"), "{}", stderr(&output));
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file, "the history");
+    assert_eq!(timeless(&stdout(&output)), document);
+    // Once it has ended, its history is estimated.
+    let output = bench.percute(&RUN);
+    assert_eq!((timeless(&stdout(&output)), output.status.code()), (document, Some(0)));
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file, "the history is left alone");
+}
+
+#[test]
+fn a_stopped_simulation_goes_on() {
+    let (file, _) = undisturbed(&case());
+    let bench = Bench::new(&case());
+    let stopped = send_interrupt(running(&bench, &["simulate", "case.toml", "--quiet"], 300));
+    assert_eq!(stopped.status.code(), Some(130));
+    let resume = ["simulate", "case.toml", "--resume"];
+    let output = bench.percute(&resume);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("in 1500 steps"), "{}", stdout(&output));
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file);
+    let output = bench.percute(&resume);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stdout(&output).trim(), "case.vtkhdf holds all 1500 steps already; nothing was changed");
+}
+
+/// The simulation goes on from its checkpoint; an estimate needs all steps, and so the whole run.
+#[test]
+fn a_thinned_history_goes_on_too() {
+    let case = format!("{}\n[output]\nhistory = \"case.vtkhdf\"\nevery = 100\nfields = [\"velocity\"]\n", case());
+    let (file, document) = undisturbed(&case);
+    let bench = Bench::new(&case);
+    kill(running(&bench, &["simulate", "case.toml", "--quiet"], 5));
+    assert_eq!(bench.percute(&["simulate", "case.toml", "--resume"]).status.code(), Some(0));
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file, "the thinned history");
+    let output = bench.percute(&["run", "case.toml", "--json", "--resume"]);
+    assert!(stderr(&output).contains("keeps a part of the run"), "{}", stderr(&output));
+    assert_eq!(timeless(&stdout(&output)), document);
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file, "made again");
+}
+
+/// Each difference between the case and the history has its name.
+#[test]
+fn another_case_is_refused() {
+    let bench = Bench::new(BLOCK);
+    assert_eq!(bench.percute(&["simulate", "case.toml"]).status.code(), Some(0));
+    let before = std::fs::read(bench.path("case.vtkhdf")).unwrap();
+    for (from, to, told) in [
+        ("nx = 5", "nx = 6", "its mesh differs"),
+        ("poisson = 0.3", "poisson = 0.31", "its material, planes"),
+        ("velocity = [", "displacement = [1e-9, 0.0]\nvelocity = [", "its initial displacement or velocity differs"),
+        ("end = 5e-6", "end = 6e-6", "its end or its steps differ"),
+        ("[time]", "[output]\nevery = 3\n\n[time]", "`every`, `times` or `fields`"),
+    ] {
+        assert!(BLOCK.contains(from), "{from}");
+        std::fs::write(bench.path("case.toml"), BLOCK.replacen(from, to, 1)).unwrap();
+        let (code, told_here) = refused(&bench.percute(&["simulate", "case.toml", "--resume"]));
+        assert!(code == Some(2) && told_here.contains(told), "{to}: {told_here}");
+    }
+    assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == before, "left alone");
+}
+
+#[test]
+fn arguments_that_do_not_fit_are_refused() {
+    let bench = Bench::new(BLOCK);
+    let (code, told) = refused(&bench.percute(&["run", "case.toml", "--resume"]));
+    assert!(
+        code == Some(2) && told.contains("--resume needs the history of the run: name it with --history"),
+        "{told}"
+    );
+    let (code, told) = refused(&bench.percute(&["simulate", "case.toml", "--resume", "--force"]));
+    assert!(code == Some(2) && told.contains("cannot be used with"), "{told}");
+}
