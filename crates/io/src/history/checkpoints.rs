@@ -3,7 +3,7 @@
 //! They are rows of numbers: the step, the sums of the balance, u_n and v_{n−½}. A row that was being written when the
 //! run was killed does not have its checksum; the other one does.
 
-use super::rows::bytes;
+use super::native::bytes;
 use crate::checksum::Checksum;
 use crate::error::FileCause;
 use crate::read::Part;

@@ -3,6 +3,7 @@
 mod checkpoints;
 mod file;
 mod kept;
+mod native;
 mod open;
 mod plan;
 mod recover;

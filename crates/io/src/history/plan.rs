@@ -2,7 +2,8 @@
 
 use super::checkpoints;
 use super::kept::Kept;
-use super::rows::{FIELDS, Places, write_vectors};
+use super::native::write_vectors;
+use super::rows::{FIELDS, Places};
 use super::sums::fixed_part;
 use super::writer::{Begun, Writer};
 use crate::create::{Overwrite, Unnamed};

@@ -1,8 +1,8 @@
 //! The rows of a step as bytes at their place in the file.
 
 use super::checkpoints::CheckpointPlaces;
+use super::native::{bytes, write_vectors};
 use crate::checksum::Checksum;
-use crate::mesh::in_space;
 use percute_core::history::Step;
 use std::fs::File;
 use std::io;
@@ -111,14 +111,4 @@ impl<const D: usize> Row<D> {
         }
         all
     }
-}
-
-/// Writes nodal vectors with three components for ParaView.
-pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
-    file.write_all_at(&bytes(&in_space(values)), place)
-}
-
-/// Numbers as in memory, the layout of HDF5's native types.
-pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
-    values.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }
