@@ -49,8 +49,8 @@ pub fn simulate_threaded<const D: usize, const N: usize>(
     threaded(problem, times, threads, None, sink, observer)
 }
 
-/// Goes on from a checkpoint of a run of the same problem over the same instants. `sink` gets the steps after it: bit by
-/// bit those of a run that was not interrupted.
+/// Goes on from a checkpoint of a run of the same problem over the same instants. `sink` gets the steps after it, bit
+/// by bit those of a run that was not interrupted.
 ///
 /// # Errors
 /// As [`simulate`].
