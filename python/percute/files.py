@@ -68,7 +68,7 @@ def resume(path: str | os.PathLike[str], *, progress: ProgressOption = None) -> 
     Returns
     -------
     History
-        As `open` gives it. `estimate` then estimates its error, from all steps.
+        As `open` gives it; `estimate` takes it.
 
     Warns
     -----

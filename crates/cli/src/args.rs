@@ -98,8 +98,9 @@ pub struct RunArguments {
     /// Store the estimate, element by element, in this file (.vtkhdf) [default: the file in the case, if any]
     #[arg(long, value_name = "FILE")]
     pub estimate: Option<PathBuf>,
-    /// Go on with the simulation whose history a killed or stopped run left; without such a file, begin
-    #[arg(long, conflicts_with = "force")]
+    /// Go on with the simulation whose history a killed or stopped run left; without such a file, begin [--force
+    /// replaces other files only]
+    #[arg(long)]
     pub resume: bool,
     /// Allow a run of more than 1e10 elements times steps, which takes minutes to hours
     #[arg(long)]

@@ -262,7 +262,7 @@ pub(crate) fn resume(
             Ok((drifted.map(|warning| warning.message), unstored))
         })
     };
-    let done = bridge::writing(py, progress, |watch, open| work(watch, Box::new(open)));
+    let done = bridge::writing(py, progress, move |watch, open| work(watch, Box::new(open)));
     let done = done.and_then(|done: Result<_, Failure>| done.map_err(|failure| errors::run(py, &failure)));
     match done {
         Ok((_, Some(lost))) => {
