@@ -4,7 +4,6 @@ The source folder is the root: the site has the same pages, in the same places, 
 Nothing is fetched at build or at view time: equations are MathML, fonts are those of the reader's system.
 """
 
-import html
 import os
 import re
 import shlex
@@ -13,14 +12,17 @@ import sys
 from importlib.metadata import version as version_of
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 from docutils import nodes
 from docutils.utils.math import MathError
-from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT / "tools"))
+
+from equations import typeset  # noqa: E402
 
 project = "percute"
 author = "the authors of percute"
@@ -54,7 +56,6 @@ html_copy_source = False
 html_show_copyright = False
 html_show_sourcelink = False
 
-ROOT = Path(__file__).parents[1]
 PROGRAMS = {"percute": [sys.executable, "-m", "percute"], "python": [sys.executable]}
 
 logger = logging.getLogger(__name__)
@@ -78,34 +79,18 @@ class Command(SphinxDirective):
         return [nodes.literal_block(printed, printed, language="text")]
 
 
-def subscripts_of_accents(mathml: str) -> str:
-    """Put the subscript of a letter with an accent beside it; docutils puts it below."""
-    # HTML needs no name space, and XML knows none of its entities.
-    mathml = mathml.replace(' xmlns="http://www.w3.org/1998/Math/MathML"', "")
-    root = ElementTree.fromstring(re.sub(r"&(?!lt|gt|amp)\w+;", lambda entity: html.unescape(entity[0]), mathml))
-    for node in list(root.iter("munderover")):
-        letter, below, accent = node
-        if accent.tag == "mo" and accent.text in ("˙", "¨", "~", "^", "¯"):
-            node.tag = "msub"
-            node[:] = [ElementTree.Element("mover", accent="true"), below]
-            node[0].extend([letter, accent])
-    return ElementTree.tostring(root, encoding="unicode")
-
-
 def mathml(translator: Any, node: nodes.math | nodes.math_block) -> None:
     """Write an equation as MathML; the number in its \\tag stands at its right."""
     block = isinstance(node, nodes.math_block)
-    tag = re.search(r"\\tag\{([^}]*)\}", node.astext())
-    formula = node.astext().replace(tag[0], "") if tag else node.astext()
     try:
-        typeset = subscripts_of_accents(tex2mathml(formula, as_block=block))
+        written, tag = typeset(node.astext(), block)
     except MathError as error:
         logger.warning("no equation: %s", error, location=node)
-        typeset = translator.encode(formula)
+        written, tag = translator.encode(node.astext()), ""
     if block:
-        number = f'<span class="number">[{tag[1]}]</span>' if tag else ""
-        typeset = f'<div class="equation"><div class="formula">{typeset}</div>{number}</div>'
-    translator.body.append(typeset)
+        number = f'<span class="number">[{tag}]</span>' if tag else ""
+        written = f'<div class="equation"><div class="formula">{written}</div>{number}</div>'
+    translator.body.append(written)
     raise nodes.SkipNode
 
 

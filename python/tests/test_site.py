@@ -151,3 +151,12 @@ def test_tests_know_all_pages_with_code() -> None:
     with_code = [file for file in files if re.search(r"```(python|toml|c\+\+)\n", file.read_text())]
     assert len(with_code) > 8
     assert not [file.name for file in with_code if f"{file.name}\"" not in tests]
+
+
+def test_the_pages_of_the_crates_have_the_method(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("docutils")
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    crate_pages = importlib.import_module("crate_pages")
+    for crate in crate_pages.PAGES:
+        written = (ROOT / "crates" / crate / "src" / "method.md").read_text(encoding="utf-8")
+        assert written == crate_pages.page(crate), "docs/method.md has changed: run `python tools/crate_pages.py`"

@@ -6,6 +6,8 @@
 //!
 //! Equation numbers in brackets are those of Louf, Gallimard and Pelle, *Un estimateur d'erreur
 //! en relation de comportement pour les problèmes d'impact*. All units are SI.
+//!
+#![doc = include_str!("method.md")]
 
 pub mod contact;
 pub mod dynamics;

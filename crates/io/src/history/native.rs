@@ -1,0 +1,16 @@
+//! Numbers in a file as in memory, the layout of HDF5's native types.
+
+use crate::mesh::in_space;
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+
+/// Writes nodal vectors with three components for ParaView.
+pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
+    file.write_all_at(&bytes(&in_space(values)), place)
+}
+
+/// The bytes of numbers.
+pub(super) fn bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|x| x.to_ne_bytes()).collect()
+}
