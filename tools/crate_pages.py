@@ -14,6 +14,8 @@ PAGES = {
     "core": ["The reference problem", "The simulation"],
     "estimator": ["Admissible fields", "The error", "The true error"],
 }
+# Equations are higher than their lines: rustdoc would give each paragraph a scroll bar.
+STYLE = "<style>.docblock math, .docblock :has(math) { overflow: visible !important }</style>\n\n"
 
 
 def page(crate: str) -> str:
@@ -24,17 +26,19 @@ def page(crate: str) -> str:
     # Pages of the repository are not beside those of the crates.
     text = re.sub(r"\[(`?[^\]]+`?)\]\([\w.#/-]+\)", r"\1", chosen)
     pieces = re.split(r"(\$\$.*?\$\$|\$.*?\$)", text, flags=re.DOTALL)
-    return "".join(equation(piece) if piece.startswith("$") else escaped(piece) for piece in pieces).rstrip() + "\n"
+    return STYLE + "".join(equation(piece) if piece.startswith("$") else escaped(piece) for piece in pieces).rstrip() + "\n"
 
 
 def equation(text: str) -> str:
     """Typeset an equation; its number stands behind it."""
     block = text.startswith("$$")
     written, tag = typeset(re.sub(r"\s+", " ", text.strip("$")), block)
-    number = f"<mspace width=\"2em\"></mspace><mtext>[{tag}]</mtext>" if tag else ""
+    number = f"<mspace width=\"2em\"></mspace><mtext>&#91;{tag}&#93;</mtext>" if tag else ""
     # The pages have no style sheet of their own.
     written = written.replace('<mi class="capital-greek">', '<mi mathvariant="normal">')
-    return re.sub(r"\s*\n\s*", "", written).replace("</math>", f"{number}</math>")
+    written = re.sub(r"\s*\n\s*", "", written).replace("</math>", f"{number}</math>")
+    # Signs of Markdown.
+    return re.sub(r"[*_~`^|]", lambda sign: f"&#{ord(sign[0])};", written)
 
 
 def escaped(text: str) -> str:

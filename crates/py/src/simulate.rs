@@ -257,7 +257,7 @@ pub(crate) fn resume(
                 return Ok((None, None));
             }
             goes_on.store(true, Relaxed);
-            let Outcome { results, unstored } = stored.resume(Some(open), &mut watch)?;
+            let Outcome { results, unstored } = stored.resume(None, Some(open), &mut watch)?;
             let drifted = drifted(results.balance.energy_drift, stored.file.run_times().varies());
             Ok((drifted.map(|warning| warning.message), unstored))
         })

@@ -61,20 +61,21 @@ where
         })
     }
 
-    /// Lets the run go on to its end. The file then is, byte by byte, that of a run that was not interrupted. `open` is
+    /// Lets the run go on to its end, on so many threads, by default one for each core. The file then is, byte by byte, that of a run that was not interrupted. `open` is
     /// dropped as soon as the file is closed.
     ///
     /// # Errors
     /// A history whose run cannot go on, a step that cannot be stored, an unstable run.
     pub fn resume(
         &self,
+        threads: Option<usize>,
         open: Option<Box<dyn Any + Send>>,
         observer: &mut dyn Observer,
     ) -> Result<Outcome<Simulation>, Failure> {
         let Unended { checkpoint, writer } = self.file.resume(&self.problem)?;
         let (ordered, storage) = (Ordered::new(&self.problem), Storage { file: Some(writer), memory: None, open });
         let checkpoint = checkpoint.map(|checkpoint| ordered.local(checkpoint));
-        drive(&ordered, self.file.run_times(), (None, checkpoint.as_ref()), storage, &mut Discard, observer)
+        drive(&ordered, self.file.run_times(), (threads, checkpoint.as_ref()), storage, &mut Discard, observer)
     }
 }
 

@@ -71,6 +71,7 @@ where
 pub(super) fn go_on<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     stored: &Stored<D, N>,
+    threads: Option<usize>,
     quiet: bool,
     console: &mut Console<'_>,
 ) -> Result<Outcome<Simulation>, Failure>
@@ -83,7 +84,7 @@ where
         console.say(&format!("history {file}: {held} of {planned} instants are there; the simulation goes on"));
     }
     let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
-    let done = stored.resume(None, watch).map_err(|failure| located(case, failure))?;
+    let done = stored.resume(threads, None, watch).map_err(|failure| located(case, failure))?;
     watch.clear();
     Ok(done)
 }

@@ -18,6 +18,7 @@ use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::report::simulated;
 use percute_workflow::run::{Analysis, Outcome, Results, Storage, located, run};
 use percute_workflow::tables::Destination;
+use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -55,6 +56,29 @@ where
     let request = request(stored, "--estimate", maps, wanted)?;
     let start = Instant::now();
     let analysis = Analysis { options, request, contact_steps: stored.is_some() || print.report.is_some() };
+    let Outcome { results, unstored } = match results(case, left, &analysis, history, work, console)? {
+        Continue(outcome) => outcome,
+        Break(code) => return Ok(code),
+    };
+    let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
+    let finished = Finished { subject, options, case, results, seconds, told, tables };
+    let given = give(&finished, print, stored, work, console);
+    console.but_lost(unstored, given)
+}
+
+/// The results of the run, or of the history that it left; an exit code if it was stopped before there were any.
+fn results<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    left: Left<D, N>,
+    analysis: &Analysis,
+    history: Option<OutputFile<'_>>,
+    work: &WorkArguments,
+    console: &mut Console<'_>,
+) -> Result<ControlFlow<u8, Outcome<Results<D>>>, Failure>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    let start = Instant::now();
     let done = match left {
         Left::Whole(stored) | Left::Begun(stored) if stored.file.expect_all().is_err() => {
             if !work.quiet {
@@ -63,35 +87,32 @@ where
                     "history {file}: it keeps a part of the run, and the estimate needs all: begins again"
                 ));
             }
-            begin(case, &analysis, history, true, work, console)
+            begin(case, analysis, history, true, work, console)
         }
-        Left::Nothing => begin(case, &analysis, history, work.force, work, console),
-        Left::Whole(stored) => again(&stored, &analysis, work, console),
+        Left::Nothing => begin(case, analysis, history, work.force, work, console),
+        Left::Whole(stored) => again(&stored, analysis, work, console),
         Left::Begun(stored) => {
-            let Outcome { results: simulation, unstored } = go_on(case, &stored, work.quiet, console)?;
+            let Outcome { results: simulation, unstored } = go_on(case, &stored, work.threads, work.quiet, console)?;
             if let Some(lost) = unstored {
                 return Err(lost.into());
             }
             let file = stored.file.path();
             if simulation.interrupted {
-                console.print(&simulated(&case.subject(), &simulation, file, start.elapsed().as_secs_f64()))?;
-                return Ok(INTERRUPTED);
+                let seconds = start.elapsed().as_secs_f64();
+                console.print(&simulated(&case.subject(), &simulation, file, seconds))?;
+                return Ok(Break(INTERRUPTED));
             }
-            again(&Stored::of_case(case, file)?, &analysis, work, console)
+            again(&Stored::of_case(case, file)?, analysis, work, console)
         }
     };
-    let Outcome { results, unstored } = match done {
+    match done {
         // Nothing can be estimated from a run stopped at its very start.
         Err(
             Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))
             | Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. },
-        ) if (console.interrupted)() => return Ok(console.interrupted_early(&error)),
-        other => other?,
-    };
-    let (case, seconds, subject) = (Some(stored_case(&case.source)), start.elapsed().as_secs_f64(), case.subject());
-    let finished = Finished { subject, options, case, results, seconds, told, tables };
-    let given = give(&finished, print, stored, work, console);
-    console.but_lost(unstored, given)
+        ) if (console.interrupted)() => Ok(Break(console.interrupted_early(&error))),
+        other => other.map(Continue),
+    }
 }
 
 /// Simulates and estimates beside the run.

@@ -50,7 +50,7 @@ where
     let Some(case) = &left.resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
     let start = Instant::now();
     let Outcome { results: simulation, unstored } = match left.history() {
-        Some(stored) => go_on(case, stored, quiet, console)?,
+        Some(stored) => go_on(case, stored, None, quiet, console)?,
         None => {
             let writer = begin_history(case, history, force, quiet, console)?;
             let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);

@@ -13,10 +13,13 @@ use percute_core::time::TimeGrid;
 /// Steps of the runs below.
 const STEPS: usize = 60;
 
+/// Number, displacement, reaction and touching status of a step.
+type KeptStep<const D: usize> = (usize, Vec<[f64; D]>, Vec<[f64; D]>, Vec<bool>);
+
 /// Keeps each step as it comes, and the checkpoint of each.
 #[derive(Default)]
 struct Kept<const D: usize> {
-    steps: Vec<(usize, Vec<[f64; D]>, Vec<[f64; D]>, Vec<bool>)>,
+    steps: Vec<KeptStep<D>>,
     checkpoints: Vec<Checkpoint<D>>,
 }
 
