@@ -61,8 +61,8 @@ where
         })
     }
 
-    /// Lets the run go on to its end, on so many threads, by default one for each core. The file then is, byte by byte, that of a run that was not interrupted. `open` is
-    /// dropped as soon as the file is closed.
+    /// Lets the run go on to its end, on so many threads, by default one for each core. The file then is, byte by byte,
+    /// that of a run that was not interrupted. `open` is dropped as soon as the file is closed.
     ///
     /// # Errors
     /// A history whose run cannot go on, a step that cannot be stored, an unstable run.
