@@ -5,7 +5,7 @@ use super::complete::Derived;
 use super::contact::Contact;
 use super::ends::Ends;
 use super::figures::Consistency;
-use super::lost::at_long_steps;
+use super::long_steps::at_long_steps;
 use super::residual::Residual;
 use super::velocities::Rates;
 use super::window::{Window, windows};

@@ -11,6 +11,7 @@ mod gaps;
 mod holding;
 mod instants;
 mod limits;
+mod long_steps;
 mod lost;
 mod measure;
 mod moduli;
