@@ -3,6 +3,7 @@
 mod export;
 mod sweep;
 
+pub(crate) use export::lacks_steps;
 pub use export::{ExportArguments, Times};
 pub use sweep::SweepArguments;
 

@@ -10,7 +10,9 @@ mod command;
 mod exit;
 mod process;
 mod progress;
+mod stop;
 
 pub use command::{Console, command_line};
 pub use exit::{BAD_INPUT, DONE, FAILED, INTERRUPTED};
 pub use process::process;
+pub use stop::Stop;

@@ -2,19 +2,15 @@
 
 use crate::command::{Console, command_line};
 use crate::exit::INTERRUPTED;
+use crate::stop::{Answer, Stop};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write, stderr, stdout};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
-/// Whether the command has seen that it was asked to stop.
-static HEARD: AtomicBool = AtomicBool::new(false);
+static STOP: Stop = Stop::new();
 
-/// How long a command may take to see it; what does not look up, such as the set-up of a large mesh or a pipe without a
-/// writer, is ended then.
+/// How long a command may take to see that it is to stop, unless it is at its steps.
 const PATIENCE: Duration = Duration::from_millis(300);
-const PAUSE: Duration = Duration::from_millis(10);
 
 /// Runs the command with these arguments, the program's name first, on the standard output and
 /// error of this process, and returns its exit code.
@@ -29,33 +25,29 @@ where
     I: IntoIterator,
     I::Item: Into<OsString> + Clone,
 {
-    ASKED.store(false, Relaxed);
-    HEARD.store(false, Relaxed);
+    STOP.begin();
     // A second command in one process finds the handler of the first in place.
     let _ = ctrlc::set_handler(asked);
     let (mut out, mut err) = (stdout().lock(), stderr());
-    let (progress, interrupted) = (err.is_terminal(), || {
-        ASKED.load(Relaxed) && {
-            HEARD.store(true, Relaxed);
-            true
-        }
-    });
-    let console = &mut Console { out: &mut out, err: &mut err, progress, interrupted: &interrupted, itself };
+    let console = &mut Console { progress: err.is_terminal(), out: &mut out, err: &mut err, stop: &STOP, itself };
     let code = command_line(arguments, console);
     // Only Rust's own `main` would do it at the end.
     let _ = out.flush();
-    HEARD.store(true, Relaxed);
+    STOP.end();
     code
 }
 
 /// A signal has come.
 fn asked() {
-    let again = ASKED.swap(true, Relaxed);
-    let start = Instant::now();
-    while !again && start.elapsed() < PATIENCE {
-        std::thread::sleep(PAUSE);
-        if HEARD.load(Relaxed) {
-            return;
+    if !STOP.ask() {
+        match STOP.answer(PATIENCE) {
+            Answer::Heard => return,
+            // The next signal must find this function free.
+            Answer::Later => {
+                let _ = writeln!(stderr(), "interrupted: the steps in work are completed; Ctrl-C again ends at once");
+                return;
+            }
+            Answer::None => {}
         }
     }
     percute_io::remove_unfinished();

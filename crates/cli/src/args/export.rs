@@ -2,6 +2,7 @@
 
 use super::{steps, times};
 use clap::Args;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Arguments of `percute export`.
@@ -35,6 +36,14 @@ pub struct ExportArguments {
     /// No progress on standard error
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// Whether an option stands where the numbers of `--steps` should be: clap would take it for them, as they may be
+/// negative.
+pub(crate) fn lacks_steps(arguments: &[OsString]) -> bool {
+    let is_option = |argument: &OsString| argument.as_encoded_bytes().starts_with(b"--");
+    arguments.get(1).is_some_and(|command| command == "export")
+        && arguments.windows(2).any(|pair| pair[0] == "--steps" && is_option(&pair[1]))
 }
 
 /// Times (s) of one argument.

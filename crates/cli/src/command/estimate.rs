@@ -41,12 +41,12 @@ fn estimate<const D: usize, const N: usize>(
     within("--instants", &instants, times.end())?;
     let wanted = || Request { steps: instants.steps(times, options.every.stride()), fields: maps.fields };
     let request = request(output, "--output", maps, wanted)?;
-    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
     let start = Instant::now();
     let analysis = Analysis { options, request, contact_steps: output.is_some() || print.report.is_some() };
     let graded = stored.estimate(&analysis, arguments.accept_inconsistent, watch);
     let Graded { results, times, checked } = match graded {
-        Err(Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. }) if (console.interrupted)() => {
+        Err(Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. }) if console.stop.is_asked() => {
             return Ok(console.interrupted_early(&error));
         }
         other => other?,

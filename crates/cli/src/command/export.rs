@@ -39,7 +39,7 @@ fn export<const D: usize, const N: usize>(
     let mut inputs = vec![("history", history.as_path())];
     inputs.extend(estimate.as_deref().map(|file| ("estimate file", file)));
     export.check("--output", &inputs, *force)?;
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let written = export.write(Overwrite::allowed(*force), watch).map_err(|failure| match failure {
         Failure::File(error) => taken(error),
         other => other,

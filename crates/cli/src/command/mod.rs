@@ -16,9 +16,10 @@ mod simulate;
 mod sweep;
 mod verify;
 
-use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON};
+use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON, lacks_steps};
 use crate::exit::{BAD_INPUT, DONE, FAILED, INTERRUPTED, code};
 use crate::progress::Watch;
+use crate::stop::Stop;
 use clap::Parser;
 use percute_estimator::EstimateError;
 use percute_io::{FileError, is_hdf5};
@@ -45,7 +46,7 @@ pub struct Console<'a> {
     /// Whether to show progress on the process's standard error.
     pub progress: bool,
     /// Asked at each step; the run stops cleanly when it says yes.
-    pub interrupted: &'a (dyn Fn() -> bool + Sync),
+    pub stop: &'a Stop,
     /// This command, with which it starts processes of its own: a program and its first arguments.
     pub itself: &'a [OsString],
 }
@@ -56,6 +57,11 @@ where
     I: IntoIterator,
     I::Item: Into<OsString> + Clone,
 {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    if lacks_steps(&arguments) {
+        console.say("error: --steps needs the numbers of steps, separated by commas, as in `--steps 0,-1`");
+        return BAD_INPUT;
+    }
     let outcome = match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command }) => match command {
             Command::New(arguments) => new::command(&arguments, console),
@@ -106,6 +112,14 @@ impl Console<'_> {
         let _ = writeln!(self.err, "{text}");
     }
 
+    /// The first failure of some works; the others are said.
+    fn first<const K: usize>(&mut self, done: [Result<(), Failure>; K]) -> Result<(), Failure> {
+        let mut failures = done.into_iter().filter_map(Result::err);
+        let first = failures.next().map_or(Ok(()), Err);
+        failures.for_each(|failure| self.say(&format!("error: {failure}")));
+        first
+    }
+
     /// The outcome of a command whose history file could not be completed: the results are given all the same.
     fn but_lost(&mut self, unstored: Option<FileError>, given: Result<u8, Failure>) -> Result<u8, Failure> {
         let Some(error) = unstored else { return given };
@@ -146,7 +160,7 @@ fn resolved<const D: usize, const N: usize>(
     quiet: bool,
     console: &mut Console<'_>,
 ) -> Result<Option<CaseOf<D, N>>, Failure> {
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let found = search(case, watch).map_err(|failure| located(case, failure))?;
     watch.clear();
     let Some((case, warning)) = found else {

@@ -36,10 +36,13 @@ pub(super) fn page(print: &PrintArguments) -> Option<OutputFile<'_>> {
     print.report.as_deref().map(|file| OutputFile { what: "report", file })
 }
 
-/// A file that somebody else has made since it was checked.
+/// A file that was made since it was checked.
 pub(super) fn taken(error: FileError) -> Failure {
     match error.cause {
-        FileCause::Exists => Failure::Argument(format!("{error}; --force replaces it")),
+        FileCause::Exists => {
+            let file = error.path.display();
+            Failure::Argument(format!("{file}: the file exists already; give another name, or --force to replace it"))
+        }
         _ => error.into(),
     }
 }
@@ -58,4 +61,15 @@ pub(super) fn begin_history<const D: usize, const N: usize>(
         console.say(&format!("history {}: {}", output.file.display(), bytes(plan.bytes())));
     }
     Ok(writer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_there_has_one_remedy() {
+        let told = taken(FileCause::Exists.at("a.vtkhdf".as_ref())).to_string();
+        assert_eq!(told, "a.vtkhdf: the file exists already; give another name, or --force to replace it");
+    }
 }

@@ -18,7 +18,7 @@ pub(super) struct Shown<'a> {
     pub(super) surface: Option<Surface>,
 }
 
-/// Writes the picture and the page, as far as they are wanted.
+/// Writes the picture and the page, as far as they are wanted: each, whatever becomes of the other.
 pub(super) fn present(
     shown: &Shown<'_>,
     print: &PrintArguments,
@@ -29,14 +29,15 @@ pub(super) fn present(
     let overwrite = Overwrite::allowed(work.force);
     let drawn = picture(print)
         .map_or(Ok(()), |output| file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused));
-    if let Some(output) = page(print) {
+    let written = page(print).map_or(Ok(()), |output| {
         let contents = Contents { document, body, statement, case: *case, surface: surface.as_ref() };
         let size = file::write_page(&output, overwrite, &contents).map_err(refused)?;
         if !work.quiet {
             console.say(&format!("report {}: {}", output.file.display(), bytes(size)));
         }
-    }
-    drawn
+        Ok(())
+    });
+    console.first([drawn, written])
 }
 
 /// A file that appeared since it was checked.

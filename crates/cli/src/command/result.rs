@@ -50,12 +50,8 @@ pub(super) fn give<const D: usize, const N: usize>(
     let stored = stored.map_or(Ok(()), |output| store(finished, &stored_json, output, work.force));
     let tables = tabulate(finished, work.force);
     let shown = show(finished, &stored_json, print, work, console);
-    let mut failures = [printed, stored, tables, shown].into_iter().filter_map(Result::err);
-    let Some(first) = failures.next() else { return Ok(if simulation.interrupted { INTERRUPTED } else { DONE }) };
-    for failure in failures {
-        console.say(&format!("error: {failure}"));
-    }
-    Err(first)
+    console.first([printed, stored, tables, shown])?;
+    Ok(if simulation.interrupted { INTERRUPTED } else { DONE })
 }
 
 /// Draws the picture and writes the page, as far as they are wanted.

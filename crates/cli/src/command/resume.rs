@@ -83,7 +83,7 @@ where
         let planned = stored.file.times().instants().len();
         console.say(&format!("history {file}: {held} of {planned} instants are there; the simulation goes on"));
     }
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let done = stored.resume(threads, None, watch).map_err(|failure| located(case, failure))?;
     watch.clear();
     Ok(done)

@@ -110,7 +110,7 @@ where
         Err(
             Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))
             | Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. },
-        ) if (console.interrupted)() => Ok(Break(console.interrupted_early(&error))),
+        ) if console.stop.is_asked() => Ok(Break(console.interrupted_early(&error))),
         other => other.map(Continue),
     }
 }
@@ -125,7 +125,7 @@ fn begin<const D: usize, const N: usize>(
     console: &mut Console<'_>,
 ) -> Result<Outcome<Results<D>>, Failure> {
     let history = history.map(|file| begin_history(case, file, force, work.quiet, console)).transpose()?;
-    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
     let storage = Storage { file: history, memory: None, open: None };
     let done = run(&case.problem, &case.times, analysis, storage, watch).map_err(|failure| located(case, failure));
     watch.clear();
@@ -139,7 +139,7 @@ fn again<const D: usize, const N: usize>(
     work: &WorkArguments,
     console: &mut Console<'_>,
 ) -> Result<Outcome<Results<D>>, Failure> {
-    let watch = &mut Watch::new(console.progress && !work.quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
     let done = stored.estimate(analysis, false, watch)?;
     watch.clear();
     Ok(Outcome { results: done.results, unstored: None })

@@ -53,7 +53,7 @@ where
         Some(stored) => go_on(case, stored, None, quiet, console)?,
         None => {
             let writer = begin_history(case, history, force, quiet, console)?;
-            let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+            let watch = &mut Watch::new(console.progress && !quiet, console.stop);
             let storage = Storage { file: Some(writer), memory: None, open: None };
             let done = run::simulate(&case.problem, &case.times, storage, watch);
             let done = done.map_err(|failure| located(case, failure))?;

@@ -35,7 +35,7 @@ pub(super) fn command(arguments: &SweepArguments, console: &mut Console<'_>) -> 
     let default = Launch::of(console.itself.to_vec());
     let (jobs, threads) = (arguments.jobs.unwrap_or(default.jobs), arguments.threads.unwrap_or(default.threads));
     let launch = Launch { jobs, threads, long, again: force, ..default };
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let tell = &mut |name: &str, reason: &str| console.say(&format!("{name}: {}", reason.trim()));
     let count = run(&plan.folder, chosen.iter().copied(), &launch, tell, watch)?;
     watch.clear();

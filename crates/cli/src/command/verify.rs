@@ -38,7 +38,7 @@ fn verify_case<const D: usize, const N: usize>(
     if !quiet {
         console.say(&announced(&cost(&prepared, &options)));
     }
-    let watch = &mut Watch::new(console.progress && !quiet, console.interrupted);
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let verified = verify(&prepared, options, watch, &mut |_| ());
     let verification = verified.map_err(|failure| located(case, failure))?;
     watch.clear();

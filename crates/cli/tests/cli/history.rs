@@ -386,3 +386,12 @@ fn what_an_estimate_file_holds_needs_one() {
     assert_eq!(said.status.code(), Some(2));
     assert!(stderr(&said).contains("use `percute estimate` for a history"), "{}", stderr(&said));
 }
+
+#[test]
+fn an_option_in_place_of_steps_is_named() {
+    let bench = Bench::new(BLOCK);
+    let output = bench.percute(&["export", "a.vtkhdf", "-o", "b.vtu", "--steps", "--every", "2"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("--steps needs the numbers of steps"), "{told}");
+}

@@ -77,7 +77,11 @@ fn long() -> Bench {
 
 /// What `info` tells of the history of a simulation, which may go on.
 fn info(bench: &Bench) -> serde_json::Value {
-    let output = bench.percute(&["info", "case.vtkhdf", "--json"]);
+    info_of(bench, "case.vtkhdf")
+}
+
+fn info_of(bench: &Bench, history: &str) -> serde_json::Value {
+    let output = bench.percute(&["info", history, "--json"]);
     serde_json::from_slice(&output.stdout).unwrap_or_default()
 }
 
@@ -195,4 +199,34 @@ fn the_set_up_of_a_large_mesh_is_left_at_once() {
         assert!(took < SOON, "{took:?}");
         assert_eq!(bench.files(), ["case.toml"], "nothing of no use is left");
     }
+}
+
+#[test]
+fn long_windows_end_with_a_summary() {
+    // A window of eight levels takes longer than the command may take to look in its set-up.
+    let block = BLOCK.replace("nx = 5, ny = 4", "nx = 400, ny = 300").replace("end = 5e-6", "end = 1e-4");
+    let bench = Bench::new(&block);
+    let arguments = ["run", "case.toml", "--history", "h.vtkhdf", "--threads", "1", "--long", "--quiet"];
+    let child = start(&bench, &arguments);
+    while info_of(&bench, "h.vtkhdf")["steps"].as_u64() < Some(1) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let output = send_interrupt(child);
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stdout(&output).contains("INTERRUPTED at step "), "{} {}", stdout(&output), stderr(&output));
+    assert_eq!(info_of(&bench, "h.vtkhdf")["complete"], true);
+}
+
+#[test]
+fn a_lost_folder_costs_no_message() {
+    let bench = endless();
+    std::fs::create_dir(bench.path("d")).unwrap();
+    let child = start(&bench, &["run", "case.toml", "--picture", "d/a.svg", "--report", "d/b.html", "--quiet"]);
+    wait_until(&child, 30);
+    std::fs::rename(bench.path("d"), bench.path("e")).unwrap();
+    let output = send_interrupt(child);
+    let told = stderr(&output);
+    assert_eq!(told.matches("error: ").count(), 2, "{told}");
+    assert!(told.contains("d/a.svg") && told.contains("d/b.html"), "{told}");
+    assert!(stdout(&output).contains("INTERRUPTED at step "), "{}", stdout(&output));
 }

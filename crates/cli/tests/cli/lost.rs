@@ -39,6 +39,18 @@ fn a_folder_that_is_renamed_costs_no_result() {
 }
 
 #[test]
+fn a_simulation_whose_file_is_gone_tells_no_size_of_it() {
+    let bench = bench();
+    let child = start(&bench, &["simulate", "case.toml", "--history", "before/a.vtkhdf", "--quiet"]);
+    wait_for(&bench, "before/a.vtkhdf");
+    std::fs::rename(bench.path("before"), bench.path("after")).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("before/a.vtkhdf, which is no longer there"), "{}", stdout(&output));
+    assert!(!stdout(&output).contains("bytes"), "{}", stdout(&output));
+}
+
+#[test]
 fn of_two_runs_on_one_file_the_second_is_refused_at_its_start() {
     let bench = bench();
     let run = |picture: &str| {

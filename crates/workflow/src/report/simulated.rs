@@ -22,7 +22,8 @@ pub fn simulated<const D: usize, const N: usize>(
         true => format!("INTERRUPTED at step {steps} of {planned}, t = {reached} s;"),
         false => format!("{reached} s in {};", counted(steps, "step")),
     };
-    let size = std::fs::metadata(file).map_or(0, |found| found.len());
+    let size =
+        std::fs::metadata(file).map_or_else(|_| "which is no longer there".to_string(), |found| bytes(found.len()));
     let (version, seconds) = (env!("CARGO_PKG_VERSION"), short(seconds, 3));
     layout(&[
         ("case", format!("{} (percute {version}, {seconds} s)", subject.name)),
@@ -31,6 +32,6 @@ pub fn simulated<const D: usize, const N: usize>(
         ("", step(times.longest_step(), subject.critical_step)),
         ("energy", energy(balance)),
         ("drift", drift(balance)),
-        ("history", format!("{}, {}", file.display(), bytes(size))),
+        ("history", format!("{}, {size}", file.display())),
     ])
 }
