@@ -3,13 +3,13 @@
 use percute_core::contact::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
+use percute_core::mesh::MeshError;
 use percute_core::problem::{Cause, HeldBy, InputError, Place};
 use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
 use percute_workflow::message::hint;
 use percute_workflow::{Failure, inconsistency};
-use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -110,7 +110,7 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
     match error {
         SimulationError::StartsTooNear { obstacle, .. } => input(py, format!("`obstacles[{obstacle}].point`: {error}")),
         SimulationError::Sink { cause, .. } => match cause.downcast_ref::<MemoryError>() {
-            Some(MemoryError::Full { .. }) => PyMemoryError::new_err(format!("{cause}: give `store` the name of one")),
+            Some(MemoryError::Full { .. }) => input(py, format!("`store`: {cause}")),
             _ => steps(py, cause),
         },
         SimulationError::Unstable { .. } => exception(py, "SimulationError", &error.to_string()),
@@ -138,8 +138,6 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
     match error {
         Failure::Run(error) => estimate(py, error),
         Failure::File(error) => file(py, error),
-        Failure::Contact(error) => PyMemoryError::new_err(error.to_string()),
-        Failure::Memory(told) => PyMemoryError::new_err(told.clone()),
         Failure::Inconsistent { file, figure, cause } => {
             let told = inconsistency(file.as_deref(), figure, cause.as_deref());
             input(py, format!("{told}; to estimate it as it is, give force=True"))
@@ -154,7 +152,7 @@ pub(crate) fn steps(py: Python<'_>, error: &SinkError) -> PyErr {
         return file(py, error);
     }
     match error.is::<ContactMemoryError>() {
-        true => PyMemoryError::new_err(error.to_string()),
+        true => input(py, error),
         false => exception(py, "EstimateError", &error.to_string()),
     }
 }
@@ -169,7 +167,8 @@ pub(crate) fn gmsh(py: Python<'_>, error: &GmshError) -> PyErr {
     match &error.cause {
         GmshCause::File(cause) => of_file(py, &error.path, cause, &error.to_string()),
         cause @ GmshCause::Scale { .. } => input(py, format!("`scale`: {cause}")),
-        GmshCause::Name { .. } => input(py, error),
+        GmshCause::Name { .. } | GmshCause::NoMemory { .. } => input(py, error),
+        GmshCause::Mesh { error: mesh, .. } if matches!(**mesh, MeshError::NoMemory { .. }) => input(py, error),
         _ => exception(py, "FileFormatError", &error.to_string()),
     }
 }
@@ -182,7 +181,7 @@ fn of_file(py: Python<'_>, path: &Path, cause: &FileCause, message: &str) -> PyE
             return exception(py, "ExistingFileError", &message);
         }
         FileCause::NotAFile => "StorageError",
-        FileCause::Thinned { .. } => "InputError",
+        FileCause::Thinned { .. } | FileCause::Mesh(MeshError::NoMemory { .. }) => "InputError",
         cause if cause.is_of_the_system() => "StorageError",
         _ => "FileFormatError",
     };

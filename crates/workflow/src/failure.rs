@@ -96,7 +96,7 @@ pub fn inconsistency(file: Option<&Path>, figure: &str, cause: Option<&str>) -> 
 }
 
 impl Failure {
-    /// Whether the case file, the history or the arguments are wrong.
+    /// Whether the case file, the history or the arguments are wrong, or ask for more memory than there is.
     #[must_use]
     pub fn is_bad_input(&self) -> bool {
         match self {
@@ -108,9 +108,11 @@ impl Failure {
             | Self::History { .. }
             | Self::Inconsistent { .. }
             | Self::Reference(_)
+            | Self::Contact(_)
+            | Self::Memory(_)
             | Self::NotRepresentable(_) => true,
             Self::File(error) => !error.cause.is_of_the_system(),
-            Self::Run(_) | Self::Contact(_) | Self::Memory(_) | Self::Unwritable { .. } | Self::Output(_) => false,
+            Self::Run(_) | Self::Unwritable { .. } | Self::Output(_) => false,
         }
     }
 

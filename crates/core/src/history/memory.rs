@@ -23,7 +23,8 @@ pub struct History<const D: usize> {
 pub enum MemoryError {
     /// No room for all steps.
     #[error(
-        "{bytes} bytes for {steps} steps of {nodes} nodes cannot be allocated in memory; store the history in a file"
+        "{bytes} bytes for {steps} steps of {nodes} nodes cannot be allocated in memory; store the history in a \
+         file, whole or in part (`every`)"
     )]
     Full {
         /// Bytes wanted.

@@ -1,7 +1,6 @@
 //! Uniform bars, rectangles and discs.
 
-use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
-use crate::memory::can_be_had;
+use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh, room};
 
 /// A length that must be positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
@@ -17,15 +16,6 @@ fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
         return Ok(());
     }
     Err(MeshError::Generator { name, value: value as f64, allowed: "a number of elements from 1 to 20 000 000" })
-}
-
-/// Bytes of an element while a mesh is made: 1.7 GB were measured for ten million triangles.
-const ELEMENT: u64 = 170;
-
-/// Makes sure that there is memory for so many elements.
-fn room(elements: usize) -> Result<(), MeshError> {
-    let bytes = elements as u64 * ELEMENT;
-    if can_be_had(bytes) { Ok(()) } else { Err(MeshError::NoMemory { elements, bytes }) }
 }
 
 impl BarMesh {

@@ -16,7 +16,7 @@ mod star;
 mod strips;
 mod topology;
 
-pub use check::MeshError;
+pub use check::{MeshError, room};
 pub use import_warning::ImportWarning;
 pub use order::Numbering;
 pub(crate) use renumber::NewNumbers;
@@ -85,6 +85,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         facet_groups: &FacetGroups<D>,
         element_groups: &ElementGroups,
     ) -> Result<Self, MeshError> {
+        room(cells.len())?;
         check::points(&points)?;
         let mut cells = check::cells(points.len(), cells)?;
         let size = geometry::bounding_box_diagonal(&points);

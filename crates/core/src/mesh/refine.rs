@@ -1,6 +1,6 @@
 //! Nested finer meshes.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError};
+use super::{ElementGroups, FacetGroups, Mesh, MeshError, room};
 use crate::simplex::Child;
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
@@ -12,8 +12,10 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// before. A polygon stays the polygon it was.
     ///
     /// # Errors
-    /// A mesh so fine that middles cannot be told from corners, or with more nodes than there are numbers.
+    /// A mesh so fine that middles cannot be told from corners, or with more nodes than there are numbers or more
+    /// elements than memory can hold.
     pub fn refined(&self) -> Result<Self, MeshError> {
+        room(self.element_count() * self.simplex.children().len())?;
         let edges = self.edges();
         let mut points = self.points.clone();
         points.extend(edges.iter().map(|&[a, b]| {

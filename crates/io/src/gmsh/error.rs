@@ -48,6 +48,12 @@ pub enum GmshCause {
     /// The file cannot be read or created.
     #[error(transparent)]
     File(#[from] FileCause),
+    /// A large file.
+    #[error(
+        "to read the mesh takes about {} MB of memory, which cannot be had; give a coarser mesh, or take a larger \
+         machine or limit (`ulimit -v`)", needed / 1_000_000
+    )]
+    NoMemory { needed: u64 },
     /// An invalid scale.
     #[error(
         "the scale is {value:?}; it must be a positive number from 1e-12 to 1e12: metres per unit of length in the \

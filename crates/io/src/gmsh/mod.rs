@@ -26,6 +26,7 @@ pub use write::{Format, write};
 
 use crate::error::FileCause;
 use cursor::{Cursor, Form};
+use percute_core::memory::can_be_had;
 use percute_core::mesh::Mesh;
 use percute_core::simplex::ByDimension;
 use std::io::ErrorKind;
@@ -34,6 +35,10 @@ use std::path::Path;
 
 /// Range of metres per unit of length: wider than for any body, and far from overflow of squared lengths.
 const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
+
+/// Bytes of memory for each byte of a file beside the file, before the mesh itself asks for memory: with it, 5.2 to 7.9
+/// were measured.
+const RAW: u64 = 6;
 
 /// A mesh from a file. Its import warnings list omitted parts.
 #[derive(Clone, Debug)]
@@ -66,6 +71,10 @@ pub fn read(path: &Path, scale: f64) -> Result<MeshFile, GmshError> {
 pub fn parse(path: &Path, bytes: &[u8], scale: f64) -> Result<MeshFile, GmshError> {
     if !SCALES.contains(&scale) {
         return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::Scale { value: scale } });
+    }
+    let needed = RAW * bytes.len() as u64;
+    if !can_be_had(needed) {
+        return Err(GmshError { path: path.to_path_buf(), place: None, cause: GmshCause::NoMemory { needed } });
     }
     let mut cursor = Cursor::new(bytes);
     let mesh = sections::read(&mut cursor, path).and_then(|raw| assemble::mesh(raw, scale));

@@ -65,8 +65,14 @@ pub(super) fn of_lines_only(table: &Table<'_>, mut error: CaseError) -> CaseErro
 const LARGE: usize = 100_000;
 
 /// The coarsest mesh of the same kind, with the same groups, for checks of other tables before a large mesh is made.
-/// None unless the mesh is generated and large.
-pub(super) fn coarsest(table: &Table<'_>) -> Option<AnyMesh> {
+pub(super) struct Coarsest {
+    pub(super) mesh: AnyMesh,
+    /// The number of each of its nodes in the large mesh; empty if it is not the same body.
+    pub(super) nodes: Vec<usize>,
+}
+
+/// That of a mesh which is generated and large.
+pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     let count = |of: &str, keys: &[&'static str], key: &str| {
         table.get(of).and_then(|value| value.table(keys, "").ok()?.get(key)?.count(1).ok()).unwrap_or(1)
     };
@@ -76,13 +82,30 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<AnyMesh> {
     if sides[0].saturating_mul(sides[1]).max(rings.saturating_mul(rings)).max(elements) <= LARGE {
         return None;
     }
-    let made = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
-        [true, false, false] => TriangleMesh::rectangle(1.0, 1.0, 1, 1).map(AnyMesh::Plane),
-        [false, true, false] => TriangleMesh::disc(1.0, 1).map(AnyMesh::Plane),
-        [false, false, true] => BarMesh::uniform_bar(1.0, 1).map(AnyMesh::Bar),
+    let length = |of: &str, keys: &[&'static str], key: &str| {
+        table.get(of)?.table(keys, "").ok()?.get(key)?.number("m").ok().filter(|length| *length > 0.0)
+    };
+    let [nx, ny] = sides;
+    let corners = || vec![0, nx, ny * (nx + 1), ny * (nx + 1) + nx];
+    let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
+        [true, false, false] => {
+            let size = ["width", "height"].map(|side| length("rectangle", &["width", "height", "nx", "ny"], side));
+            match size {
+                [Some(width), Some(height)] => (TriangleMesh::rectangle(width, height, 1, 1), corners()),
+                _ => (TriangleMesh::rectangle(1.0, 1.0, 1, 1), Vec::new()),
+            }
+        }
+        // The outline of the coarsest lies inside that of the disc.
+        [false, true, false] => (TriangleMesh::disc(1.0, 1), Vec::new()),
+        [false, false, true] => {
+            let size = length("bar", &["length", "elements"], "length");
+            let made = BarMesh::uniform_bar(size.unwrap_or(1.0), 1).ok()?;
+            let nodes = size.map_or_else(Vec::new, |_| vec![0, elements]);
+            return Some(Coarsest { mesh: AnyMesh::Bar(made), nodes });
+        }
         _ => return None,
     };
-    made.ok()
+    Some(Coarsest { mesh: AnyMesh::Plane(made.ok()?), nodes })
 }
 
 /// The file that the mesh is in, if it is in one.

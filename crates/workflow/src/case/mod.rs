@@ -54,6 +54,7 @@ pub use stranger::stranger;
 use crate::effort::{Effort, Long};
 use crate::report::Subject;
 use crate::until::Until;
+use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::each_dimension;
 use percute_core::problem::{Place, Problem, cause_of_refused_start};
@@ -114,8 +115,8 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     root.only(&TABLES)?;
     let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
     let file = mesh::file(&mesh);
-    if let Some(coarsest) = mesh::coarsest(&mesh) {
-        each_dimension!(coarsest, coarsest => check_tables(&root, coarsest)?);
+    if let Some(Coarsest { mesh, nodes }) = mesh::coarsest(&mesh) {
+        each_dimension!(mesh, coarsest => check_tables(&root, coarsest, &nodes)?);
     }
     match mesh::read(&mesh)? {
         ByDimension::Bar(bar) => {
@@ -126,15 +127,16 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     }
 }
 
-/// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make.
+/// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make; see [`Coarsest`].
 fn check_tables<const D: usize, const N: usize>(
     root: &Table<'_>,
     coarsest: percute_core::mesh::Mesh<D, N>,
+    nodes: &[usize],
 ) -> Result<(), CaseError> {
     estimate::read(root)?;
     output::read(root)?;
     time::read(root)?;
-    problem::check_groups(root, coarsest)
+    problem::check_coarsest(root, coarsest, nodes)
 }
 
 fn read<const D: usize, const N: usize>(

@@ -17,15 +17,22 @@ pub(super) fn read<const D: usize, const N: usize>(
     with_start(root, mesh)?.build().map_err(|error| located(root, &error, &import_warnings))
 }
 
-/// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups.
-pub(super) fn check_groups<const D: usize, const N: usize>(
+/// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups. A plane that
+/// cuts through the body does so at a corner, too; `nodes` are the numbers of the corners in the large mesh, if it has
+/// the same body.
+pub(super) fn check_coarsest<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
+    nodes: &[usize],
 ) -> Result<(), CaseError> {
-    match with_start(root, mesh)?.build() {
-        Err(error) if matches!(error.cause, Cause::UnknownGroup { .. }) => Err(located(root, &error, &[])),
-        _ => Ok(()),
-    }
+    let Err(InputError { place, cause }) = with_start(root, mesh)?.build() else { return Ok(()) };
+    let cause = match (cause, nodes) {
+        (cause @ Cause::UnknownGroup { .. }, _) => cause,
+        (Cause::Penetrates { node, depth, clear }, [_, ..]) => Cause::Penetrates { node: nodes[node], depth, clear },
+        (Cause::Behind { node, depth, reversed }, [_, ..]) => Cause::Behind { node: nodes[node], depth, reversed },
+        _ => return Ok(()),
+    };
+    Err(located(root, &InputError { place, cause }, &[]))
 }
 
 /// Reads all that makes the problem, and does not check it as a whole.

@@ -43,10 +43,10 @@ pub fn available() -> Option<u64> {
 pub fn scarce(needed: u64, free: Option<u64>, in_memory: bool) -> Option<String> {
     let free = free.filter(|free| needed > *free)?;
     let (needed, free) = (bytes(needed), bytes(free));
-    let file = if in_memory { ", or store the history in a file" } else { "" };
+    let file = if in_memory { ", or store the history in a file, whole or in part (`every`)" } else { "" };
     Some(format!(
-        "the run needs about {needed} of memory, but {free} are free: use a coarser mesh, fewer steps or a larger \
-         machine{file}"
+        "the run needs about {needed} of memory, but {free} are free: use a coarser mesh, fewer steps, fewer samples \
+         of the error (`every`) or a larger machine{file}"
     ))
 }
 
@@ -59,8 +59,8 @@ pub fn refusal(needed: u64) -> Option<String> {
     }
     let needed = bytes(needed);
     Some(format!(
-        "the run needs about {needed} of memory, which cannot be had: use a coarser mesh, fewer steps, or a larger \
-         machine or limit (`ulimit -v`)"
+        "the run needs about {needed} of memory, which cannot be had: use a coarser mesh, fewer steps, fewer samples \
+         of the error (`every`), or a larger machine or limit (`ulimit -v`)"
     ))
 }
 

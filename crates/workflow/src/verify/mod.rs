@@ -20,6 +20,7 @@ use crate::report::{Report, Subject};
 use crate::run::{Analysis, Outcome, Results, Storage, beside};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StateSink;
+use percute_core::mesh::room;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -54,6 +55,8 @@ pub fn prepare<const D: usize, const N: usize>(
     if let Some(told) = Effort::of(problem, times, options.every).refined(D, levels).refusal_of_levels(levels, long) {
         return Err(Failure::Argument(told));
     }
+    room(problem.mesh().element_count() << (D * levels))
+        .map_err(|error| Failure::Memory(format!("{levels} refinements: {error}, or give fewer levels")))?;
     let stated = Source::new("the refined problem", statement(problem, None)?);
     let critical_step = critical_time_step(problem);
     let courant = times.longest_step() / critical_step;

@@ -11,7 +11,10 @@ use thiserror::Error;
 
 /// No room for all nodes at all instants.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{bytes} bytes for the contact results of {nodes} nodes at {instants} instants cannot be allocated in memory")]
+#[error(
+    "{bytes} bytes for the contact results of {nodes} nodes at {instants} instants cannot be allocated in memory; take \
+     fewer steps, or name neither an estimate file nor a page"
+)]
 pub struct ContactMemoryError {
     /// Bytes wanted.
     pub bytes: usize,
