@@ -176,30 +176,45 @@ def whole(name: str, value: object, *, least: int = 1, most: int = LARGEST) -> i
 
 
 def refuse_masked(name: str, value: object) -> None:
-    """Refuse an array with missing values, which NumPy would fill."""
+    """Refuse an array with missing values, or a list of such, which NumPy would fill."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"`{name}` is a masked array; give an ordinary array, without missing values")
+    if isinstance(value, list | tuple) and _holds(value, (np.ma.MaskedArray,)):
+        raise InputError(f"`{name}` holds masked arrays; give ordinary arrays, without missing values")
 
 
 def _array(name: str, value: object) -> NDArray[Any]:
     refuse_masked(name, value)
     try:
         # Among numbers a truth value would become 0 or 1, but is probably a mistake.
-        return np.asarray(None if isinstance(value, list | tuple) and _has_truth(value) else value)
+        return np.asarray(None if _has_truth(value) else value)
     except (TypeError, ValueError, OverflowError, RecursionError):
         return np.asarray(None)
 
 
 def _no_truth(value: object) -> str:
-    return ", not True or False" if isinstance(value, list | tuple) and _has_truth(value) else ""
+    return ", not True or False" if _has_truth(value) else ""
 
 
-def _has_truth(rows: list[Any] | tuple[Any, ...]) -> bool:
-    """Tell whether a truth value is in a list, or in a list in it."""
-    kinds = set(map(type, rows))
-    if not kinds.isdisjoint((bool, np.bool_)):
-        return True
-    return not kinds.isdisjoint((list, tuple)) and any(isinstance(row, list | tuple) and _has_truth(row) for row in rows)
+def _has_truth(value: object) -> bool:
+    return isinstance(value, list | tuple) and _holds(value, (bool, np.bool_))
+
+
+def _holds(rows: list[Any] | tuple[Any, ...], wanted: tuple[type, ...]) -> bool:
+    """Tell whether a list, or a list in it, holds an object of these types. One that holds itself has no end, and no such object."""
+    lists: list[list[Any] | tuple[Any, ...]] = [rows]
+    seen = set()
+    while lists:
+        rows = lists.pop()
+        if id(rows) in seen:
+            continue
+        seen.add(id(rows))
+        kinds = set(map(type, rows))
+        if any(issubclass(kind, wanted) for kind in kinds):
+            return True
+        if any(issubclass(kind, list | tuple) for kind in kinds):
+            lists += [row for row in rows if isinstance(row, list | tuple)]
+    return False
 
 
 def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:

@@ -57,8 +57,8 @@ def rows(history: History, step: Step) -> tuple[NDArray[np.intp], bool]:
 def element_field(history: History, quantity: str, step: Step) -> Floats:
     """Give a quantity of all elements at one instant, or at several along the first axis."""
     chosen, one = rows(history, step)
-    motion = history.velocity if quantity == "kinetic_energy" else history.displacement
-    values = _percute.element_field(history.problem._data, quantity, np.ascontiguousarray(motion[chosen]))
+    motion = history.velocity[chosen] if quantity == "kinetic_energy" else history._displacement_at(chosen)
+    values = _percute.element_field(history.problem._data, quantity, np.ascontiguousarray(motion))
     return values[0] if one else values
 
 

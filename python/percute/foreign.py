@@ -117,11 +117,10 @@ class ForeignArrays:
 
 def _time(given: ArrayLike) -> NDArray[np.float64]:
     """Give the instants; equal steps in single precision are made equal again."""
-    array = np.asarray(given)
     time = _floats("time", given)
     if time.ndim != 1:
         raise InputError(f"`time` has the shape {time.shape}; it must have (instants,)")
-    if array.dtype == np.float32 and len(time) > 1:
+    if np.asarray(given).dtype == np.float32 and len(time) > 1:
         equal = np.linspace(0.0, time[-1], len(time))
         if np.all(np.abs(time - equal) <= 2 * np.finfo(np.float32).eps * abs(time[-1])):
             return equal
@@ -130,10 +129,9 @@ def _time(given: ArrayLike) -> NDArray[np.float64]:
 
 def _floats(name: str, given: ArrayLike, *, finite: bool = True) -> NDArray[np.float64]:
     """Give an array of numbers that are precise enough."""
-    refuse_masked(name, given)
-    if getattr(given, "dtype", None) == np.float16:
-        raise InputError(f"`{name}` is an array of float16, which has three digits; give float64 or float32")
     array = numbers(name, given, most=3)
+    if np.asarray(given).dtype == np.float16:
+        raise InputError(f"`{name}` is an array of float16, which has three digits; give float64 or float32")
     if finite:
         _finite(name, array)
     return array

@@ -27,7 +27,14 @@ if TYPE_CHECKING:
 
 __all__ = ["History"]
 
-MAPPED: dict[str, np.dtype[Any]] = {"displacement": np.dtype("<f8"), "reaction": np.dtype("<f8"), "touching": np.dtype("u1")}
+MAPPED: dict[str, np.dtype[Any]] = {
+    "displacement": np.dtype("<f8"),
+    "reaction": np.dtype("<f8"),
+    "touching": np.dtype("u1"),
+    "checksums": np.dtype("<i8"),
+}
+AT_ONCE = 1 << 25
+"""Bytes whose checksums are computed at once, between looks for Ctrl-C."""
 
 
 class History(HistoryViews):
@@ -150,21 +157,21 @@ class History(HistoryViews):
     @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        mapped = self._view("displacement")
+        mapped = self._checked("displacement")
         return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
 
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
         self._expect("reaction")
-        mapped = self._view("reaction")
+        mapped = self._checked("reaction")
         return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
         self._expect("reaction")
-        mapped = self._view("touching")
+        mapped = self._checked("touching")
         # Any byte but 0 means true in the file; a bool of numpy must be 1.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
@@ -175,6 +182,33 @@ class History(HistoryViews):
         if name in self._data.lacks():
             told = f"{name} is not in this history, which keeps a part of its run; simulate again with {name!r} among `fields`"
             raise InputError(f"{self.path}: {told}")
+
+    def _checked(self, name: str) -> NDArray[Any] | None:
+        """Give an array of the file after it was compared with its checksums; None if it cannot be mapped."""
+        view = self._view(name)
+        if view is not None and view.size:
+            rows = max(AT_ONCE // view[0].nbytes, 1)
+            for start in range(0, len(self), rows):
+                self._check(name, np.arange(start, min(start + rows, len(self))), view[start : start + rows])
+        return view
+
+    def _check(self, name: str, steps: NDArray[np.intp], values: NDArray[Any]) -> None:
+        """Compare the values of a field at some instants with their checksums."""
+        sums = self._view("checksums")
+        if sums is None:
+            return
+        if name == "touching":
+            self._data.check_mapped_flags(steps.tolist(), values, np.ascontiguousarray(sums[steps]))
+        else:
+            self._data.check_mapped(name, steps.tolist(), values, np.ascontiguousarray(sums[steps]))
+
+    def _displacement_at(self, steps: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Give the displacements at some instants, of which alone the checksums are compared."""
+        if "displacement" in vars(self) or (view := self._view("displacement")) is None:
+            return self.displacement[steps]
+        values = np.ascontiguousarray(view[steps])
+        self._check("displacement", steps, values)
+        return values[..., : self.problem.mesh.dimension]
 
     def _view(self, name: str) -> NDArray[Any] | None:
         """Give an array of the file; None if it cannot be mapped."""
@@ -295,7 +329,7 @@ class History(HistoryViews):
         kept = "" if self._data.steps() is None else "part of a run: "
         held = f"{kept}{counted(len(self), 'instant')} to {self.time[-1]:.4g} s"
         planned = "" if self.complete else f" of {len(self._data.times)} planned"
-        nodes, dimension = self.displacement.shape[1:]
+        nodes, dimension = self.problem.mesh.points.shape
         return f"<percute.History: {held}{planned}, {counted(nodes, 'node')}, {dimension}D>"
 
     def __reduce__(self) -> tuple[Any, ...]:

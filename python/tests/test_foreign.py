@@ -90,3 +90,15 @@ def test_a_history_of_another_program(make: Any, given: tuple[str, ...], tmp_pat
         assert second.sup == pytest.approx(first.sup, rel=1e-9)
     else:
         assert second.by_element.tobytes() == first.by_element.tobytes() and second.sup == first.sup
+
+
+@pytest.mark.parametrize("name", ["VTKHDF/PointData/displacement", "percute/contact/reaction", "percute/contact/touching"])
+def test_half_precision_is_refused_by_name(name: str, tmp_path: Path) -> None:
+    ours = pc.simulate(block(), end=4e-6, courant=0.9)
+    write(tmp_path / "foreign.vtkhdf", ours, ())
+    with h5py.File(tmp_path / "foreign.vtkhdf", "r+") as file:
+        values = file[name][()]
+        del file[name]
+        file[name] = np.zeros(values.shape, "f2")
+    with pytest.raises(pc.FileFormatError, match=f"`{name}` holds .* float16; it must be .*32 or 64 bits"):
+        pc.estimate(pc.open(tmp_path / "foreign.vtkhdf"))

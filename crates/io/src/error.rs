@@ -100,6 +100,12 @@ pub enum FileCause {
         step.map_or(String::new(), |step| format!(" at instant {step}"))
     )]
     Checksum { name: String, step: Option<usize> },
+    /// A data set that does not hold what was written.
+    #[error(
+        "`{name}` does not have its checksum: the file was damaged or changed after it was written; make it again, or \
+         delete the attribute `checksum` of this data set if it was changed on purpose"
+    )]
+    Seal { name: String },
     /// A missing part.
     #[error("`{name}` is missing; the layout of the file requires it")]
     MissingPart { name: String },

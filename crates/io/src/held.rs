@@ -18,7 +18,7 @@ impl Held {
         taken(file.try_lock_shared()).map(|()| Self(file))
     }
 
-    /// Nobody else has it.
+    /// It is held here alone.
     pub(crate) fn alone(file: File) -> Result<Self, FileCause> {
         taken(file.try_lock()).map(|()| Self(file))
     }

@@ -26,7 +26,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Whether ParaView knows a file of this name as VTKHDF: by its ending, `.vtkhdf`.
+/// Whether ParaView recognises a file of this name as VTKHDF: by its ending, `.vtkhdf`.
 #[must_use]
 pub fn is_vtkhdf_name(path: &std::path::Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtkhdf"))

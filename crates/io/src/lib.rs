@@ -17,6 +17,7 @@ mod library;
 mod mesh;
 mod names;
 mod read;
+mod seal;
 mod steps;
 mod temporary;
 mod unfinished;

@@ -5,10 +5,12 @@ mod heap;
 
 pub(crate) use data::Data;
 
+use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::kind::Kind;
 use crate::library::{alone, damaged};
+use crate::seal;
 use hdf5::dataset::Layout;
 use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5::{Container, Group, H5Type};
@@ -224,7 +226,7 @@ impl<'f> Part<'f> {
         }
         if self.heaps.get().is_none() {
             let found = File::open(self.file.filename()).and_then(|file| heap::check(&file, self.file_bytes));
-            // Nobody else sets it.
+            // It was found empty, and one thread reads the file.
             let _ = self.heaps.set(found.map_err(|source| FileCause::Read { source })?);
         }
         match self.heaps.get() {
@@ -259,7 +261,9 @@ impl<'f> Part<'f> {
             return Err(FileCause::Shape { name: data.name, given: data.shape, needed: "one text".to_string() });
         }
         if let TypeDescriptor::FixedUnicode(length) | TypeDescriptor::FixedAscii(length) = data.kind {
-            return self.fixed(&data, length).map(Some);
+            let text = self.fixed(&data, length)?;
+            seal::check(&data.set, &data.name, || Checksum::new().text(&text))?;
+            return Ok(Some(text));
         }
         self.check_heaps(&data.kind)?;
         text(&data.set, &data.kind, data.name).map(Some)

@@ -160,6 +160,37 @@ impl HistoryData {
         })
     }
 
+    /// Compares vectors at some instants that were read by mapping with their checksums, a row for each instant.
+    fn check_mapped(
+        &self,
+        py: Python<'_>,
+        field: &str,
+        steps: Vec<usize>,
+        values: PyReadonlyArray3<'_, f64>,
+        sums: PyReadonlyArray2<'_, i64>,
+    ) -> PyResult<()> {
+        let (values, sums) = (values.as_slice()?, sums.as_slice()?);
+        each_dimension!(&self.run, run => {
+            let checked = run.file().map_or(Ok(()), |file| file.check_mapped(field, &steps, values, sums));
+            checked.map_err(|error| errors::file(py, &error))
+        })
+    }
+
+    /// The same of touching status.
+    fn check_mapped_flags(
+        &self,
+        py: Python<'_>,
+        steps: Vec<usize>,
+        values: PyReadonlyArray2<'_, u8>,
+        sums: PyReadonlyArray2<'_, i64>,
+    ) -> PyResult<()> {
+        let (values, sums) = (values.as_slice()?, sums.as_slice()?);
+        each_dimension!(&self.run, run => {
+            let checked = run.file().map_or(Ok(()), |file| file.check_mapped_flags(&steps, values, sums));
+            checked.map_err(|error| errors::file(py, &error))
+        })
+    }
+
     /// From memory as it is; from a file a copy.
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         each_dimension!(&self.run, run => match run.memory() {
@@ -254,7 +285,7 @@ fn stored_acceleration<const D: usize, const N: usize>(
     Ok(file.acceleration(steps)?.unwrap_or_default())
 }
 
-/// Bytes of a field that are read at once: enough for the disk, and soon done for who presses Ctrl-C.
+/// Bytes of a field that are read at once: enough for the disk, and soon done after Ctrl-C.
 const BLOCK: usize = 1 << 25;
 
 /// Reads a field at all instants of a file, a block after the other.

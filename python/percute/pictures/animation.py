@@ -142,7 +142,7 @@ def _span(history: History, name: object, steps: list[int], scale: float) -> tup
     for step in steps:
         values, _, _, colours = field(history, name, step)
         low, high = min(low, float(values.min())), max(high, float(values.max()))
-        places = history.problem.mesh.points + scale * history.displacement[step]
+        places = history.problem.mesh.points + scale * history._displacement_at(np.array([step]))[0]
         along = places @ sides.T
         outermost.append(places[np.concatenate([along.argmin(axis=0), along.argmax(axis=0)])])
     if colours == SIGNED:

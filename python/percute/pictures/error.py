@@ -46,7 +46,7 @@ def _displacement(estimate: Estimate) -> tuple[Floats, float]:
     """Give the displacement near the time of the sup, and its time: of the history, or of the maps of a file."""
     if estimate.history is not None:
         step = int(np.argmin(np.abs(estimate.history.time - estimate.time_of_sup)))
-        return estimate.history.displacement[step], float(estimate.history.time[step])
+        return estimate.history._displacement_at(np.array([step]))[0], float(estimate.history.time[step])
     maps = [each for each in estimate.maps if each.displacement is not None]
     if not maps:
         raise InputError(

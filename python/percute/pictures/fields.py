@@ -100,7 +100,7 @@ def draw_field(
     if mesh.dimension == 1:
         draw_bar(axes, mesh.points, mesh.cells, values / factor, label, scale=limits, planes=planes)
     else:
-        places = mesh.points + scale * history.displacement[step]
+        places = mesh.points + scale * history._displacement_at(np.array([step]))[0]
         draw_body(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes, extent=extent)
     seconds, small = prefixed(history.time[step : step + 1])
     axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s", fontsize="medium")

@@ -3,6 +3,7 @@
 mod contact;
 mod maps;
 mod open;
+mod sums;
 mod write;
 
 pub use contact::{AnyContact, contact};

@@ -1,6 +1,7 @@
 //! Writes an estimate, completely or not at all.
 
 use super::contact;
+use super::sums::{seal_numbers, seal_text};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -16,8 +17,8 @@ use std::io;
 use std::path::Path;
 
 /// Overhead of the library beside the arrays and for each group of the mesh (bytes), with a margin.
-const LIBRARY: u64 = 24_000;
-const PER_GROUP: u64 = 350;
+const LIBRARY: u64 = 32_000;
+const PER_GROUP: u64 = 450;
 
 /// The contents of a new estimate file.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +119,16 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         for (name, value) in self.estimate.residuals.entries() {
             numbers(&residuals, name, &[], &[value])?;
         }
-        Ok(())
+        self.seal(file, &ours)
+    }
+
+    /// Adds the checksums of all data sets.
+    fn seal(&self, file: &Group, ours: &Group) -> Result<(), FileCause> {
+        seal_numbers(file)?;
+        let case = self.case.map(|case| [("case", &case.text), ("case_name", &case.name)]);
+        let case = case.iter().flatten().map(|(name, text)| (*name, text.as_str()));
+        let mut texts = [("problem", self.statement), ("report", self.report)].into_iter().chain(case);
+        texts.try_for_each(|(name, text)| seal_text(ours, name, text))
     }
 
     /// Fields over the instants of the maps, and e_E, which is constant.

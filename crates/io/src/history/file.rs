@@ -1,6 +1,7 @@
 //! An open history file.
 
 use super::kept::KeptSteps;
+use super::rows::FIELDS;
 use super::sums::{check_rows, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
@@ -72,10 +73,11 @@ pub struct HistoryFile<const D: usize, const N: usize> {
 /// The place of an array in the file, for mapping into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NativeArray {
-    /// `displacement`, `velocity`, `acceleration`, `reaction` (64-bit floating point) or `touching` (bytes).
+    /// `displacement`, `velocity`, `acceleration`, `reaction` (64-bit floating point), `touching` (bytes) or, of files
+    /// with checksums, `checksums` (64-bit integers).
     pub name: &'static str,
     /// Its shape: (instants, nodes, 3) for nodal fields, (instants, contact nodes, dimension) for reactions,
-    /// (instants, contact nodes) for touching.
+    /// (instants, contact nodes) for touching, (instants, fields) for checksums.
     pub shape: Vec<usize>,
     /// Byte offset of its first number; `None` if the array is not contiguous or has other number types.
     pub offset: Option<u64>,
@@ -268,6 +270,48 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         if self.contents.checksums { check_rows(opened, field, steps, values, sum) } else { Ok(()) }
     }
 
+    /// Compares nodal vectors at some instants, read by mapping [`HistoryFile::arrays`], with the rows of `checksums`
+    /// there. Displacements have three components each.
+    ///
+    /// # Errors
+    /// The first instant at which they differ.
+    pub fn check_mapped(&self, field: &str, steps: &[usize], values: &[f64], sums: &[i64]) -> Result<(), FileError> {
+        let rows = values.chunks_exact((values.len() / steps.len().max(1)).max(1));
+        let padded = field == FIELDS[0];
+        let sum = |row: &[f64]| match padded {
+            true => of_vectors(
+                &row.as_chunks::<3>().0.iter().map(|v| std::array::from_fn(|c| v[c])).collect::<Vec<[f64; D]>>(),
+            ),
+            false => Checksum::new().numbers(row),
+        };
+        self.compare(field, steps, rows.map(sum), sums)
+    }
+
+    /// The same of touching status.
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::check_mapped`].
+    pub fn check_mapped_flags(&self, steps: &[usize], values: &[u8], sums: &[i64]) -> Result<(), FileError> {
+        let rows = values.chunks_exact((values.len() / steps.len().max(1)).max(1));
+        let sum = |row: &[u8]| Checksum::new().indices(row.iter().map(|&touches| touches.into()));
+        self.compare("touching", steps, rows.map(sum), sums)
+    }
+
+    fn compare(
+        &self,
+        field: &str,
+        steps: &[usize],
+        found: impl Iterator<Item = Checksum>,
+        sums: &[i64],
+    ) -> Result<(), FileError> {
+        let column = FIELDS.iter().position(|name| *name == field).unwrap_or(0);
+        let stored = sums.iter().skip(column).step_by(FIELDS.len());
+        match steps.iter().zip(found.zip(stored)).find(|(_, (found, stored))| found.stored() != **stored) {
+            None => Ok(()),
+            Some((&step, _)) => Err(FileCause::Checksum { name: field.to_string(), step: Some(step) }.at(self.path())),
+        }
+    }
+
     fn steps<T>(
         &self,
         steps: Range<usize>,
@@ -302,6 +346,11 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         let (instants, nodes) = (self.times().instants().len(), self.mesh().node_count());
         self.again(|opened| {
             let mut arrays = Vec::new();
+            if self.has_checksums() {
+                let data = opened.root().group("percute")?.data("checksums")?;
+                let offset = data.native_offset::<i64>()?;
+                arrays.push(NativeArray { name: "checksums", shape: data.shape, offset });
+            }
             let fields = opened.root().group("VTKHDF")?.group("PointData")?;
             for name in ["displacement", "velocity", "acceleration"] {
                 if let Some(data) = fields.optional(name)? {

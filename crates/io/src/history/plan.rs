@@ -134,7 +134,8 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
         let surface = if self.has_contact() { self.problem.surface().nodes() } else { &[] };
         let nodes = surface.iter().map(|contact| contact.node.index());
-        let sum = fixed_part(mesh, velocity, &self.statement, self.case.as_ref(), &self.stored_times(), nodes);
+        let run = if self.is_thinned() { self.times.instants() } else { &[] };
+        let sum = fixed_part(mesh, velocity, &self.statement, self.case.as_ref(), [&self.stored_times(), run], nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
         let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
         let checkpoints = checkpoints::make_room(&ours, self.times.step_count(), mesh.node_count(), D)?;

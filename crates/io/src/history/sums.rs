@@ -8,18 +8,20 @@ use crate::write::Case;
 use percute_core::mesh::Mesh;
 use std::ops::Range;
 
-/// The checksum of all that does not change in time: mesh, initial velocity, texts, instants and contact nodes.
+/// The checksum of all that does not change in time: mesh, initial velocity, texts, instants and contact nodes. `run`
+/// has all instants of the run of a thinned history, and is empty for others.
 pub(super) fn fixed_part<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     initial_velocity: &[[f64; D]],
     statement: &str,
     case: Option<&Case>,
-    times: &[f64],
+    [times, run]: [&[f64]; 2],
     contact_nodes: impl IntoIterator<Item = usize>,
 ) -> i64 {
     let all = Checksum::new().mesh(mesh).numbers(initial_velocity.as_flattened()).text(statement);
     let all = case.map_or(all, |case| all.text(&case.name).text(&case.text));
-    all.numbers(times).indices(contact_nodes).stored()
+    let all = all.numbers(times).indices(contact_nodes);
+    if run.is_empty() { all.stored() } else { all.numbers(run).stored() }
 }
 
 /// Compares the stored checksum of that part.

@@ -2,6 +2,7 @@
 
 use crate::error::FileCause;
 use crate::library::damaged;
+use crate::seal;
 use hdf5::dataset::Layout;
 use hdf5::types::TypeDescriptor;
 use hdf5::{Dataset, H5Type, Hyperslab, Selection, SliceOrIndex};
@@ -24,7 +25,11 @@ impl<'f> Data<'f> {
     pub(super) fn new(set: Dataset, name: String, file_bytes: u64, file: &'f hdf5::File) -> Result<Self, FileCause> {
         let shape = set.get_shape().map_err(damaged)?;
         let datatype = set.dtype().map_err(damaged)?;
-        let kind = datatype.to_descriptor().map_err(damaged)?;
+        let kind = datatype.to_descriptor().map_err(|_| FileCause::Type {
+            name: name.clone(),
+            given: format!("values of {} bytes of a type that cannot be read, such as float16", datatype.size()),
+            needed: "floating-point numbers of 32 or 64 bits, or whole numbers (with h5py, `astype(\"f8\")`)",
+        })?;
         let chunk = set.chunk().unwrap_or_default();
         let stored = set.storage_size();
         let most = match set.layout() {
@@ -67,7 +72,11 @@ impl<'f> Data<'f> {
 
     pub(crate) fn floats(&self) -> Result<Vec<f64>, FileCause> {
         self.check_floats()?;
-        self.all()
+        let values = self.all()?;
+        if matches!(self.kind, TypeDescriptor::Float(_)) {
+            seal::check(&self.set, &self.name, || seal::of_floats(&values))?;
+        }
+        Ok(values)
     }
 
     /// Complete rows: one row for each index of the first dimension.
@@ -85,7 +94,11 @@ impl<'f> Data<'f> {
 
     pub(crate) fn integers(&self) -> Result<Vec<i64>, FileCause> {
         match self.kind {
-            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => self.all(),
+            TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_) => {
+                let values = self.all()?;
+                seal::check(&self.set, &self.name, || seal::of_integers(&values))?;
+                Ok(values)
+            }
             _ => self.refuse_type("integers"),
         }
     }

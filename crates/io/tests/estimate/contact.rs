@@ -147,12 +147,23 @@ fn a_file_without_and_damaged_ones() {
     };
     let said = damage("missing", &|contact| contact.unlink("gap").unwrap());
     assert!(said.contains("`percute/contact/gap` is missing"), "{said}");
+    let said = damage("changed", &|contact| {
+        contact.dataset("force").unwrap().write_slice(&[1.0], (3, 2, 1..2)).unwrap();
+    });
+    assert!(said.contains("`percute/contact/force` does not have its checksum"), "{said}");
+    // Changed on purpose.
     let said = damage("nan", &|contact| {
-        contact.dataset("force").unwrap().write_slice(&[f64::NAN], (3, 2, 1..2)).unwrap();
+        let force = contact.dataset("force").unwrap();
+        force.write_slice(&[f64::NAN], (3, 2, 1..2)).unwrap();
+        force.delete_attr("checksum").unwrap();
     });
     // Step 3, node 2 of 6, y.
     assert!(said.contains("`percute/contact/force`: entry 41 is NaN"), "{said}");
-    let said = damage("status", &|contact| contact.dataset("status").unwrap().write_slice(&[3_u8], (1, 1..2)).unwrap());
+    let said = damage("status", &|contact| {
+        let status = contact.dataset("status").unwrap();
+        status.write_slice(&[3_u8], (1, 1..2)).unwrap();
+        status.delete_attr("checksum").unwrap();
+    });
     assert!(said.contains("`percute/contact/status`: entry 7 is 3"), "{said}");
     let said = damage("shape", &|contact| {
         contact.unlink("total/area").unwrap();

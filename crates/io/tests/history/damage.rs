@@ -91,10 +91,12 @@ fn a_changed_number_is_refused() {
             std::fs::write(&spoilt, &bytes).unwrap();
             let error = replayed(&spoilt, &block(4, 3)).unwrap_err();
             let FileCause::Checksum { name, step: Some(at) } = &error.cause else { panic!("{}: {error}", array.name) };
-            assert_eq!((name.as_str(), *at), (array.name, step));
+            // The first checksum of an instant is that of the displacements.
+            let changed = if array.name == "checksums" { "displacement" } else { array.name };
+            assert_eq!((name.as_str(), *at), (changed, step));
         }
     }
-    assert!(places.len() >= 3);
+    assert!(places.len() >= 4);
     // A point of the mesh, the initial velocity and a letter of the statement.
     let place = |part: &[u8]| whole.windows(part.len()).position(|bytes| bytes == part).unwrap();
     for at in [place(&0.0125_f64.to_ne_bytes()), place(&400.0_f64.to_ne_bytes()), place(&STATEMENT.as_bytes()[..20])] {

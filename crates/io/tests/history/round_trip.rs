@@ -196,19 +196,21 @@ fn arrays_lie_where_they_are_said_to() {
     let arrays = plane_file(&path).arrays().unwrap();
     assert!(arrays.iter().all(|a| a.offset.unwrap().is_multiple_of(8)));
     let names: Vec<_> = arrays.iter().map(|a| a.name).collect();
-    assert_eq!(names, ["displacement", "reaction", "touching"]);
+    assert_eq!(names, ["checksums", "displacement", "reaction", "touching"]);
+    let [checksums, displacement, reaction, touching] = &arrays[..] else { panic!("four") };
+    assert_eq!(checksums.shape, [13, 5]);
     let numbers = |at: usize, count: usize| -> Vec<u64> {
         let bytes = stored[at..at + 8 * count].as_chunks::<8>().0;
         bytes.iter().map(|b| u64::from_le_bytes(*b)).collect()
     };
     let contact = problem.surface().nodes().len();
-    assert_eq!(arrays[0].shape, [13, problem.mesh().node_count(), 3]);
+    assert_eq!(displacement.shape, [13, problem.mesh().node_count(), 3]);
     let expected: Vec<u64> = history.displacement().iter().flat_map(|u| [u[0], u[1], 0.0]).map(f64::to_bits).collect();
-    assert_eq!(numbers(arrays[0].offset.unwrap() as usize, expected.len()), expected);
-    assert_eq!(arrays[1].shape, [13, contact, 2]);
-    assert_eq!(numbers(arrays[1].offset.unwrap() as usize, 26 * contact), bits(history.reaction()));
-    assert_eq!(arrays[2].shape, [13, contact]);
-    let at = arrays[2].offset.unwrap() as usize;
+    assert_eq!(numbers(displacement.offset.unwrap() as usize, expected.len()), expected);
+    assert_eq!(reaction.shape, [13, contact, 2]);
+    assert_eq!(numbers(reaction.offset.unwrap() as usize, 26 * contact), bits(history.reaction()));
+    assert_eq!(touching.shape, [13, contact]);
+    let at = touching.offset.unwrap() as usize;
     let touching: Vec<bool> = stored[at..at + 13 * contact].iter().map(|&b| b == 1).collect();
     assert_eq!(touching, history.touching());
 }

@@ -15,7 +15,7 @@ use percute_core::contact::{ContactResults, ContactSteps, Resultant};
 /// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.
 pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {
     let (rows, steps) = (results.nodes.len(), results.instants.len());
-    let resultants = (1 + results.obstacles.len()) * (steps * (24 * D + 40) + 4_000);
+    let resultants = (1 + results.obstacles.len()) * (steps * (24 * D + 40) + 5_000);
     let all = rows * steps * ContactSteps::<D>::BYTES;
     resultants + all + rows * (24 * D + 64) + 8 * steps + instants * (nodes * (3 * 24 + 17) + 48) + 16_000
 }
