@@ -192,6 +192,11 @@ def true_errors(
     -------
     list of percute.TrueError
 
+    Warns
+    -----
+    InputWarning, SimulationWarning
+        As `simulate` does, of the reference.
+
     Raises
     ------
     InputError
@@ -200,9 +205,12 @@ def true_errors(
         The reference is unstable.
     """
     coarse = [history._data for history in items("histories", histories, History)]
-    times = times_of(end, courant, step, steps)
+    times, reference = times_of(end, courant, step, steps), instance("problem", problem, Problem)._data
+    _percute.check_run(reference, times, True)
+    warn(_percute.plausibility_warnings(reference, times, False))
     with shown(progress) as tell:
-        found = _percute.errors_against_simulation(coarse, instance("problem", problem, Problem)._data, times, tell)
+        found, drift = _percute.errors_against_simulation(coarse, reference, times, tell)
+    warn([] if drift is None else [drift], SimulationWarning)
     return true_errors_of(found)
 
 

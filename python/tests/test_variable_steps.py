@@ -41,6 +41,10 @@ def test_each_result_has_the_warnings_of_the_command(tmp_path: Path) -> None:
     kinds = {warning.category: str(warning.message) for warning in told}
     assert "amplify vibrations" in kinds[pc.InputWarning]
     assert "the energy balance is off by" in kinds[pc.SimulationWarning] and "take equal time steps" in kinds[pc.SimulationWarning]
+    coarse = pc.simulate(problem, end=float(steps.sum()), courant=0.1)
+    with pytest.warns() as of_reference:
+        pc.true_errors([coarse], problem, steps=steps)
+    assert {warning.category: str(warning.message) for warning in of_reference} == kinds
     balance = history.balance
     assert balance.energy_drift[-1] > 0.1
     with pytest.warns() as told:

@@ -11,7 +11,7 @@ use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{TrueError, TrueErrorSample};
 use percute_workflow::Failure;
-use percute_workflow::report::Named;
+use percute_workflow::report::{Named, drifted};
 use percute_workflow::run::true_errors;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -35,9 +35,10 @@ pub(crate) fn errors_against_history<'py>(
             compared(py, planes(py, &histories)?, (run.problem.clone(), run.times().clone()), Some(run.clone()), None)
         }
     }
+    .map(|(errors, _)| errors)
 }
 
-/// The same against a simulation that is run now.
+/// The same against a simulation that is run now, with the warning of its energy balance.
 #[pyfunction]
 pub(crate) fn errors_against_simulation<'py>(
     py: Python<'py>,
@@ -45,7 +46,7 @@ pub(crate) fn errors_against_simulation<'py>(
     problem: &ProblemData,
     times: Times,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<TrueErrorColumns<'py>>> {
+) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     match &problem.problem {
@@ -70,25 +71,28 @@ fn planes(py: Python<'_>, histories: &[PyRef<'_, HistoryData>]) -> PyResult<Vec<
     histories.iter().map(plane).collect()
 }
 
-/// Compares `runs` with the steps of `kept`; without it, with a simulation of the reference.
+/// Compares `runs` with the steps of `kept`; without it, with a simulation of the reference, which may give a warning.
 fn compared<'py, const D: usize, const N: usize>(
     py: Python<'py>,
     runs: Vec<Arc<Run<D, N>>>,
     (fine, times): (Arc<Problem<D, N>>, TimeGrid),
     kept: Option<Arc<Run<D, N>>>,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Vec<TrueErrorColumns<'py>>> {
+) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
+    let varies = times.varies();
     let found = bridge::blocking(py, progress, move |mut watch| {
         let sources: Vec<_> = runs.iter().map(|run| run.stoppable(watch.clone())).collect();
         let runs: Vec<_> = runs.iter().zip(&sources).map(|(run, source)| (&*run.problem, source as _)).collect();
         let steps = kept.as_ref().map(|kept| kept.stoppable(watch.clone()));
         true_errors(&runs, (&fine, &times), steps.as_ref().map(|steps| steps as _), &mut watch)
     })?;
-    let found = found.map_err(|failure| match failure {
+    let (found, simulation) = found.map_err(|failure| match failure {
         Failure::Reference(error) => errors::input(py, format!("`reference`: {error}")),
         failure => errors::run(py, &failure),
     })?;
-    found.iter().map(|error| told(py, error)).collect()
+    let drift = simulation.and_then(|simulation| drifted(simulation.balance.energy_drift, varies));
+    let errors = found.iter().map(|error| told(py, error)).collect::<PyResult<_>>()?;
+    Ok((errors, drift.map(|warning| warning.message)))
 }
 
 /// A true error as Python takes it.

@@ -173,7 +173,7 @@ pub fn estimate<const D: usize, const N: usize>(
 }
 
 /// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the
-/// steps of the reference it is simulated.
+/// steps of the reference it is simulated, and the simulation is returned too.
 ///
 /// # Errors
 /// Steps that cannot be read, meshes that are not nested, a reference that ends early; as [`simulate`].
@@ -182,7 +182,7 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
     (fine, times): (&'p Problem<D, N>, &'p TimeGrid),
     steps: Option<&dyn StepSource<D>>,
     observer: &mut dyn Observer,
-) -> Result<Vec<TrueError>, Failure> {
+) -> Result<(Vec<TrueError>, Option<Simulation>), Failure> {
     let unread = |cause| Failure::from_sink(cause, RunError::Source);
     let ordered: Vec<_> = runs.iter().map(|(problem, _)| Ordered::new(*problem)).collect();
     let mut motions = Vec::new();
@@ -198,13 +198,13 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
         comparison.add(run.problem(), motion).map_err(|error| fine.failure(error.into()))?;
     }
     let done = match steps {
-        Some(steps) => replay(fine.problem(), &fine.source(steps), &mut comparison).map_err(unread),
+        Some(steps) => replay(fine.problem(), &fine.source(steps), &mut comparison).map(|()| None).map_err(unread),
         None => {
-            simulate_threaded(fine.problem(), times, None, &mut comparison, observer).map(|_| ()).map_err(Failure::from)
+            simulate_threaded(fine.problem(), times, None, &mut comparison, observer).map(Some).map_err(Failure::from)
         }
     };
-    done.map_err(|failure| fine.failure(failure))?;
-    Ok(comparison.finish()?)
+    let simulation = done.map_err(|failure| fine.failure(failure))?;
+    Ok((comparison.finish()?, simulation))
 }
 
 /// Energies and works at each step of a history: those of its run, bit by bit.

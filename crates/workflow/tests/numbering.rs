@@ -243,7 +243,8 @@ fn true_errors_do_not_depend_on_numbers() {
     let error = |coarse: TriangleMesh, fine: TriangleMesh| {
         let (coarse, fine) = (problem(coarse, gap()), problem(fine, gap()));
         let (_, history) = ran(&coarse);
-        true_errors(&[(&coarse, &history)], (&fine, &reference), None, &mut Unobserved).map(|errors| errors[0].mean)
+        true_errors(&[(&coarse, &history)], (&fine, &reference), None, &mut Unobserved)
+            .map(|(errors, _)| errors[0].mean)
     };
     let (one, other) = (error(block(), fine.clone()), error(shuffled().0, renumbered(&fine, 8).unwrap().0));
     let (one, other) = (one.unwrap(), other.unwrap());
