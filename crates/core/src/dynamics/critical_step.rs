@@ -30,29 +30,37 @@ pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N
     2.0 / largest_eigenvalue(problem).min(element_bound(problem)).sqrt()
 }
 
-/// Largest ω² of any element alone with its lumped mass (1/s²): a bound on that of the mesh.
+/// The same of one element alone with its lumped mass (s).
+#[must_use]
+pub fn time_step_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+    2.0 / largest_of_element(problem, element).sqrt()
+}
+
+/// Largest ω² of any element alone (1/s²): a bound on that of the mesh.
+fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+    let elements = (0..problem.mesh().element_count()).map(ElementId::new);
+    elements.map(|element| largest_of_element(problem, element)).fold(0.0, f64::max)
+}
+
+/// Largest ω² of an element alone with its lumped mass (1/s²).
 ///
-/// The eigenvalues of an element are those of Cᴷ Q Cᴷ on strains, Cᴷ the root of the law and Q = Σ∇φ_i ∇φ_iᵀ. In 2D,
+/// Its eigenvalues are those of Cᴷ Q Cᴷ on strains, Cᴷ the root of the law and Q = Σ∇φ_i ∇φ_iᵀ. In 2D,
 /// with the strains 1, diag(1, −1) and the shear over √2, they are those of a matrix of two rows and one more, which is
 /// not the largest: m = ½ tr Q and r, half the difference of the eigenvalues of Q, couple volume and shear.
-fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    let shape = problem.mesh().simplex().shape();
-    let of_element = |element: ElementId| {
-        let (material, gradients) = (problem.material(element), problem.mesh().cell_geometry(element).gradients);
-        let q = |a: usize, b: usize| gradients.iter().map(|g| g[a] * g[b]).sum::<f64>();
-        let (lambda, shear) = material.moduli();
-        let largest = match shape {
-            Shape::Bar => (lambda + 2.0 * shear) * q(0, 0),
-            Shape::Triangle => {
-                let (m, r) = (0.5 * (q(0, 0) + q(1, 1)), (0.5 * (q(0, 0) - q(1, 1))).hypot(q(0, 1)));
-                let (volume, deviator) = (2.0 * (lambda + shear), 2.0 * shear);
-                let coupling = 4.0 * volume * deviator * r * r;
-                0.5 * (m * (volume + deviator) + (m * m * (volume - deviator).powi(2) + coupling).sqrt())
-            }
-        };
-        largest * N as f64 / material.density()
+fn largest_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+    let (material, gradients) = (problem.material(element), problem.mesh().cell_geometry(element).gradients);
+    let q = |a: usize, b: usize| gradients.iter().map(|g| g[a] * g[b]).sum::<f64>();
+    let (lambda, shear) = material.moduli();
+    let largest = match problem.mesh().simplex().shape() {
+        Shape::Bar => (lambda + 2.0 * shear) * q(0, 0),
+        Shape::Triangle => {
+            let (m, r) = (0.5 * (q(0, 0) + q(1, 1)), (0.5 * (q(0, 0) - q(1, 1))).hypot(q(0, 1)));
+            let (volume, deviator) = (2.0 * (lambda + shear), 2.0 * shear);
+            let coupling = 4.0 * volume * deviator * r * r;
+            0.5 * (m * (volume + deviator) + (m * m * (volume - deviator).powi(2) + coupling).sqrt())
+        }
     };
-    (0..problem.mesh().element_count()).map(ElementId::new).map(of_element).fold(0.0, f64::max)
+    largest * N as f64 / material.density()
 }
 
 /// The largest Ritz value plus its residual.

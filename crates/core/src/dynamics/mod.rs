@@ -19,7 +19,7 @@ mod work_meter;
 pub use balance::Balance;
 pub use balancing::Balancing;
 pub use central_difference::{resume, simulate, simulate_threaded};
-pub use critical_step::{critical_time_step, element_time_step};
+pub use critical_step::{critical_time_step, element_time_step, time_step_of_element};
 pub use evaluation::{Evaluation, replay};
 pub use internal_force::Stiffness;
 pub use simulation::{Simulation, SimulationError};
@@ -31,7 +31,7 @@ use crate::time::TimeGrid;
 
 /// The discrete equilibrium M a_n = F_n − K u_n + R_n (eq. \[30\]) of a problem on a time grid.
 ///
-/// The integrator and whoever derives velocities from stored displacements call the same
+/// The integrator and all that derives velocities from stored displacements call the same
 /// functions in the same order, and so get the same bits.
 #[derive(Clone, Debug)]
 pub struct Dynamics<'p, const D: usize, const N: usize> {

@@ -1,6 +1,7 @@
 //! From the results of a run to its report.
 
 use super::columns::{Columns, EnergiesOverTime, PARTS};
+use super::flat::FlatElements;
 use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, found, reported};
 use super::{
@@ -114,6 +115,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
 ) -> [Vec<Warning>; 2] {
     let Subject { times, checked, critical_step, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
+    let flat = FlatElements::new(subject.problem, &estimate.by_element);
     let facts = Facts {
         problem: &problem_summary(subject),
         checked,
@@ -126,6 +128,8 @@ pub fn warnings_of<const D: usize, const N: usize>(
         kept_impulse: estimate.kept_impulse,
         own_contacts: estimate.own_contacts,
         residual: &largest_residual(estimate),
+        flat: flat.as_ref(),
+        critical_step,
     };
     let few = few_samples(options.every, times.step_count());
     let few = few.map(|few| Warning { message: format!("every {}", few.message), ..few });

@@ -4,6 +4,7 @@
 pub(crate) mod build;
 mod columns;
 mod contact;
+mod flat;
 mod meaning;
 mod rebound;
 mod simulated;

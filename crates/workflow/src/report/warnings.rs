@@ -1,5 +1,6 @@
 //! What the user should look at before trusting a result.
 
+use super::flat::FlatElements;
 use super::{LargestResidual, ProblemSummary};
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
@@ -17,6 +18,9 @@ const NEAR_CEILING: f64 = 0.6;
 const KEPT: [f64; 2] = [0.9, 1.1];
 /// Resampling of tables below this is rounding.
 const RESAMPLED: f64 = 1e-12;
+
+/// A gain of the time step by more than this is told.
+const LONGER: f64 = 1.1;
 
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -45,6 +49,9 @@ pub(super) struct Facts<'a> {
     pub(super) kept_impulse: Option<f64>,
     pub(super) own_contacts: usize,
     pub(super) residual: &'a LargestResidual,
+    pub(super) flat: Option<&'a FlatElements>,
+    /// Δt_c (s).
+    pub(super) critical_step: f64,
 }
 
 /// What only the results of a run show.
@@ -55,6 +62,7 @@ pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
         samples(facts),
         energy_drift(facts),
         relative_error(facts.relative),
+        flat_elements(facts),
         kept_impulse(facts),
         no_contact(facts),
         resampled(facts),
@@ -69,7 +77,8 @@ impl Warning {
     /// Whether it doubts the result, rather than the input or how it was taken.
     #[must_use]
     pub fn doubts_result(&self) -> bool {
-        ["not_admissible", "energy_drift", "relative_error", "kept_impulse", "no_contact"].contains(&self.name)
+        ["not_admissible", "energy_drift", "relative_error", "flat_elements", "kept_impulse", "no_contact"]
+            .contains(&self.name)
     }
 }
 
@@ -167,6 +176,26 @@ fn relative_error(relative: [f64; 2]) -> Option<Warning> {
          error; refine the mesh, and look for elements that are nearly flat"
     );
     warning("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), message)
+}
+
+fn flat_elements(facts: &Facts<'_>) -> Option<Warning> {
+    let FlatElements { count, flattest, share, step_without } = facts.flat?;
+    let each = |&(element, angle, own): &(usize, f64, f64)| {
+        format!("element {element} ({}°, {})", trimmed(angle, 4), percent(own))
+    };
+    let named = flattest.iter().map(each).collect::<Vec<_>>().join(", ");
+    let more = if *count > flattest.len() { format!(" and {} more", count - flattest.len()) } else { String::new() };
+    let (share, longer) = (percent(*share), step_without / facts.critical_step);
+    let step = match longer > LONGER {
+        true => format!("; without them, steps could be {} times as long", short(longer, 2)),
+        false => String::new(),
+    };
+    let message = format!(
+        "the mesh has elements that are nearly flat, with an angle above 150°: {named}{more}. They and the elements \
+         around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 11 times the \
+         true error{step}. Move their nodes, or mesh again"
+    );
+    warning("flat_elements", format!("nearly flat elements have {share} of the estimate"), message)
 }
 
 fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {

@@ -2,6 +2,7 @@
 
 use super::touches::Contact;
 use crate::foreign::{Checked, by_a_penalty, exceeded};
+use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
 use percute_core::contact::ContactResults;
 use percute_core::ids::ElementId;
@@ -32,6 +33,8 @@ pub(in crate::report) struct Facts {
     pub(super) phases: usize,
     /// Mean thickness 2 A/P over the diagonal of the body, A its area and P its outline; 1 for a bar.
     pub(super) slenderness: f64,
+    /// Whether nearly flat elements have much of the estimate.
+    pub(super) flat: bool,
     pub(super) largest_friction: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
@@ -93,6 +96,7 @@ impl Facts {
             elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
             phases: phases(results, APART * problem.mesh().size() / wave_speed),
             slenderness: slenderness(problem.mesh()),
+            flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),

@@ -35,7 +35,7 @@ const SLENDER: f64 = 0.15;
 const UNBALANCED: f64 = 5e-4;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 15] = [
+pub(super) const RULES: [Rule; 16] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -50,6 +50,8 @@ pub(super) const RULES: [Rule; 15] = [
         situation: "impacts with `published`",
         doubt: Some("`published` drops forces; estimate with `corrected`"),
     },
+    // See `report/flat.rs`; python/tests/test_flat_elements.py.
+    Rule { applies: |f| f.flat, range: [1.4, 11.0], situation: "meshes with nearly flat elements", doubt: None },
     // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely.
     Rule {
         applies: |f| f.contact.touches == Touches::None,

@@ -89,6 +89,7 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
         return format!("Do not trust the number: {}.", doubts.join("; "));
     }
     let place = match facts.expected {
+        _ if facts.flat => return "Make the elements that are nearly flat less so, or mesh again.".to_string(),
         _ if facts.contact.single_element => "Cut the corner that one element fills into two elements",
         Some(expected) if expected.surface > LOCAL => "Refine the elements that touch",
         _ => "Refine the whole mesh",
