@@ -99,7 +99,7 @@ def estimate(
     accept = flag("force", force)
     with shown(progress) as tell:
         data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
-    # `simulate` has told what there is to say about its problem; the author of a file, or of arrays, has told nobody.
+    # `simulate` has given the warnings about its problem; those about a file, or about arrays, have not been given.
     warn_of_result(data.warnings(True, history.path is not None or history._data.derived is not None))
     return Estimate._of(data, history, history._name)
 

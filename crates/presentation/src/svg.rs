@@ -131,7 +131,7 @@ impl Svg {
         )
     }
 
-    /// The element of a page, which has the style; `label` is for those who cannot see it.
+    /// The element of a page, which has the style; `label` is its text for screen readers.
     pub(crate) fn inside(&self, label: &str) -> String {
         let [w, h] = self.size.map(px);
         let label = typeset::escaped(label);

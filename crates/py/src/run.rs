@@ -227,7 +227,7 @@ impl<const D: usize> Growing<D> {
         }
     }
 
-    /// Takes what is there; whoever fills it is refused from then on.
+    /// Takes what is there; later steps are refused.
     pub(crate) fn take(&self) -> Option<History<D>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take().filter(|history| !history.is_empty())
     }

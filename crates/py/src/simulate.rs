@@ -382,7 +382,7 @@ impl<const D: usize, const N: usize> Planned<D, N> {
                 Some(history) => Ok((Ok(data(history, Some(balance))), rest)),
                 None => Err(errors::percute_error(py, "internal error: a simulation without steps")),
             },
-            // To open it takes time that whoever pressed Ctrl-C does not have.
+            // To open it takes time, and Ctrl-C must end the call soon.
             (Err(error), Some(store)) if store.ours.load(Relaxed) => {
                 Err(errors::with(py, error, "history", Some(store.path)))
             }

@@ -41,7 +41,7 @@ where
     let shown = ArrayViewD::from_shape(shape, memory).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     let base = Bound::new(py, Owner { _memory: owner.clone() })?.into_any();
     // SAFETY: `base` keeps a clone of `owner`, and `memory` is borrowed from what that holds: it stays where it is, as
-    // nobody can get at it but through shared references. The array is made read-only before anyone sees it.
+    // it has shared references only. The array is made read-only before it is returned.
     let array = unsafe { PyArrayDyn::borrow_from_array(&shown, base) };
     array.readwrite().make_nonwriteable();
     Ok(array)

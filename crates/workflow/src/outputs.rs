@@ -24,7 +24,7 @@ pub fn chosen<'a>(
     given.map(|file| OutputFile { what: flag, file }).or(stated)
 }
 
-/// Makes sure that histories and estimate files have the ending by which ParaView knows them.
+/// Makes sure that histories and estimate files have the ending by which ParaView recognises them.
 ///
 /// # Errors
 /// [`Failure::Argument`] for another ending.

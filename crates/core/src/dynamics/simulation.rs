@@ -50,7 +50,7 @@ pub enum SimulationError {
         /// The largest first step that will do (s).
         largest_step: f64,
     },
-    /// Whoever takes the steps failed.
+    /// The sink of the steps failed.
     #[error("step {step} could not be passed on: {cause}")]
     Sink {
         /// The step.

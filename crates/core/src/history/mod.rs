@@ -1,4 +1,4 @@
-//! Steps, and who takes and gives them.
+//! Steps, their sources and their sinks.
 
 mod check;
 mod checkpoint;

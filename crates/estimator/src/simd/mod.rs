@@ -2,8 +2,8 @@
 //!
 //! A binary is compiled for the oldest processor that it must run on. Its loops then use registers of two numbers. On a
 //! newer processor, [`dispatch`] and [`run_task`] run a copy of the loops that was compiled for registers of four or
-//! eight. Products and sums are never fused, so the bits are those of the portable copy. This folder is the only one of
-//! the crate that knows instruction sets.
+//! eight. Products and sums are never fused, so the bits are those of the portable copy. No other folder of the crate
+//! has instruction sets.
 //!
 //! [`dispatch`] is for loops that the compiler turns into vectors by itself. Where lanes are gathered and exchanged, it
 //! makes short vectors with many permutations, three times as many instructions. Such loops are a
