@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MOST_NUMBERS = 200
 """Maps of at most so many cells show their numbers."""
+WIDE_CELLS = 6
+"""Rows of at most so many cells show numbers with three digits."""
 
 
 def plot(sweep: Sweep, quantity: str, over: object, where: object, axes: Axes | None, save: object, overwrite: object) -> Axes:
@@ -97,7 +99,10 @@ def _map(axes: Axes, places: list[NDArray[Any]], values: NDArray[Any], label: st
         axis.set_ticks(range(len(names)), [name if isinstance(name, str) else f"{name:g}" for name in names])
     root(axes).colorbar(image, ax=axes, label=label)
     if cells.size <= MOST_NUMBERS:
+        # Narrow cells have room for two digits.
+        digits, size = (".3g", "small") if cells.shape[1] <= WIDE_CELLS else (".2g", "x-small")
         for (row, column), value in np.ndenumerate(cells):
             if np.isfinite(value):
                 dark = float(np.asarray(image.norm(value))) < 0.6
-                axes.text(column, row, f"{value:.3g}", ha="center", va="center", fontsize="small", color="white" if dark else "black")
+                color = "white" if dark else "black"
+                axes.text(column, row, f"{value:{digits}}", ha="center", va="center", fontsize=size, color=color)

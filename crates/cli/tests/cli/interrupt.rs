@@ -151,7 +151,7 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     let words = info.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("INCOMPLETE: the run goes on or was killed;"), "{info}");
     assert!(
-        words.contains("; after a kill, `percute recover case.vtkhdf` closes the file"),
+        words.contains("; after a kill, `--resume` lets it go on, and `percute recover case.vtkhdf` closes the file"),
         "the cure is cut off: {info}"
     );
     let estimate = ["estimate", "case.vtkhdf", "--json", "--every", "1000"];

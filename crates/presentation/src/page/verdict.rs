@@ -19,6 +19,10 @@ pub(super) fn head(document: &Document) -> String {
         let kind = if document.number("problem.dimension") == Some(1.0) { "bar element" } else { "triangle" };
         line += &format!(" · {}", counted(elements as usize, kind));
     }
+    // The steps of percute need no check.
+    if !document.at("consistency").is_null() {
+        line = format!("simulated by another program, estimated by {line}");
+    }
     format!(
         "<h1>{}</h1>\n<p class=\"faint\">{line}</p>\n{}",
         escaped(format!("Error of the simulation {}", document.name()).trim_end()),

@@ -253,7 +253,8 @@ impl HistoryInfo {
             (false, _) => {
                 let file = &self.file;
                 format!(
-                    "INCOMPLETE: the run goes on or was killed; after a kill, `percute recover {file}` closes the file"
+                    "INCOMPLETE: the run goes on or was killed; after a kill, `--resume` lets it go on, and `percute \
+                     recover {file}` closes the file"
                 )
             }
         };
@@ -263,7 +264,10 @@ impl HistoryInfo {
         }
         let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
         lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));
-        lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
+        // There is no estimate of a part of a run.
+        if self.kept.is_none() {
+            lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
+        }
         lines
     }
 }
