@@ -1,5 +1,6 @@
 //! Completes the file of a run that was killed.
 
+use super::checkpoints::places;
 use super::file::NativeArray;
 use super::open::open;
 use crate::error::{FileCause, FileError};
@@ -36,6 +37,7 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     }
     // Read before the lock, which keeps readers out.
     let arrays = each_dimension!(&found, file => file.arrays())?;
+    let checkpoints = each_dimension!(&found, file => file.again(|opened| places(&opened.root().group("percute")?)))?;
     let finish = || {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
@@ -46,8 +48,11 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
         }
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
         set_steps(path, recovered.count).map_err(failed)?;
-        set_complete(path).map_err(failed)?;
         give_back_room(held.file(), arrays.iter().filter_map(room), planned, count);
+        if let Some(checkpoints) = checkpoints.filter(|_| count == planned) {
+            checkpoints.give_back(held.file());
+        }
+        set_complete(path).map_err(failed)?;
         held.file().sync_all().map_err(|error| failed(error.to_string()))
     };
     finish().map_err(|cause| cause.at(path))?;

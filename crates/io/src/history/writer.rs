@@ -130,12 +130,13 @@ impl<const D: usize> Writer<D> {
         let place = self.held.place(&self.path);
         let Some(now) = place else { return Err(FileCause::Lost { now: None }) };
         set_steps(&now, stored).map_err(failed)?;
-        self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
         let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
         give_back_room(self.held.file(), self.places.rooms(D as u64), planned, stored);
         if let Some(checkpoints) = self.places.checkpoints.filter(|_| self.next > self.last) {
             checkpoints.give_back(self.held.file());
         }
+        // The last write: a file that is complete is the same, byte by byte, wherever its run was killed.
+        self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
         self.held.file().sync_all().map_err(told)?;
         if now == self.path { Ok(()) } else { Err(FileCause::Lost { now: Some(now) }) }
     }

@@ -169,6 +169,18 @@ fn a_run_goes_on_wherever_it_ended() {
     }
 }
 
+/// A run that was killed as it was completing its file.
+#[test]
+fn a_recovered_file_with_all_steps_is_that_of_its_run() {
+    let (folder, problem) = (folder(), block(6, 5));
+    let times = steps(&problem, 200);
+    let whole = undisturbed(folder.path(), &problem, &times, None);
+    let path = folder.path().join("left.vtkhdf");
+    leave(&path, &problem, &times, 201, false);
+    assert_eq!((plane_file(&path).is_complete(), recover(&path).unwrap().count), (false, 201));
+    assert!(plane_file(&path).has_ended() && std::fs::read(&path).unwrap() == whole);
+}
+
 /// Of two checkpoints, the newer one is not whole if the run was killed as it was written.
 #[test]
 fn a_torn_checkpoint_is_not_used() {
