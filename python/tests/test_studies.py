@@ -165,7 +165,7 @@ def test_an_unstable_reference_is_an_error_of_the_simulation(bar_history: pc.His
     problem = pc.Problem(pc.Mesh.bar(0.1, elements=80), material=bar(80).material, initial_velocity=velocity)
     # Amplified 600 times, which is not refused.
     steps = [problem.critical_time_step * (0.9 if i % 2 else 0.8) for i in range(110)]
-    with pytest.raises(pc.SimulationError, match="unstable at step"):
+    with pytest.warns(pc.InputWarning, match="amplify vibrations"), pytest.raises(pc.SimulationError, match="unstable at step"):
         pc.true_errors([bar_history], problem, steps=steps)
 
 
