@@ -1,8 +1,8 @@
 //! Numbers that wait in a temporary file.
 
+use percute_system::{read_exact_at, write_all_at};
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -85,7 +85,7 @@ impl ScratchFile {
         for (k, piece) in numbers.chunks(PIECE).enumerate() {
             self.bytes.clear();
             self.bytes.extend(piece.iter().flat_map(|number| number.to_ne_bytes()));
-            file.write_all_at(&self.bytes, offset(place + (k * PIECE) as u64))?;
+            write_all_at(file, &self.bytes, offset(place + (k * PIECE) as u64))?;
         }
         Ok(())
     }
@@ -103,7 +103,7 @@ impl ScratchFile {
         let file = self.file.as_ref().ok_or(io::ErrorKind::NotFound)?;
         for (k, piece) in numbers.chunks_mut(PIECE).enumerate() {
             self.bytes.resize(size_of_val(piece), 0);
-            file.read_exact_at(&mut self.bytes, offset(place + (k * PIECE) as u64))?;
+            read_exact_at(file, &mut self.bytes, offset(place + (k * PIECE) as u64))?;
             for (number, bytes) in piece.iter_mut().zip(self.bytes.as_chunks().0) {
                 *number = f64::from_ne_bytes(*bytes);
             }

@@ -7,8 +7,7 @@ use crate::temporary::{probe, temporary};
 use crate::unfinished::Unfinished;
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
-use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
-use rustix::io::Errno;
+use percute_system::free;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -124,11 +123,7 @@ pub(crate) fn whole(path: &Path, overwrite: Overwrite, bytes: &[u8]) -> Result<(
 
 /// Reserves the room of a file of this length, also where it has holes; `path` is its name.
 pub(crate) fn reserve(file: &File, path: &Path, bytes: u64) -> Result<(), FileCause> {
-    match fallocate(file, FallocateFlags::empty(), 0, bytes.max(1)) {
-        // Not all file systems can reserve space. On those a full disk is detected when it is full.
-        Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
-        Err(error) => Err(no_room(error.into(), folder_of(path), bytes)),
-    }
+    percute_system::reserve(file, bytes.max(1)).map_err(|error| no_room(error, folder_of(path), bytes))
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -173,12 +168,6 @@ fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Hel
     }
     let old = File::open(&path).map_err(|source| FileCause::Create { source })?;
     Ok((path, Some(Held::alone(old)?)))
-}
-
-/// Bytes available in a folder.
-fn free(folder: &Path) -> Option<u64> {
-    let status = fstatvfs(File::open(folder).ok()?).ok()?;
-    status.f_bavail.checked_mul(status.f_frsize)
 }
 
 fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {

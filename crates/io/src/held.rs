@@ -1,9 +1,8 @@
 //! Files under a lock.
 
 use crate::error::FileCause;
+use percute_system::{is_at, name_of};
 use std::fs::{File, TryLockError};
-use std::os::fd::AsRawFd;
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 /// A file that is locked. The lock is given back in so many words: closing alone leaves it with any child
@@ -34,20 +33,13 @@ impl Held {
 
     /// Whether this file is the one at a path.
     pub(crate) fn is_at(&self, path: &Path) -> bool {
-        Self::same(&self.0, path)
-    }
-
-    /// Whether an open file is the one at a path.
-    pub(crate) fn same(file: &File, path: &Path) -> bool {
-        let (Ok(mine), Ok(there)) = (file.metadata(), path.metadata()) else { return false };
-        (mine.dev(), mine.ino()) == (there.dev(), there.ino())
+        is_at(&self.0, path)
     }
 
     /// The path of the file: `path`, or where it has been moved to. None if it was removed or replaced, or if the
     /// system does not tell.
     pub(crate) fn place(&self, path: &Path) -> Option<PathBuf> {
-        let moved = || std::fs::read_link(format!("/proc/self/fd/{}", self.0.as_raw_fd())).ok();
-        if self.is_at(path) { Some(path.to_path_buf()) } else { moved().filter(|now| self.is_at(now)) }
+        if self.is_at(path) { Some(path.to_path_buf()) } else { name_of(&self.0).filter(|now| self.is_at(now)) }
     }
 }
 

@@ -14,10 +14,10 @@ use crate::seal;
 use hdf5::dataset::Layout;
 use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
 use hdf5::{Container, Group, H5Type};
+use percute_system::read_exact_at;
 use std::cell::OnceCell;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::sync::MutexGuard;
 
@@ -119,7 +119,7 @@ pub fn is_hdf5(path: &Path) -> io::Result<bool> {
 /// HDF5 allows a user block before the signature; histories have none.
 fn begins_as_hdf5(file: &File) -> io::Result<bool> {
     let mut first = [0; 8];
-    match file.read_exact_at(&mut first, 0) {
+    match read_exact_at(file, &mut first, 0) {
         Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(error),
         _ => Ok(first == SIGNATURE),
     }
@@ -248,7 +248,7 @@ impl<'f> Part<'f> {
             return Err(FileCause::Type { name: data.name.clone(), given, needed: "a text in one piece" });
         };
         let mut bytes = vec![0; length];
-        let file = File::open(self.file.filename()).and_then(|file| file.read_exact_at(&mut bytes, place));
+        let file = File::open(self.file.filename()).and_then(|file| read_exact_at(&file, &mut bytes, place));
         file.map_err(|source| FileCause::Read { source })?;
         bytes.truncate(bytes.iter().position(|b| *b == 0).unwrap_or(length));
         utf8(bytes, data.name.clone())

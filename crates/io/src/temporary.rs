@@ -1,10 +1,9 @@
 //! Files under a temporary name. Each is locked by its process, so that one without a lock is known to be left behind.
 
-use crate::held::Held;
 use crate::unfinished::Unfinished;
-use std::fs::{File, Permissions};
+use percute_system::{is_at, permissions};
+use std::fs::File;
 use std::io;
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use tempfile::NamedTempFile;
 
@@ -19,11 +18,13 @@ const PREFIX: &str = ".percute-";
 pub(crate) fn temporary(folder: &Path) -> io::Result<(NamedTempFile, Unfinished)> {
     remove_left_behind(folder);
     loop {
-        let made =
-            tempfile::Builder::new().prefix(PREFIX).permissions(Permissions::from_mode(0o666)).tempfile_in(folder)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(PREFIX);
+        permissions().into_iter().for_each(|permissions| _ = builder.permissions(permissions));
+        let made = builder.tempfile_in(folder)?;
         // Another process may have taken it for one that was left behind, until it was locked.
         let locked = made.as_file().try_lock_shared();
-        if matches!(locked, Err(std::fs::TryLockError::WouldBlock)) || !Held::same(made.as_file(), made.path()) {
+        if matches!(locked, Err(std::fs::TryLockError::WouldBlock)) || !is_at(made.as_file(), made.path()) {
             continue;
         }
         let unfinished = Unfinished::new(made.path());

@@ -8,10 +8,10 @@ use hdf5::dataset::{AllocTime, FillTime, Layout};
 use hdf5::plist::link_create::CharEncoding;
 use hdf5::types::{FixedUnicode, TypeDescriptor};
 use hdf5::{Dataset, Group, H5Type, Location};
+use percute_system::write_all_at;
 use serde::Serialize;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 
 /// A case file as given, for provenance only.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -108,7 +108,7 @@ impl Texts {
 
     /// Writes the texts.
     pub(crate) fn put(&self, file: &File) -> io::Result<()> {
-        self.0.iter().try_for_each(|(place, text)| file.write_all_at(text.as_bytes(), *place))
+        self.0.iter().try_for_each(|(place, text)| write_all_at(file, text.as_bytes(), *place))
     }
 }
 

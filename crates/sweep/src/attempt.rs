@@ -14,7 +14,7 @@ pub(crate) const FAILURE: &str = "failure.txt";
 
 /// Start of the names of attempts on this machine: the locks of others may not be seen here.
 fn prefix() -> String {
-    format!(".attempt-{}-", rustix::system::uname().nodename().to_string_lossy())
+    format!(".attempt-{}-", percute_system::machine())
 }
 
 /// Locked as long as its process lives.

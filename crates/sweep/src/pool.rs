@@ -3,8 +3,8 @@
 use crate::attempt::{Attempt, CASE, State, clean, state};
 use crate::plan::Planned;
 use percute_core::observer::{Observer, Progress};
+use percute_system::ask_to_end;
 use percute_workflow::Failure;
-use rustix::process::{Pid, Signal, kill_process};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io;
@@ -176,10 +176,7 @@ impl Pool {
 
 impl Drop for Pool {
     fn drop(&mut self) {
-        for running in &self.0 {
-            // Asked, so that it can remove its own files.
-            let _ = kill_process(Pid::from_child(&running.child), Signal::TERM);
-        }
+        self.0.iter_mut().for_each(|running| ask_to_end(&mut running.child));
         let start = Instant::now();
         for mut running in self.0.drain(..) {
             while start.elapsed() < PATIENCE && matches!(running.child.try_wait(), Ok(None)) {

@@ -23,6 +23,7 @@ use crate::stop::Stop;
 use clap::Parser;
 use percute_estimator::EstimateError;
 use percute_io::{FileError, is_hdf5};
+use percute_system::is_pipe;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Source, parse, stranger};
 use percute_workflow::message::hint;
@@ -31,7 +32,6 @@ use percute_workflow::run::{located, resolved as search};
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{Read, Write};
-use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
 /// Most bytes of a case; pipes may have no end.
@@ -198,7 +198,7 @@ fn read(file: &Path) -> Result<Source, Failure> {
         return Err(Failure::Argument(format!("{name}: there is no file of this name{}", similar(file))));
     }
     let kind = file.metadata().map_err(unreadable)?.file_type();
-    if !kind.is_file() && !kind.is_fifo() {
+    if !kind.is_file() && !is_pipe(kind) {
         return Err(Failure::Argument(format!("{name}: this is not a regular file; name a case file")));
     }
     // Asked first: a history may be larger than memory.

@@ -8,7 +8,7 @@ use crate::mesh::write_grid;
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Texts, group, offset, room, unit};
 use hdf5::Group;
-use std::os::unix::fs::FileExt;
+use percute_system::write_all_at;
 use std::path::{Path, PathBuf};
 
 /// Overhead of the library beside the arrays (bytes), with a margin.
@@ -36,7 +36,7 @@ impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
         for ((field, place), values) in self.contents.fields.iter().zip(&self.places).zip(values) {
             let row = (8 * field.components * self.contents.rows(field.place)) as u64;
             let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_ne_bytes()).collect();
-            let written = self.unnamed.file().write_all_at(&bytes, place + self.written as u64 * row);
+            let written = write_all_at(self.unnamed.file(), &bytes, place + self.written as u64 * row);
             written.map_err(|source| FileCause::Create { source }.at(&self.path))?;
         }
         self.written += 1;

@@ -10,10 +10,9 @@ use crate::read::Part;
 use crate::write::{offset, room};
 use hdf5::Group;
 use percute_core::history::{Checkpoint, SUMS};
-use rustix::fs::{FallocateFlags, fallocate};
+use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 
 /// Steps from one to the next. A checkpoint has less than three times the numbers of a step.
 const EVERY: usize = 64;
@@ -80,16 +79,14 @@ impl CheckpointPlaces {
         let fields = displacement.iter().chain(half_step).flatten().copied();
         let numbers: Vec<f64> = head.chain(fields).collect();
         let at = (step / EVERY % ROWS) as u64;
-        file.write_all_at(&bytes(&numbers), self.numbers + 8 * self.row * at)?;
-        file.write_all_at(&sum(&numbers).to_ne_bytes(), self.checksums + 8 * at)
+        write_all_at(file, &bytes(&numbers), self.numbers + 8 * self.row * at)?;
+        write_all_at(file, &sum(&numbers).to_ne_bytes(), self.checksums + 8 * at)
     }
 
     /// Gives back the room of a run that has ended: the rows become holes. Checksums of 0 are those of no row.
     pub(super) fn give_back(&self, file: &File) {
-        let flags = FallocateFlags::PUNCH_HOLE | FallocateFlags::KEEP_SIZE;
-        // File systems without holes keep the room.
-        let _ = fallocate(file, flags, self.numbers, 8 * self.row * ROWS as u64);
-        let _ = file.write_all_at(&[0; 8 * ROWS], self.checksums);
+        percute_system::give_back(file, self.numbers, 8 * self.row * ROWS as u64);
+        let _ = write_all_at(file, &[0; 8 * ROWS], self.checksums);
     }
 }
 

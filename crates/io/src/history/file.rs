@@ -5,13 +5,13 @@ use super::rows::FIELDS;
 use super::sums::{check_rows, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
 use percute_core::mesh::Mesh;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
+use percute_system::is_at;
 use std::fs::File;
 use std::io;
 use std::ops::Range;
@@ -35,7 +35,7 @@ impl Identity {
     }
 
     fn is_still_at(&self, path: &Path) -> bool {
-        Held::same(&self.0, path)
+        is_at(&self.0, path)
     }
 }
 

@@ -1,13 +1,13 @@
 //! Numbers in a file as in memory, the layout of HDF5's native types.
 
 use crate::mesh::in_space;
+use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 
 /// Writes nodal vectors with three components for ParaView.
 pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
-    file.write_all_at(&bytes(&in_space(values)), place)
+    write_all_at(file, &bytes(&in_space(values)), place)
 }
 
 /// The bytes of numbers.

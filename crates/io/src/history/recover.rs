@@ -8,7 +8,7 @@ use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::steps::{give_steps, note_steps};
 use percute_core::each_dimension;
-use rustix::fs::{FallocateFlags, fallocate};
+use percute_system::give_back;
 use std::fs::File;
 use std::path::Path;
 
@@ -74,9 +74,7 @@ pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
 pub(super) fn give_back_room(file: &File, rooms: impl IntoIterator<Item = (u64, u64)>, planned: usize, count: usize) {
     let unwritten = planned.saturating_sub(count) as u64;
     for (place, row) in rooms.into_iter().filter(|(_, row)| row * unwritten > 0) {
-        let flags = FallocateFlags::PUNCH_HOLE | FallocateFlags::KEEP_SIZE;
-        // File systems without holes keep the room.
-        let _ = fallocate(file, flags, place + row * count as u64, row * unwritten);
+        give_back(file, place + row * count as u64, row * unwritten);
     }
 }
 

@@ -15,8 +15,8 @@ use percute_core::history::Checkpoint;
 use percute_core::problem::Problem;
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
+use percute_system::write_all_at;
 use std::fs::File;
-use std::os::unix::fs::FileExt;
 
 /// A history to which its run goes on to add steps.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ where
         let bytes = opened.bytes();
         drop(opened);
         reserve(held.file(), path, bytes)?;
-        held.file().write_all_at(&[0], places.complete).map_err(create)?;
+        write_all_at(held.file(), &[0], places.complete).map_err(create)?;
         let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint<D>| checkpoint.step + 1);
         let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
         let (kept, given) = (now.keeps(), now.stored());

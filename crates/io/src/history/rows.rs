@@ -4,9 +4,9 @@ use super::checkpoints::CheckpointPlaces;
 use super::native::{bytes, write_vectors};
 use crate::checksum::Checksum;
 use percute_core::history::Step;
+use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 
 /// Fields over time, in the order of their checksums.
 pub(super) const FIELDS: [&str; 5] = ["displacement", "velocity", "acceleration", "reaction", "touching"];
@@ -90,13 +90,13 @@ impl<const D: usize> Row<D> {
         }
         if places.has_contact {
             let reaction = bytes(self.reaction.as_flattened());
-            file.write_all_at(&reaction, places.reaction + n * contact * 8 * D as u64)?;
-            file.write_all_at(&self.touching, places.touching + n * contact)?;
+            write_all_at(file, &reaction, places.reaction + n * contact * 8 * D as u64)?;
+            write_all_at(file, &self.touching, places.touching + n * contact)?;
         }
         let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
-        file.write_all_at(&sums, places.checksums + n * sums.len() as u64)?;
+        write_all_at(file, &sums, places.checksums + n * sums.len() as u64)?;
         let count = (self.place + 1).max(places.had) as u64;
-        file.write_all_at(&count.to_ne_bytes(), places.steps_written)
+        write_all_at(file, &count.to_ne_bytes(), places.steps_written)
     }
 
     /// The checksums of the fields, in the order of [`FIELDS`]; 0 of those that are not stored.

@@ -8,9 +8,9 @@ use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::unfinished::Unfinished;
 use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step, StepError};
+use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
@@ -136,7 +136,7 @@ impl<const D: usize> Writer<D> {
             checkpoints.give_back(self.held.file());
         }
         // The last write: a file that is complete is the same, byte by byte, wherever its run was killed.
-        self.held.file().write_all_at(&[1], self.places.complete).map_err(told)?;
+        write_all_at(self.held.file(), &[1], self.places.complete).map_err(told)?;
         self.held.file().sync_all().map_err(told)?;
         if now == self.path { Ok(()) } else { Err(FileCause::Lost { now: Some(now) }) }
     }

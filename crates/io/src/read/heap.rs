@@ -2,9 +2,9 @@
 //! of a wrong size can keep the library in an endless loop.
 
 use memchr::memmem;
+use percute_system::read_exact_at;
 use std::fs::File;
 use std::io;
-use std::os::unix::fs::FileExt;
 
 /// First bytes of a heap: its signature and its version. Three reserved bytes follow, which the library ignores.
 const SIGNATURE: [u8; 5] = *b"GCOL\x01";
@@ -27,7 +27,7 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
     let mut start = 0;
     while start < bytes {
         let length = block.len().min((bytes - start) as usize);
-        file.read_exact_at(&mut block[..length], start)?;
+        read_exact_at(file, &mut block[..length], start)?;
         for at in memmem::find_iter(&block[..length], &SIGNATURE) {
             let place = start + at as u64;
             if is_heap(file, place, bytes)? && !is_sound(file, place, bytes)? {
@@ -43,7 +43,7 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
 /// The size of a length in the file, from its superblock.
 fn size_of_lengths(file: &File) -> io::Result<u8> {
     let mut superblock = [0; 16];
-    file.read_exact_at(&mut superblock, 0)?;
+    read_exact_at(file, &mut superblock, 0)?;
     Ok(if superblock[8] < 2 { superblock[14] } else { superblock[10] })
 }
 
@@ -54,7 +54,7 @@ fn is_heap(file: &File, place: u64, bytes: u64) -> io::Result<bool> {
     if place + HEADER > bytes {
         return Ok(false);
     }
-    file.read_exact_at(&mut reserved, place + SIGNATURE.len() as u64)?;
+    read_exact_at(file, &mut reserved, place + SIGNATURE.len() as u64)?;
     Ok(reserved == RESERVED || length(file, place + 8, bytes)? <= bytes - place)
 }
 
@@ -68,7 +68,7 @@ fn is_sound(file: &File, place: u64, bytes: u64) -> io::Result<bool> {
     while at + HEADER <= size {
         let object = place + at;
         let mut index = [0; 2];
-        file.read_exact_at(&mut index, object)?;
+        read_exact_at(file, &mut index, object)?;
         let stored = length(file, object + 8, bytes)?;
         // The free space counts its own header.
         let needed = if index == [0; 2] { Some(stored) } else { padded(stored) };
@@ -91,7 +91,7 @@ fn length(file: &File, place: u64, bytes: u64) -> io::Result<u64> {
         return Ok(u64::MAX);
     }
     let mut stored = [0; 8];
-    file.read_exact_at(&mut stored, place)?;
+    read_exact_at(file, &mut stored, place)?;
     Ok(u64::from_le_bytes(stored))
 }
 
