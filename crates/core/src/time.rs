@@ -4,7 +4,7 @@ use crate::message::trimmed;
 use thiserror::Error;
 
 /// Runs longer than this many steps are taken for a mistake of unit.
-const MOST_STEPS: f64 = 1e8;
+const MOST_STEPS: f64 = if cfg!(fuzzing) { 1e5 } else { 1e8 };
 
 /// A step may exceed the critical one by this much, so that a ratio of 1 and a step copied from a summary
 /// with seven digits are not refused.

@@ -266,7 +266,22 @@ impl<'f> Part<'f> {
             return Ok(Some(text));
         }
         self.check_heaps(&data.kind)?;
+        self.check_length(&data)?;
         text(&data.set, &data.kind, data.name).map(Some)
+    }
+
+    /// Makes sure that the library takes no more memory for a text than the file has: it believes any length.
+    fn check_length(&self, data: &Data<'_>) -> Result<(), FileCause> {
+        if data.set.layout() != Layout::Contiguous {
+            let given = "a text of variable length in pieces".to_string();
+            return Err(FileCause::Type { name: data.name.clone(), given, needed: "a text in one piece" });
+        }
+        let Some(place) = data.set.offset() else { return Ok(()) };
+        let long = File::open(self.file.filename()).and_then(|file| heap::is_too_long(&file, place, self.file_bytes));
+        match long.map_err(|source| FileCause::Read { source })? {
+            true => Err(FileCause::Damaged { detail: format!("the length of the text `{}`", data.name) }),
+            false => Ok(()),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The heaps of texts of variable length, checked before the library reads them: they have no checksums, and an object
-//! of a wrong size can keep the library in an endless loop.
+//! of a wrong size can keep the library in an endless loop. A text is stored as a reference: its length (4 bytes), the
+//! place of its heap (8) and the number of its object (4). The library takes memory for the length before it looks for
+//! the object.
 
 use memchr::memmem;
 use percute_system::read_exact_at;
@@ -12,6 +14,8 @@ const SIGNATURE: [u8; 5] = *b"GCOL\x01";
 const RESERVED: [u8; 3] = [0; 3];
 /// Bytes of its header, and of that of an object.
 const HEADER: u64 = 16;
+/// Most objects of a heap.
+const OBJECTS: u32 = u16::MAX as u32;
 /// Bytes that are searched at once.
 const BLOCK: usize = 1 << 20;
 
@@ -23,21 +27,51 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
     if size_of_lengths(file)? != 8 {
         return Ok(Err("its texts have a layout that percute does not read".to_string()));
     }
-    let mut block = vec![0; BLOCK];
-    let mut start = 0;
+    let mut heaps = Vec::new();
+    for place in places(file, bytes, &SIGNATURE)? {
+        if is_heap(file, place, bytes)? {
+            if !is_sound(file, place, bytes)? {
+                return Ok(Err(format!("the texts of variable length at byte {place}")));
+            }
+            heaps.push(place);
+        }
+    }
+    for heap in heaps {
+        for place in places(file, bytes, &heap.to_le_bytes())? {
+            // What has no number of an object behind it is no reference.
+            let reference = place >= 4 && place + 12 <= bytes && (1..=OBJECTS).contains(&number(file, place + 8)?);
+            if reference && is_too_long(file, place - 4, bytes)? {
+                return Ok(Err(format!("the length of a text at byte {}", place - 4)));
+            }
+        }
+    }
+    Ok(Ok(()))
+}
+
+/// Where these bytes are in a file.
+fn places(file: &File, bytes: u64, wanted: &[u8]) -> io::Result<Vec<u64>> {
+    let mut block = vec![0; BLOCK.min(bytes as usize)];
+    let (mut start, mut found) = (0, Vec::new());
     while start < bytes {
         let length = block.len().min((bytes - start) as usize);
         read_exact_at(file, &mut block[..length], start)?;
-        for at in memmem::find_iter(&block[..length], &SIGNATURE) {
-            let place = start + at as u64;
-            if is_heap(file, place, bytes)? && !is_sound(file, place, bytes)? {
-                return Ok(Err(format!("the texts of variable length at byte {place}")));
-            }
-        }
-        // A signature may begin at the end of a block.
-        start += if length < BLOCK { length } else { length - (SIGNATURE.len() - 1) } as u64;
+        found.extend(memmem::find_iter(&block[..length], wanted).map(|at| start + at as u64));
+        // They may begin at the end of a block.
+        start += if length < BLOCK { length } else { length - (wanted.len() - 1) } as u64;
     }
-    Ok(Ok(()))
+    Ok(found)
+}
+
+/// Whether the number of four bytes at a place, such as the length in a reference, is beyond the end of the file.
+pub(super) fn is_too_long(file: &File, place: u64, bytes: u64) -> io::Result<bool> {
+    Ok(u64::from(number(file, place)?) > bytes)
+}
+
+/// The number of four bytes at a place.
+fn number(file: &File, place: u64) -> io::Result<u32> {
+    let mut stored = [0; 4];
+    read_exact_at(file, &mut stored, place)?;
+    Ok(u32::from_le_bytes(stored))
 }
 
 /// The size of a length in the file, from its superblock.
@@ -119,6 +153,22 @@ mod tests {
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&bytes).unwrap();
         check(&file, bytes.len() as u64).unwrap()
+    }
+
+    #[test]
+    fn references_must_be_shorter_than_the_file() {
+        let reference = |length: u32, heap: u64, number: u32| {
+            self::heap(|bytes| {
+                bytes.extend(length.to_le_bytes());
+                bytes.extend(heap.to_le_bytes());
+                bytes.extend(number.to_le_bytes());
+            })
+        };
+        assert_eq!(reference(11, 48, 1), Ok(()));
+        assert!(reference(0xf000_0000, 48, 1).is_err());
+        // Numbers that are none.
+        assert_eq!(reference(0xf000_0000, 49, 1), Ok(()));
+        assert_eq!(reference(0xf000_0000, 48, 0), Ok(()));
     }
 
     #[test]

@@ -71,6 +71,25 @@ fn child() {
     }
 }
 
+/// HDF5 takes memory for the length in a reference before it looks for the text.
+#[test]
+fn a_text_longer_than_its_file_is_refused() {
+    let folder = folder();
+    let [path, other] = ["a.vtkhdf", "b.vtkhdf"].map(|name| folder.path().join(name));
+    small(&path);
+    rewrite(&path, &other, Style::Narrow);
+    assert!(ask(&other).is_some());
+    let place = raw(&other, hdf5::OpenMode::Read).dataset("percute/problem").unwrap().offset().unwrap() as usize;
+    let mut bytes = std::fs::read(&other).unwrap();
+    bytes[place + 3] = 0xf0;
+    std::fs::write(&other, bytes).unwrap();
+    let told = percute_io::history::open(&other).unwrap_err().to_string();
+    assert!(
+        told.contains("the length of the text `percute/problem`") || told.contains("the length of a text"),
+        "{told}"
+    );
+}
+
 /// Each stored number of the steps and of the mesh: one that is changed is refused, with its field and instant, or is
 /// not read.
 #[test]
