@@ -88,6 +88,15 @@ def test_files_of_other_kinds(tmp_path: Path) -> None:
         assert isinstance(raised.value, ValueError) and path.name in str(raised.value)
 
 
+def test_arrays_of_another_program_are_shown_their_way(tmp_path: Path) -> None:
+    file = tmp_path / "mine.npz"
+    np.savez(file, displacement=np.zeros((3, 4, 2)))
+    for words in (["estimate", str(file)], ["report", str(file), str(tmp_path / "page.html")]):
+        done = subprocess.run([sys.executable, "-m", "percute", *words], capture_output=True, text=True, check=False)
+        said = " ".join(done.stderr.split())
+        assert done.returncode == 2 and "`pc.History.from_arrays` (docs/foreign.md)" in said, said
+
+
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
@@ -95,6 +104,7 @@ def test_files_of_other_kinds(tmp_path: Path) -> None:
         ("text.h5", b"hello", "not an HDF5 file in spite of its name"),
         ("report.json", b'{"error": 1}', "a JSON document, not a case"),
         ("map.svg", b"<svg></svg>", "XML, such as an SVG picture"),
+        ("mine.npz", b"PK\x03\x04", "arrays of another program are graded in Python, by `pc.History.from_arrays` (docs/foreign.md)"),
         ("map.png", b"\x89PNG\r\n\x1a\n\x00\xff", "a picture (PNG), not a case"),
     ],
 )

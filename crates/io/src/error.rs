@@ -76,7 +76,10 @@ pub enum FileCause {
     #[error("the file is empty, neither a history nor an estimate; create it again")]
     Empty,
     /// Not an HDF5 file.
-    #[error("this is not an HDF5 file, so neither a history nor an estimate; run a case first")]
+    #[error(
+        "this is not an HDF5 file, so neither a history nor an estimate; run a case first, or give the arrays of \
+         another program to `pc.History.from_arrays` (docs/foreign.md)"
+    )]
     NotHdf5,
     /// HDF5 cannot read the file.
     #[error("the file is truncated or damaged: {detail}; copy or create it again")]

@@ -2,13 +2,21 @@
 
 use std::path::Path;
 
+/// The way out for arrays.
+macro_rules! arrays {
+    () => {
+        "; arrays of another program are graded in Python, by `pc.History.from_arrays` (docs/foreign.md)"
+    };
+}
+
 /// How files of other kinds begin.
-const BEGINNINGS: [(&[u8], &str); 7] = [
+const BEGINNINGS: [(&[u8], &str); 8] = [
     (b"\x89PNG", "a picture (PNG), not a case"),
     (b"GIF8", "a picture (GIF), not a case"),
     (b"\xff\xd8\xff", "a picture (JPEG), not a case"),
     (b"%PDF", "a PDF document, not a case"),
-    (b"PK\x03\x04", "a ZIP archive, not a case"),
+    (b"PK\x03\x04", concat!("a ZIP archive or NumPy arrays (.npz), not a case", arrays!())),
+    (b"\x93NUMPY", concat!("a NumPy array, not a case", arrays!())),
     (b"\x1f\x8b", "a compressed file (gzip), not a case; unpack it first"),
     (b"<", "XML, such as an SVG picture, an HTML page or a VTU file, not a case"),
 ];
@@ -45,6 +53,8 @@ mod tests {
             ("a.vtkhdf", &b""[..], "an empty file, no history"),
             ("a.VTKHDF", b"hello", "not an HDF5 file in spite of its name"),
             ("a.json", b"\n{\"levels\": []}", "a JSON document"),
+            ("a.npz", b"PK\x03\x04", "`pc.History.from_arrays` (docs/foreign.md)"),
+            ("a.npy", b"\x93NUMPY\x01", "`pc.History.from_arrays` (docs/foreign.md)"),
             ("a.svg", b"<svg/>", "an SVG picture"),
             ("a.vtkhdf", b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
         ] {
