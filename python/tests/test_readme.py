@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib.pyplot as plt
+import numpy as np
 import percute as pc
 import pytest
+from conftest import block
 
 ROOT = Path(__file__).parents[2]
 
@@ -78,6 +80,20 @@ def test_the_solver_of_the_page_on_other_programs_is_graded(capsys: pytest.Captu
     last = names["history"].time[-1]
     shorter = pc.estimate(pc.simulate(names["problem"], end=last, step=names["dt"]))
     assert names["estimate"].sup == pytest.approx(shorter.sup, rel=1e-9)
+
+
+def test_the_cut_of_the_page_on_other_programs_ends_with_the_first_contact() -> None:
+    text = (ROOT / "docs" / "foreign.md").read_text()
+    cut = re.findall(r"```python\n(loaded = .*?)```", text, re.DOTALL)[0]
+    whole = pc.simulate(block(), end=40e-6, courant=0.8)
+    loaded = whole.reaction.any(axis=(1, 2))
+    last = int(loaded.nonzero()[0].max())
+    assert loaded[loaded.argmax() : last].all() and last + 2 < len(whole)
+    for count, kept in ((len(whole), last + 2), (last, last)):
+        arrays = {name: getattr(whole, name)[:count] for name in ("time", "displacement", "reaction")}
+        names: dict[str, Any] = {"np": np, "pc": pc, "problem": whole.problem, **arrays}
+        exec(cut, names)
+        assert len(names["history"]) == kept
 
 
 def test_the_example_of_the_package_runs() -> None:
