@@ -8,9 +8,9 @@ import percute as pc
 from numpy.typing import NDArray
 
 Parts = dict[str, Any]
-"""The arrays of a history, and changes of its problem: factors, a shift of the plane (m), a turn of its normal (rad), another Poisson's ratio or hypothesis."""
+"""The arrays of a history, and changes of its problem: factors (of all lengths, of those of the mesh), a shift of the plane (m), a turn of its normal (rad), another Poisson's ratio or hypothesis."""
 STATED = {
-    **{"density": 1.0, "young": 1.0, "speed": 1.0, "friction": 1.0, "lengths": 1.0, "thickness": 1.0},
+    **{"density": 1.0, "young": 1.0, "speed": 1.0, "friction": 1.0, "lengths": 1.0, "mesh": 1.0, "thickness": 1.0},
     **{"plane": 0.0, "turn": 0.0, "poisson": None, "hypothesis": None},
 }
 
@@ -48,7 +48,8 @@ def given(problem: pc.Problem, parts: Parts) -> pc.History:
         turned = np.array([[cos, -sin], [sin, cos]]) @ normal if normal.size == 2 else normal
         return pc.Plane(point=point, normal=turned, friction=parts["friction"] * plane.friction)
 
-    mesh = pc.Mesh(parts["lengths"] * problem.mesh.points, problem.mesh.cells) if parts["lengths"] != 1.0 else problem.mesh
+    length = parts["lengths"] * parts["mesh"]
+    mesh = pc.Mesh(length * problem.mesh.points, problem.mesh.cells) if length != 1.0 else problem.mesh
     stated = pc.Problem(
         mesh,
         material=pc.Elastic(young=parts["young"] * old.young, density=parts["density"] * old.density, **chosen),

@@ -99,6 +99,14 @@ Told = str | tuple[str, str]
 PLANE: dict[str, tuple[Mistake, Told]] = {
     "pressure only": (tangential(0.0), f"the contact forces have no tangential parts: .*{FALLS}"),
     "friction the other way": (tangential(-1.0), f"the tangential contact forces have the wrong sign: .*{FALLS}"),
+    "pressure the other way": (
+        lambda _, parts: {**parts, "reaction": parts["reaction"] * (1.0, -1.0)},
+        f"the normal contact forces have the wrong sign: they push the body off .*{FALLS} less than",
+    ),
+    "normal part first": (
+        lambda _, parts: {**parts, "reaction": parts["reaction"][..., ::-1]},
+        f"the components of the contact forces are exchanged: .*{FALLS} less than",
+    ),
     "half of the friction": (tangential(0.5), f"the tangential contact forces should be 2 times as large; .*{FALLS}"),
     "rows shuffled": (
         rows(lambda nodes: np.random.default_rng(2).permutation(len(nodes))),
@@ -118,6 +126,58 @@ PLANE: dict[str, tuple[Mistake, Told]] = {
     "plane strain": (lambda _, parts: {**parts, "hypothesis": "strain"}, f'`plane` is "stress" in the history; .*{FALLS}'),
     "per metre": (lambda _, parts: {**parts, "thickness": 0.01}, "should be 0.01 times as large .given per metre of thickness"),
 }
+
+@pytest.mark.parametrize("lacks", [(), ("reaction", "touching")])
+@pytest.mark.parametrize("speed", [(1.0, 1.02), (1.0, 1.015), (1.02, 1.02), (-1.0, 1.0), (-1.0, -1.0), (1.0, 0.0)])
+def test_another_initial_velocity_is_named(speed: tuple[float, float], lacks: tuple[str, ...], correct: pc.History) -> None:
+    """Its factor is told if it has one."""
+    if correct.problem.mesh.dimension == 1:
+        speed = (speed[0],)  # type: ignore[assignment]
+    if speed == (1.0,):
+        pytest.skip("the velocity of the history")
+    said = cause(correct.problem, without({**parts(correct), "speed": np.array(speed)}, *lacks))
+    assert "Likely cause: `initial_velocity` is not that of the history, which starts with" in said, said
+    factor = 1 / speed[0] if len(set(speed)) == 1 else None
+    assert re.findall("([-0-9.]+) times the stated one", said) == ([] if factor is None else [f"{factor:.4g}"]), said
+
+
+def test_forces_in_the_axes_of_a_plane_are_named() -> None:
+    sin, cos = np.sin(0.3), np.cos(0.3)
+    turn, flat = np.array([[cos, -sin], [sin, cos]]), block()
+    mesh = pc.Mesh(flat.mesh.points @ turn.T, flat.mesh.cells)
+    plane = pc.Plane(point=turn @ flat.obstacles[0].point, normal=turn @ (0.0, 1.0), friction=0.2)
+    problem = pc.Problem(mesh, material=flat.material, obstacles=[plane], initial_velocity=turn @ (400.0, -400.0))
+    whole = parts(pc.simulate(problem, end=13e-6, courant=0.8))
+    local = whole["reaction"] @ turn
+    for order, where in (((1, 0), "first"), ((0, 1), "last")):
+        said = cause(problem, {**whole, "reaction": local[..., order]})
+        assert re.search(f"in the axes of the plane, the normal part {where}: .*{FALLS} less than", said), said
+
+
+@pytest.mark.parametrize("kind", [bar, block, tilted])
+def test_a_mesh_in_another_unit_is_named_before_its_density(kind: Callable[[], pc.Problem]) -> None:
+    correct = pc.simulate(kind(), end=20e-6, courant=0.8)
+    said = cause(correct.problem, {**parts(correct), "mesh": 1e3})
+    assert re.search(rf"Likely cause: the mesh should be 0.001 times as large \(given in mm\?\).*{FALLS}", said), said
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction", "touching")])
+def test_the_terms_of_the_balance_are_told_if_no_cause_is(lacks: tuple[str, ...], correct: pc.History) -> None:
+    """Of displacements that do not fit anywhere, and at few nodes."""
+    whole, random = without(parts(correct), *lacks), np.random.default_rng(1)
+    nodes = whole["displacement"].shape[1]
+    noise = np.zeros_like(whole["displacement"])
+    noise[1:, 9] = 1e-5 * random.standard_normal(noise[1:, 9].shape)
+    spoilt = (
+        (whole["displacement"][:, random.permutation(nodes)], "the displacements do not fit the mesh"),
+        (whole["displacement"] + noise, "nodes have .* of its square .*: their rows, supports, loads or materials differ"),
+    )
+    for displacement, hint in spoilt:
+        said = cause(correct.problem, {**whole, "displacement": displacement})
+        terms = "along [xy], M a = .* N, K u = .* N, F = .* N, R = .* N; 99 % of its square are at [0-9]+ of [0-9]+ nodes"
+        assert re.search(f"{terms} .*Likely cause: .*{hint}", said), said
+
+
 SIGN = "the sign of the displacements is wrong"
 ANY: dict[str, tuple[Mistake, Told]] = {
     # The balance inside the body holds with either sign.
@@ -358,13 +418,15 @@ def test_noise_is_no_contact(correct: pc.History) -> None:
     assert np.array_equal(theirs.touching, correct.touching[: len(theirs)])
 
 
-def penalty(stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 400.0) -> tuple[pc.Problem, Parts]:
+def penalty(
+    stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 400.0, consistent: bool = False
+) -> tuple[pc.Problem, Parts]:
     """A block of percute's mesh with contact and friction by penalties (Pa/m), R_n from the penetration at t_n."""
     stated = block(friction=friction)
     problem = pc.Problem(stated.mesh, material=stated.material, obstacles=stated.obstacles, initial_velocity=(sideways, -400.0))
     points, cells, density, young, poisson = problem.mesh.points, problem.mesh.cells, 2700.0, 70e9, 0.3
     hooke = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
-    matrix, mass = np.zeros((2 * len(points), 2 * len(points))), np.zeros(len(points))
+    matrix, mass = np.zeros((2 * len(points), 2 * len(points))), np.zeros((len(points), len(points)))
     for cell in cells:
         corners = np.column_stack([np.ones(3), points[cell]])
         gradients, area = np.linalg.inv(corners)[1:], 0.5 * abs(np.linalg.det(corners))
@@ -372,14 +434,15 @@ def penalty(stiffness: float, courant: float = 0.8, friction: float = 0.0, sidew
         b[0, 0::2], b[1, 1::2], b[2, 0::2], b[2, 1::2] = gradients[0], gradients[1], gradients[1], gradients[0]
         rows = np.column_stack([2 * cell, 2 * cell + 1]).ravel()
         matrix[np.ix_(rows, rows)] += area * b.T @ hooke @ b
-        mass[cell] += density * area / 3
+        share = (1.0 + np.eye(3)) / 12 if consistent else np.eye(3) / 3
+        mass[np.ix_(cell, cell)] += density * area * share
     bottom = np.flatnonzero(points[:, 1] == 0.0)
     springs = np.where((points[bottom, 0] == 0) | (points[bottom, 0] == 0.05), 0.5, 1.0) * stiffness * 0.05 / 8
     stiff = matrix.copy()
     stiff[2 * bottom + 1, 2 * bottom + 1] += springs
     stiff[2 * bottom, 2 * bottom] += springs if friction else 0.0
-    inverse = np.repeat(mass**-0.5, 2)
-    critical = 2 / np.sqrt(np.linalg.eigvalsh(inverse[:, None] * stiff * inverse).max())
+    inverse = np.linalg.inv(mass)
+    critical = 2 / np.sqrt(np.linalg.eigvals(np.kron(inverse, np.eye(2)) @ stiff).real.max())
     steps = int(np.ceil(13e-6 / (courant * critical)))
     dt = 13e-6 / steps
     u, v = np.zeros_like(points), np.tile([sideways, -400.0], (len(points), 1))
@@ -395,7 +458,7 @@ def penalty(stiffness: float, courant: float = 0.8, friction: float = 0.0, sidew
         anchor = np.where(normal > 0, along + r[bottom, 0] / springs, np.nan)
         displacement.append(u)
         reaction.append(r)
-        v = v + (dt / 2 if n == 0 else dt) * (r - (matrix @ u.ravel()).reshape(-1, 2)) / mass[:, None]
+        v = v + (dt / 2 if n == 0 else dt) * inverse @ (r - (matrix @ u.ravel()).reshape(-1, 2))
         u = u + dt * v
     arrays = {"time": dt * np.arange(steps + 1), "displacement": np.array(displacement), "reaction": np.array(reaction)}
     return problem, {**STATED, **arrays}
@@ -436,6 +499,13 @@ def test_noise_is_no_sliding(correct: pc.History) -> None:
     noisy = {**parts(correct), "displacement": correct.displacement + noise * (correct.time > 0)[:, None, None]}
     estimate = pc.estimate(given(correct.problem, without(noisy, "touching")), force=True)
     assert ((estimate.consistency or {})["slip"] or 0.0) < 1e-2
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction",)])
+def test_a_consistent_mass_is_named(lacks: tuple[str, ...]) -> None:
+    problem, whole = penalty(1e14, consistent=True)
+    said = cause(problem, without(whole, *lacks))
+    assert re.search(f"the accelerations fit a consistent mass matrix, but percute lumps .*{FALLS} less than", said), said
 
 
 def test_an_unstable_penalty_is_named() -> None:

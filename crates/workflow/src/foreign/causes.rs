@@ -80,7 +80,7 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             return text;
         }
         let [given, stated] = ends.start;
-        let factor = ends.given.or(ends.speed).filter(|f| f.is_finite() && (f - 1.0).abs() > BALANCE);
+        let factor = ends.multiple.filter(|f| f.is_finite() && (f - 1.0).abs() > BALANCE);
         let factor = factor.map_or(String::new(), |f| format!(", {} the stated one", times(f)));
         format!(
             "`initial_velocity` is not that of the history, which starts with {} m/s on average{factor}; the problem \

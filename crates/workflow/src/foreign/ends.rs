@@ -15,8 +15,9 @@ pub(super) struct Ends<const D: usize> {
     pub(super) speed: Option<f64>,
     /// Means of v₀ as it is given, else of that velocity, and of the stated v₀ (m/s).
     pub(super) start: [[f64; D]; 2],
-    /// The same factor of the given velocity, if one is given.
-    pub(super) given: Option<f64>,
+    /// The factor of the stated v₀ that gives the velocity at the start, as it is given, else as above; none if the
+    /// two have different directions.
+    pub(super) multiple: Option<f64>,
     /// Difference of −v of the last step from v₀, over the norm of v₀; largest difference of u_N from u_0, over the
     /// size.
     pub(super) reversed: [f64; 2],
@@ -31,7 +32,7 @@ impl<const D: usize> Ends<D> {
         Self {
             speed: None,
             start: [[0.0; D]; 2],
-            given: None,
+            multiple: None,
             reversed: [0.0; 2],
             places: f64::INFINITY,
             offset: Vec::new(),
@@ -63,11 +64,12 @@ impl<const D: usize> Ends<D> {
         let stated = problem.initial_velocity();
         let quiet = |node: usize| !open(node) && reaction[node] == [0.0; D];
         self.speed = factor(&derived, stated, quiet);
-        self.given = given.as_ref().and_then(|given| factor(given, stated, |_| true));
         let started = given.clone().unwrap_or(derived);
         // At a node with a contact force, the velocity without forces depends on its mass.
-        let counts = |node: &usize| given.is_some() || quiet(*node);
-        let pairs = (0..stated.len()).filter(counts).flat_map(|node| started[node].into_iter().zip(stated[node]));
+        let counts = |node: usize| given.is_some() || quiet(node);
+        self.multiple = multiple(&started, stated, counts);
+        let pairs =
+            (0..stated.len()).filter(|node| counts(*node)).flat_map(|node| started[node].into_iter().zip(stated[node]));
         let [difference, most] = pairs.fold([0.0_f64; 2], |[d, m], (v, v0)| [d.max((v - v0).abs()), m.max(v.abs())]);
         let largest = stated.iter().flatten().fold(most, |most, v| most.max(v.abs()));
         found.initial_velocity = ratio(difference, largest);
@@ -116,6 +118,17 @@ fn factor<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(u
         (along + dot(&field[node], v0), own + dot(v0, v0))
     });
     (own > 0.0).then(|| along / own)
+}
+
+/// That factor, if it leaves little of the difference of the fields.
+fn multiple<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(usize) -> bool) -> Option<f64> {
+    let factor = factor(field, stated, &at)?;
+    let nodes: Vec<usize> = (0..field.len()).filter(|&node| at(node)).collect();
+    let apart = |factor: f64| -> f64 {
+        let pairs = nodes.iter().flat_map(|&node| field[node].into_iter().zip(stated[node]));
+        pairs.map(|(v, v0)| (v - factor * v0).powi(2)).sum::<f64>().sqrt()
+    };
+    (apart(factor) <= FALL * apart(1.0)).then_some(factor)
 }
 
 fn mean<const D: usize>(field: &[[f64; D]]) -> [f64; D] {

@@ -7,6 +7,7 @@ use super::ends::Ends;
 use super::figures::Consistency;
 use super::long_steps::at_long_steps;
 use super::residual::Residual;
+use super::tried::FALL;
 use super::velocities::Rates;
 use super::window::{Window, windows};
 use super::{take_in, widest};
@@ -26,6 +27,23 @@ pub(super) struct Evidence<'p, const D: usize, const N: usize> {
     pub(super) rates: Rates<D>,
     /// Whether velocities and accelerations are given.
     pub(super) given: [bool; 2],
+}
+
+impl<const D: usize, const N: usize> Evidence<'_, D, N> {
+    /// Whether no contact force was given or found, but the balance fails inside: it says nothing where one may act.
+    pub(super) fn silent(&self) -> bool {
+        !self.contact.forced.contains(&true) && self.residual.inside() > FALL * self.residual.norm([1.0; 4])
+    }
+}
+
+/// R at all nodes (N), from those of the surface; 0 at prescribed components.
+pub(super) fn nodal<const D: usize, const N: usize>(problem: &Problem<D, N>, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+    let mut nodal = vec![[0.0; D]; problem.mesh().node_count()];
+    for (contact, force) in problem.surface().nodes().iter().zip(reaction) {
+        nodal[contact.node.index()] = *force;
+    }
+    problem.prescribed().iter().for_each(|p| nodal[p.node.index()][p.component] = 0.0);
+    nodal
 }
 
 /// Measures a history, of which parts were derived, with the contact forces of so many steps later.
@@ -83,7 +101,7 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
         let terms = now.acceleration.as_ref().or(derived).map(|used| self.balance.terms(now, used));
         let steps = [self.balance.times().step(n), self.balance.times().velocity_step(n)];
         if let (Some(terms), Some(reaction)) = (&terms, reaction) {
-            self.evidence.residual.add(terms, &self.nodal(reaction), n, now.time);
+            self.evidence.residual.add(terms, &nodal(self.balance.problem(), reaction), n, now.time);
         }
         if let Some(motion) = &motion {
             let mass = self.balance.problem().mass();
@@ -97,24 +115,13 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
         }
     }
 
-    /// R at all nodes; 0 at prescribed components.
-    fn nodal(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
-        let problem = self.balance.problem();
-        let mut nodal = vec![[0.0; D]; problem.mesh().node_count()];
-        for (contact, force) in problem.surface().nodes().iter().zip(reaction) {
-            nodal[contact.node.index()] = *force;
-        }
-        problem.prescribed().iter().for_each(|p| nodal[p.node.index()][p.component] = 0.0);
-        nodal
-    }
-
     /// Compares given velocities and accelerations with those of the displacements, and the start with that of the
     /// problem.
     fn compare(&mut self, window: Window<'_, D>, motion: &Motion<D>) {
         let now = window.now;
         self.evidence.rates.take(window, motion, self.balance.times());
         if now.index == 0 {
-            let reaction = self.nodal(&now.reaction);
+            let reaction = nodal(self.balance.problem(), &now.reaction);
             let Evidence { residual, ends, .. } = &mut self.evidence;
             let open = |node: usize| residual.is_open(node);
             ends.start((&self.balance, window), motion, (&reaction, &open), &mut self.found);

@@ -1,5 +1,6 @@
 //! Histories of other programs: what they lack is derived, and their consistency is checked.
 
+mod axes;
 mod balance;
 mod causes;
 mod complete;
@@ -13,6 +14,7 @@ mod instants;
 mod limits;
 mod long_steps;
 mod lost;
+mod mass;
 mod measure;
 mod moduli;
 mod nearness;
@@ -128,6 +130,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     if let Some(first) = exceeded.first() {
         let cause = suspect.cause(&exceeded)?;
         let place = if cause.is_none() && balance.is_some() { of_balance::place(&suspect) } else { String::new() };
+        let cause = cause.or_else(|| of_balance::hint(&suspect).filter(|_| balance.is_some()));
         return Err(Refusal::Inconsistent { figure: format!("{}{place}", balance.unwrap_or(first).what), cause });
     }
     Ok((found, samples))

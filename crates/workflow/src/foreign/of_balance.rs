@@ -3,9 +3,10 @@
 use super::contact::Contact;
 use super::holding::{MOST, holding};
 use super::limits::BALANCE;
+use super::residual::Residual;
 use super::suspect::Suspect;
 use super::tried::{FALL, Tried, best};
-use super::{instants, lost, moduli, orders, planes, rounded, skipped, surface, units};
+use super::{instants, lost, mass, moduli, orders, planes, rounded, skipped, surface, units};
 use crate::message::{numbered, percent, trimmed};
 use crate::through::Through;
 use percute_core::dynamics::critical_time_step;
@@ -28,7 +29,7 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     if let Some(text) = skipped::skipped(suspect)? {
         return Ok(Some(text));
     }
-    Ok(rounded::rounded(suspect)?.or_else(|| at_silent_nodes(suspect)).or_else(|| at_few_nodes(suspect)))
+    Ok(rounded::rounded(suspect)?.or_else(|| at_silent_nodes(suspect)).or_else(|| one_value(suspect)))
 }
 
 /// The change that leaves the least residual, if it is little.
@@ -43,6 +44,7 @@ pub(super) fn changed<const D: usize, const N: usize>(
         tried.extend(surface::tried(suspect)?);
     } else {
         tried.extend(moduli::tried(suspect)?);
+        tried.push(mass::consistent(suspect)?);
         tried.extend(instants::tried(suspect)?);
         tried.extend(orders::places(suspect)?);
         tried.extend(orders::orders(suspect)?);
@@ -96,23 +98,35 @@ fn at_silent_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) 
     Some(format!("the contact forces of {nodes} are missing: a force acts there by the balance"))
 }
 
-/// Few nodes, or a single value, or a history that has nothing to do with the mesh.
-fn at_few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
-    let residual = &suspect.evidence.residual;
-    let ((nodes, share), (instants, _)) = (holding(&residual.by_node, MOST), holding(&residual.by_instant, MOST));
-    let all = residual.by_node.len();
-    if nodes.len() <= FEW.max((FEW_OF_ALL * all as f64) as usize) && nodes.len() < all {
-        let worst = &residual.worst;
-        if instants.last().zip(instants.first()).is_some_and(|(last, first)| last - first <= 2) {
-            let (node, time) = (worst.node, trimmed(worst.time, 5));
-            return Some(format!(
-                "a value of node {node}, or of a node beside it, is wrong at about {time} s: the residual is there \
-                 alone"
-            ));
-        }
+/// A single value: few nodes at few instants.
+fn one_value<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+    let Residual { worst, by_instant, .. } = &suspect.evidence.residual;
+    let (instants, _) = holding(by_instant, MOST);
+    few_nodes(suspect)?;
+    let at_once = instants.last().zip(instants.first()).is_some_and(|(last, first)| last - first <= 2);
+    at_once.then(|| {
+        let (node, time) = (worst.node, trimmed(worst.time, 5));
+        format!(
+            "a value of node {node}, or of a node beside it, is wrong at about {time} s: the residual is there alone"
+        )
+    })
+}
+
+/// The nodes that have the residual and the share that they have of its square, if they are few of all.
+fn few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<(Vec<usize>, f64)> {
+    let by_node = &suspect.evidence.residual.by_node;
+    let (nodes, share) = holding(by_node, MOST);
+    let few = FEW.max((FEW_OF_ALL * by_node.len() as f64) as usize).min(by_node.len() - 1);
+    (nodes.len() <= few).then_some((nodes, share))
+}
+
+/// What to look at if no change helps: few nodes, or a history that has nothing to do with the mesh.
+pub(super) fn hint<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+    if let Some((nodes, share)) = few_nodes(suspect) {
         return Some(format!(
-            "{} of {all} nodes have {} of its square ({}): their rows, supports, loads or materials differ",
+            "{} of {} nodes have {} of its square ({}): their rows, supports, loads or materials differ",
             nodes.len(),
+            suspect.evidence.residual.by_node.len(),
             percent(share),
             numbered("node", &nodes)
         ));

@@ -55,6 +55,11 @@ impl Residual {
         Self { worst, largest: 0.0, by_node, by_instant, largest_at, surface, open, products: [[[0.0; 4]; 4]; 2] }
     }
 
+    /// The residual of the same body before the first instant.
+    pub(super) fn emptied(&self) -> Self {
+        Self::new(self.surface.clone(), self.open)
+    }
+
     /// Adds an instant (s) with its contact forces at all nodes (N).
     pub(super) fn add<const D: usize>(&mut self, terms: &Terms<D>, reaction: &[[f64; D]], index: usize, time: f64) {
         for sizes in [&mut self.by_instant, &mut self.largest_at] {

@@ -1,5 +1,7 @@
-//! Contact forces against those that the balance needs at the surface: the order of their rows, their tangential parts.
+//! Contact forces against those that the balance needs at the surface: the order of their rows, their normal and
+//! tangential parts, their axes.
 
+use super::axes::{READINGS, read};
 use super::balance::{Balance, dot};
 use super::suspect::Suspect;
 use super::tried::Tried;
@@ -9,7 +11,7 @@ use percute_core::history::SinkError;
 
 /// On larger surfaces, orders of the rows are not searched: their products take too much memory.
 const MOST: usize = 2000;
-/// Tangential forces below this share of those that the balance needs are none (squares).
+/// Parts of the forces below this share of those that the balance needs are none (squares).
 const NONE: f64 = 1e-6;
 /// Rows that are named.
 const NAMED: usize = 4;
@@ -21,16 +23,22 @@ struct Needed {
     needed: Vec<f64>,
     /// Of the given force of a row with the needed one of another.
     both: Vec<f64>,
-    /// Of the tangential parts under given forces: given, needed, and their product.
-    tangential: [f64; 3],
+    /// Of the tangential and the normal parts under given forces: given, needed, and their product.
+    parts: [[f64; 3]; 2],
+    /// Of given forces with needed ones, read in other axes.
+    read: [f64; READINGS.len()],
 }
 
 impl Needed {
     /// The square of what rows leave that hold the forces of these others.
     fn left(&self, of: &[usize]) -> f64 {
         let product = |(row, &at): (usize, &usize)| self.both[row * self.count + at];
-        let squares: f64 = self.given.iter().sum::<f64>() + self.needed.iter().sum::<f64>();
-        squares - 2.0 * of.iter().enumerate().map(product).sum::<f64>()
+        self.without(of.iter().enumerate().map(product).sum())
+    }
+
+    /// The square of what forces leave that have this product with the needed ones.
+    fn without(&self, product: f64) -> f64 {
+        self.given.iter().sum::<f64>() + self.needed.iter().sum::<f64>() - 2.0 * product
     }
 
     /// The rows whose needed forces are nearest to the given ones, each once.
@@ -48,7 +56,7 @@ impl Needed {
     }
 }
 
-/// Other orders of the rows of contact forces, and other tangential parts.
+/// Other orders of the rows of contact forces, other normal and tangential parts, and other axes.
 pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
     let count = suspect.problem.surface().nodes().len();
     if count > MOST || !suspect.has_forces() {
@@ -63,7 +71,9 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
         left: ((rest - own + left).max(0.0) / size).sqrt(),
     };
     let nodes: Vec<usize> = suspect.problem.surface().nodes().iter().map(|contact| contact.node.index()).collect();
-    let mut all: Vec<Tried> = friction(&needed, own).map(|(text, left)| tried(text, left)).into_iter().collect();
+    let parts = PARTS.iter().zip(needed.parts).filter_map(|(part, products)| part.tried(products, own));
+    let mut all: Vec<Tried> = parts.map(|(text, left)| tried(text, left)).collect();
+    all.extend(READINGS.iter().zip(needed.read).map(|(text, both)| tried(text.to_string(), needed.without(both))));
     all.extend(known(&nodes).into_iter().map(|(text, of)| tried(text, needed.left(&of))));
     let of = needed.nearest();
     let moved = (0..count).filter(|&row| of[row] != row && needed.given[row] > 0.0).take(NAMED);
@@ -95,24 +105,38 @@ fn known(nodes: &[usize]) -> Vec<(String, Vec<usize>)> {
     told.into_iter().filter(|told| told.2 != own).map(|(order, give, of)| (text(order, give), of)).collect()
 }
 
-/// Tangential forces that are left out, or need a factor, with the square of what is left.
-fn friction(needed: &Needed, own: f64) -> Option<(String, f64)> {
-    let [given, wanted, both] = needed.tangential;
-    let misfit = given + wanted - 2.0 * both;
-    if misfit <= 0.0 {
-        return None;
+/// The tangential or the normal part of contact forces, for messages.
+struct Part {
+    name: &'static str,
+    sign: &'static str,
+}
+
+const PARTS: [Part; 2] = [
+    Part { name: "tangential", sign: "act on the body, against its sliding" },
+    Part { name: "normal", sign: "push the body off the planes" },
+];
+
+impl Part {
+    /// Forces whose part is left out, or needs a factor, with the square of what is left.
+    fn tried(&self, [given, wanted, both]: [f64; 3], own: f64) -> Option<(String, f64)> {
+        let (Self { name, sign }, misfit) = (self, given + wanted - 2.0 * both);
+        if misfit <= 0.0 {
+            return None;
+        }
+        if given <= NONE * wanted {
+            return Some((
+                format!("the contact forces have no {name} parts: give pressure and friction together"),
+                own - misfit,
+            ));
+        }
+        let factor = both / given;
+        let text = if (factor + 1.0).abs() < 0.02 {
+            format!("the {name} contact forces have the wrong sign: they {sign}")
+        } else {
+            format!("the {name} contact forces should be {} as large", times(factor))
+        };
+        Some((text, own - misfit + (wanted - factor * both)))
     }
-    if given <= NONE * wanted {
-        let text = "the contact forces have no tangential parts: give pressure and friction together".to_string();
-        return Some((text, own - misfit));
-    }
-    let factor = both / given;
-    let text = if (factor + 1.0).abs() < 0.02 {
-        "the tangential contact forces have the wrong sign: they act on the body, against its sliding".to_string()
-    } else {
-        format!("the tangential contact forces should be {} as large", times(factor))
-    };
-    Some((text, own - misfit + (wanted - factor * both)))
 }
 
 fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Needed, SinkError> {
@@ -124,7 +148,8 @@ fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
         given: vec![0.0; count],
         needed: vec![0.0; count],
         both: vec![0.0; count * count],
-        tangential: [0.0; 3],
+        parts: [[0.0; 3]; 2],
+        read: [0.0; READINGS.len()],
     };
     windows(suspect.source, &mut |window| {
         let now = window.now;
@@ -142,9 +167,15 @@ fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
                 sums.both[row * count + at] += dot(force, other);
             }
             let frame = surface.frame(row, &now.displacement[surface.nodes()[row].node.index()]);
-            let ((_, own), (_, wanted)) = (frame.split(force), frame.split(&needed[row]));
-            let products = [dot(&own, &own), dot(&wanted, &wanted), dot(&own, &wanted)];
-            sums.tangential.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+            let ((pressed, own), (pressing, wanted)) = (frame.split(force), frame.split(&needed[row]));
+            let products = [
+                [dot(&own, &own), dot(&wanted, &wanted), dot(&own, &wanted)],
+                [pressed * pressed, pressing * pressing, pressed * pressing],
+            ];
+            let parts = sums.parts.as_flattened_mut().iter_mut().zip(products.as_flattened());
+            parts.for_each(|(sum, product)| *sum += product);
+            let read = read(force, frame.normal());
+            sums.read.iter_mut().zip(&read).for_each(|(sum, read)| *sum += dot(read, &needed[row]));
         }
         Ok(())
     })?;
@@ -159,8 +190,9 @@ mod tests {
     fn rows_find_the_forces_that_they_hold() {
         // Row 0 holds what row 2 needs, row 1 nothing, row 2 what row 0 needs: 3 and 5.
         let both = vec![0.0, 0.0, 25.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0];
-        let needed =
-            Needed { count: 3, given: vec![25.0, 0.0, 9.0], needed: vec![9.0, 0.0, 25.0], both, tangential: [0.0; 3] };
+        let (given, wanted) = (vec![25.0, 0.0, 9.0], vec![9.0, 0.0, 25.0]);
+        let (parts, read) = ([[0.0; 3]; 2], [0.0; READINGS.len()]);
+        let needed = Needed { count: 3, given, needed: wanted, both, parts, read };
         assert_eq!(needed.nearest(), [2, 1, 0]);
         assert_eq!(needed.left(&[2, 1, 0]), 0.0);
         assert_eq!(needed.left(&[0, 1, 2]), 68.0);

@@ -89,9 +89,8 @@ pub(super) fn one_term<const D: usize, const N: usize>(
     derived: &[Derived],
 ) -> Vec<Tried> {
     let mut residual = evidence.residual.clone();
-    let silent = !evidence.contact.forced.contains(&true) && residual.inside() > FALL * residual.norm([1.0; 4]);
+    let silent = evidence.silent();
     if silent {
-        // No force was given or found: the balance says nothing where one may act.
         residual.leave_the_surface_open();
     }
     let open = silent || derived.contains(&Derived::Reaction);
@@ -128,6 +127,9 @@ pub(super) fn two_terms<const D: usize, const N: usize>(
         (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && D == 2 && agree(speed, 1.0) => {
             format!("{ALL_LENGTHS} {}", should(1.0 / of_r, Quantity::Length))
         }
+        (true, Some(speed)) if agree(of_m, of_r * of_r) && D == 1 && agree(speed, 1.0) && of_unit(of_r) => {
+            format!("the mesh {}", should(of_r, Quantity::Length))
+        }
         _ if residual_is_of_materials(problem, of_m, of_r) => format!(
             "`young` and `density` are not those of the history: `young` {}, and `density` {}",
             should(1.0 / of_r, Quantity::Modulus),
@@ -147,14 +149,17 @@ fn residual_is_of_materials<const D: usize, const N: usize>(problem: &Problem<D,
 pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>) -> Option<String> {
     let speed = evidence.ends.speed.filter(|speed| speed.is_finite() && (speed - 1.0).abs() > BALANCE)?;
     // Without any contact force, those of the first step change the velocity.
-    if agree(speed, -1.0) || (speed < -0.5 && !evidence.contact.forced.contains(&true)) {
+    let paths = evidence.contact.paths();
+    let silent = !evidence.contact.forced.contains(&true);
+    if (agree(speed, -1.0) && !paths.iter().any(|path| agree(*path, 1.0))) || (speed < -0.5 && silent) {
         return Some(displaced(-1.0));
     }
-    let paths = evidence.contact.paths();
-    let whole = paths.iter().all(|path| agree(path * speed, 1.0));
+    // The displacements as they are must miss the planes.
+    let fits = |path: &f64| agree(path * speed, 1.0) && (path * speed - 1.0).abs() <= FALL * (path - 1.0).abs();
+    let whole = paths.iter().all(fits);
     let hint = Quantity::Length.hint(1.0 / speed);
     // Missing forces of the first step change the velocity, too.
-    let whole = whole && (!hint.is_empty() || evidence.contact.forced.contains(&true));
+    let whole = whole && (!hint.is_empty() || !silent);
     match () {
         () if !paths.is_empty() && whole => Some(displaced(speed)),
         () if paths.is_empty() && !hint.is_empty() => Some(format!(
@@ -224,7 +229,7 @@ fn mass(factor: f64, context: Context) -> String {
     let time = format!("the steps should be {} as long{}", times(1.0 / scale), Quantity::Time.hint(1.0 / scale));
     let density = format!("it {}", should(factor, Quantity::Density));
     let modulus = format!("`young` {}", should(1.0 / factor, Quantity::Modulus));
-    let plain = |text: String, certain: bool| match lengths(scale, context) {
+    let plain = |text: String, certain: bool| match lengths(scale, context).or_else(|| mesh_alone(scale, context)) {
         None => text,
         Some(lengths) if certain => format!("{lengths}. Or {text}"),
         Some(lengths) => format!("{text}. Or {lengths}"),
@@ -255,16 +260,20 @@ fn mass(factor: f64, context: Context) -> String {
 
 /// A mesh and planes in another unit than the displacements, by the way to the plane.
 fn mesh(scale: f64, context: Context) -> Option<String> {
-    let hint = Quantity::Length.hint(scale);
     let far = context.path.is_some_and(|path| agree(path * scale, 1.0));
-    (hint.contains("given in") && far).then(|| format!("mesh and planes should be {} as large{hint}", times(scale)))
+    (of_unit(scale) && far).then(|| format!("mesh and planes {}", should(scale, Quantity::Length)))
+}
+
+/// A mesh in another unit than all the rest: in the balance of a plane body, only the mass depends on its lengths.
+fn mesh_alone(scale: f64, context: Context) -> Option<String> {
+    let only = context.dimension == 2 && context.speed.is_some_and(|speed| agree(speed, 1.0));
+    (of_unit(scale) && only).then(|| format!("the mesh {}", should(scale, Quantity::Length)))
 }
 
 /// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given.
 /// In a bar they always have.
 fn lengths(scale: f64, context: Context) -> Option<String> {
-    let hint = Quantity::Length.hint(scale);
-    if !hint.contains("given in") || !(context.open || context.dimension == 1) {
+    if !of_unit(scale) || !(context.open || context.dimension == 1) {
         return None;
     }
     let speed = context.speed.unwrap_or(1.0);
@@ -273,7 +282,7 @@ fn lengths(scale: f64, context: Context) -> Option<String> {
         () if agree(speed * scale, 1.0) => "mesh, planes and displacements",
         () => return None,
     };
-    Some(format!("{which} should be {} as large{hint}", times(scale)))
+    Some(format!("{which} {}", should(scale, Quantity::Length)))
 }
 
 /// Whether a material has the density and the wave speed of a solid.
@@ -281,6 +290,11 @@ fn is_solid(material: &Elastic) -> bool {
     let (density, speed) = (material.density(), (material.young() / material.density()).sqrt());
     let [densities, speeds] = SOLID.map(|[least, most]| least..=most);
     densities.contains(&density) && speeds.contains(&speed)
+}
+
+/// Whether a factor of lengths is that of a unit.
+fn of_unit(factor: f64) -> bool {
+    Quantity::Length.hint(factor).contains("given in")
 }
 
 /// The factor that numbers need, with the unit that it hints at.

@@ -1,0 +1,52 @@
+//! A consistent mass matrix in the place of the lumped one.
+
+use super::balance::Balance;
+use super::measure::nodal;
+use super::suspect::Suspect;
+use super::tried::Tried;
+use super::window::windows;
+use percute_core::history::SinkError;
+use percute_core::ids::ElementId;
+use percute_core::material::Law;
+use percute_core::problem::Problem;
+
+/// The inertia of the consistent mass matrix.
+pub(super) fn consistent<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Tried, SinkError> {
+    let (problem, evidence) = (suspect.problem, suspect.evidence);
+    let balance = Balance::new(problem, suspect.source.times());
+    let [mut lumped, mut other] = [evidence.residual.clone(), evidence.residual.emptied()];
+    if evidence.silent() {
+        lumped.leave_the_surface_open();
+        other.leave_the_surface_open();
+    }
+    windows(suspect.source, &mut |window| {
+        let now = window.now;
+        let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
+        let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
+        let mut terms = balance.terms(now, used);
+        terms.inertia = inertia(problem, used);
+        other.add(&terms, &nodal(problem, &now.reaction), now.index, now.time);
+        Ok(())
+    })?;
+    let text =
+        "the accelerations fit a consistent mass matrix, but percute lumps the mass, each element in equal shares \
+                at its nodes: run the other program with a lumped mass"
+            .to_string();
+    Ok(Tried { text, before: lumped.norm([1.0; 4]), left: other.norm([1.0; 4]) })
+}
+
+/// M_c a (N) of linear elements: m/(N(N+1)) times the sum over the nodes, with that of the node itself twice. It is 0 at
+/// prescribed components.
+fn inertia<const D: usize, const N: usize>(problem: &Problem<D, N>, acceleration: &[[f64; D]]) -> Vec<[f64; D]> {
+    let mut inertia = vec![[0.0; D]; acceleration.len()];
+    for (e, nodes) in problem.mesh().cells().iter().enumerate() {
+        let id = ElementId::new(e);
+        let share = problem.material(id).density() * problem.volume(id) / (N * (N + 1)) as f64;
+        for c in 0..D {
+            let sum: f64 = nodes.iter().map(|node| acceleration[node.index()][c]).sum();
+            nodes.iter().for_each(|n| inertia[n.index()][c] += share * (sum + acceleration[n.index()][c]));
+        }
+    }
+    problem.prescribed().iter().for_each(|p| inertia[p.node.index()][p.component] = 0.0);
+    inertia
+}
