@@ -20,8 +20,8 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
                     than five times the median.";
     }
     if !document.at("outline").is_null() {
-        caption += " The line is the outline at the end: the motion as it is, and the deformation times the factor above. \
-             Enlarged, it may cross a plane that the body only touches.";
+        caption += " The line is the outline at the end: the motion as it is, and the deformation times the factor \
+             above. Enlarged, it may cross a plane that the body only touches.";
     }
     if body.elements() > picture::MOST_POLYGONS {
         caption += &format!(" Above {} elements, the map is stored as pixels.", picture::MOST_POLYGONS);

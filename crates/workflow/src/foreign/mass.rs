@@ -35,8 +35,8 @@ pub(super) fn consistent<const D: usize, const N: usize>(suspect: &Suspect<'_, D
     Ok(Tried { text, before: lumped.norm([1.0; 4]), left: other.norm([1.0; 4]) })
 }
 
-/// M_c a (N) of linear elements: m/(N(N+1)) times the sum over the nodes, with that of the node itself twice. It is 0 at
-/// prescribed components.
+/// M_c a (N) of linear elements: m/(N(N+1)) times the sum over the nodes, with that of the node itself twice. It is 0
+/// at prescribed components.
 fn inertia<const D: usize, const N: usize>(problem: &Problem<D, N>, acceleration: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut inertia = vec![[0.0; D]; acceleration.len()];
     for (e, nodes) in problem.mesh().cells().iter().enumerate() {
