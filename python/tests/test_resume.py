@@ -40,6 +40,7 @@ def killed(command: list[str], file: Path, steps: int) -> None:
     """Start a simulation, and kill it once so many steps are in its file."""
     with subprocess.Popen([*command, str(file)]) as process:
         while not file.exists() or len(opened(file)) < steps:
+            assert process.poll() is None, "it ended before"
             time.sleep(0.002)
         process.send_signal(signal.SIGKILL)
 

@@ -100,7 +100,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub estimate: Option<PathBuf>,
     /// Go on with the simulation whose history a killed or stopped run left; without such a file, begin [--force
-    /// replaces other files only]
+    /// replaces other files, and a history that keeps a part of its run]
     #[arg(long)]
     pub resume: bool,
     /// Allow a run of more than 1e10 elements times steps, which takes minutes to hours

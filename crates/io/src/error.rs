@@ -54,6 +54,9 @@ pub enum FileCause {
         "its run cannot go on: it was written by {written}, and this is {here}, whose numbers may differ; run again"
     )]
     Other { written: String, here: String },
+    /// A file without checksums.
+    #[error("its run cannot go on: the file has no checksums, so that its steps may have been changed; run again")]
+    Unsummed,
     /// Steps with their own velocities or accelerations.
     #[error("its run cannot go on: it has velocities or accelerations of its own, which the scheme does not give")]
     GivenMotion,

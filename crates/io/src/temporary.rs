@@ -49,9 +49,10 @@ fn remove_left_behind(folder: &Path) {
         }
         let path = entry.path();
         // File systems without locks refuse one: nothing is known of the file then.
-        let unused = File::open(&path).is_ok_and(|file| file.try_lock().is_ok());
-        if unused {
-            let _ = std::fs::remove_file(path);
+        let Ok(file) = File::open(&path) else { continue };
+        if file.try_lock().is_ok() {
+            // Locked until it is gone: its process may be about to lock it.
+            let _ = std::fs::remove_file(&path);
         }
     }
 }

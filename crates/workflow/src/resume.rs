@@ -52,13 +52,24 @@ where
             Some("its initial displacement or velocity differs")
         } else if statement(problem, Some(&case.options))? != file.statement() {
             Some("its material, planes, loads, supports or options of the estimate differ")
-        } else if case.until.is_none() && case.times.instants() != times.instants() {
+        } else if !self.same_time(case) {
             Some("its end or its steps differ")
         } else if kept(case.output.keep.of(times)) != kept(file.keeps()) {
             Some("`every`, `times` or `fields` of its [output] differ")
         } else {
             None
         })
+    }
+
+    /// Whether the case asks for the instants of the file. Those of a run that ends with the rebound follow from its
+    /// simulation: its statement must be that of the case in the file.
+    fn same_time(&self, case: &CaseOf<D, N>) -> bool {
+        if case.until.is_none() {
+            return case.times.instants() == self.file.run_times().instants();
+        }
+        let time = |text: &str| text.parse::<toml::Table>().ok()?.remove("time");
+        let stored = self.file.case().and_then(|case| time(&case.text));
+        stored.is_some() && stored == time(case.source.text())
     }
 
     /// Lets the run go on to its end, on so many threads, by default one for each core. The file then is, byte by byte,

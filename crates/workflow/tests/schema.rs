@@ -8,7 +8,7 @@ use percute_workflow::case::{FIELDS, SCHEMA, Source, parse};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A table with a stranger among its keys, `?`; the tables that are read before it are added. A material has two
+/// A table with an unknown key, `?`; the tables that are read before it are added. A material has two
 /// readers.
 const TABLES: [(&str, &str); 17] = [
     ("", "?"),

@@ -1,6 +1,7 @@
 //! `--resume`: a run goes on from the history that it left.
 
 use super::{Console, resolved};
+use crate::args::RunArguments;
 use crate::progress::Watch;
 use percute_core::dynamics::Simulation;
 use percute_core::simplex::{Element, Simplex};
@@ -47,6 +48,19 @@ impl<const D: usize, const N: usize> Left<D, N>
 where
     Element<D, N>: Simplex<D, N>,
 {
+    /// Refuses to begin again, and so to replace a history that keeps a part of its run, unless `--force` is given.
+    pub(super) fn refuse_a_part(&self, arguments: &RunArguments) -> Result<(), Failure> {
+        let Some(stored) = self.history().filter(|stored| stored.file.expect_all().is_err()) else { return Ok(()) };
+        if arguments.work.force {
+            return Ok(());
+        }
+        let (file, case) = (stored.file.path().display(), arguments.case.display());
+        Err(Failure::Argument(format!(
+            "--resume: {file} keeps a part of the run, and the estimate needs all steps: `percute simulate {case} \
+             --resume` goes on with the history alone; with --force, the run begins again and replaces it"
+        )))
+    }
+
     /// The case with the end of its run, which the history knows; no case if the search for it was stopped.
     pub(super) fn resolved(
         &self,
@@ -81,7 +95,7 @@ where
     if !quiet {
         let (file, held) = (stored.file.path().display(), stored.file.count());
         let planned = stored.file.times().instants().len();
-        console.say(&format!("history {file}: {held} of {planned} instants are there; the simulation goes on"));
+        console.say(&format!("history {file}: {held} of {planned} instants are there"));
     }
     let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let done = stored.resume(threads, None, watch).map_err(|failure| located(case, failure))?;

@@ -36,6 +36,7 @@ where
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
     let left = left(case, history, arguments.resume)?;
+    left.refuse_a_part(arguments)?;
     let mut inputs = case.inputs(Some(&arguments.case));
     inputs.extend(history.filter(|_| left.history().is_some()).map(|history| ("history", history.file)));
     let new = history.filter(|_| left.history().is_none());
@@ -80,13 +81,8 @@ where
 {
     let start = Instant::now();
     let done = match left {
+        // The estimate needs all steps.
         Left::Whole(stored) | Left::Begun(stored) if stored.file.expect_all().is_err() => {
-            if !work.quiet {
-                let file = stored.file.path().display();
-                console.say(&format!(
-                    "history {file}: it keeps a part of the run, and the estimate needs all: begins again"
-                ));
-            }
             begin(case, analysis, history, true, work, console)
         }
         Left::Nothing => begin(case, analysis, history, work.force, work, console),
@@ -98,8 +94,9 @@ where
             }
             let file = stored.file.path();
             if simulation.interrupted {
+                // An estimate of all steps until there would take long; standard output has results only.
                 let seconds = start.elapsed().as_secs_f64();
-                console.print(&simulated(&case.subject(), &simulation, file, seconds))?;
+                console.say(simulated(&case.subject(), &simulation, file, seconds).trim_end());
                 return Ok(Break(INTERRUPTED));
             }
             again(&Stored::of_case(case, file)?, analysis, work, console)

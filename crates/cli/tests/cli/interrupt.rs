@@ -135,7 +135,7 @@ fn other_signals_close_a_history_too() {
         assert_eq!(output.status.code(), Some(130), "{signal}: {}", stderr(&output));
         let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
         let words = info.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(words.contains("; the run was stopped there, and its file is closed"), "{signal}: {info}");
+        assert!(words.contains("; the run was stopped there; `--resume` lets it go on"), "{signal}: {info}");
     }
 }
 

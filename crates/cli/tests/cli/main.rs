@@ -7,6 +7,8 @@ mod circles;
 mod common;
 mod contact;
 mod dependencies;
+#[cfg(target_os = "linux")]
+mod disk;
 mod examples;
 mod history;
 #[cfg(target_os = "linux")]
@@ -20,6 +22,7 @@ mod mesh_file;
 mod mistakes;
 mod picture;
 mod report;
+#[cfg(target_os = "linux")]
 mod resume;
 mod run;
 mod steps;

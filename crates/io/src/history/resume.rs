@@ -18,6 +18,9 @@ use percute_core::time::TimeGrid;
 use percute_system::write_all_at;
 use std::fs::File;
 
+/// Bytes of displacements that are read at once.
+const BLOCK: usize = 1 << 23;
+
 /// A history to which its run goes on to add steps.
 #[derive(Debug)]
 pub struct Unended<const D: usize> {
@@ -63,8 +66,9 @@ where
     /// readers see the steps written so far.
     ///
     /// # Errors
-    /// A file of another program, version or instruction set, whose numbers would be others, or one with velocities
-    /// and accelerations of its own; one that is being written or cannot be written to; a disk without enough space.
+    /// A file of another program, version or machine, whose numbers would be others, or one with velocities and
+    /// accelerations of its own; one without checksums, or that is damaged; one that is being written or cannot be
+    /// written to; a disk without enough space.
     pub fn resume(&self, problem: &Problem<D, N>) -> Result<Unended<D>, FileError> {
         self.go_on(problem).map_err(|cause| cause.at(self.path()))
     }
@@ -78,6 +82,9 @@ where
         if self.given() != [false; 2] {
             return Err(FileCause::GivenMotion);
         }
+        if !self.has_checksums() {
+            return Err(FileCause::Unsummed);
+        }
         let path = self.path();
         let create = |source| FileCause::Create { source };
         let held = Held::alone(File::options().read(true).write(true).open(path).map_err(create)?)?.share()?;
@@ -89,13 +96,28 @@ where
         let checkpoint = checkpoints::newest::<D>(&opened.root().group("percute")?, now.mesh().node_count(), fits)?;
         let bytes = opened.bytes();
         drop(opened);
-        reserve(held.file(), path, bytes)?;
-        write_all_at(held.file(), &[0], places.complete).map_err(create)?;
         let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint<D>| checkpoint.step + 1);
         let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
+        now.check_rows(stored).map_err(|error| error.cause)?;
+        reserve(held.file(), path, bytes)?;
+        write_all_at(held.file(), &[0], places.complete).map_err(create)?;
         let (kept, given) = (now.keeps(), now.stored());
         let begun = Begun { last: now.run_times().step_count(), next, stored, given, kept };
         Ok(Unended { checkpoint, writer: Writer::new(path, held, places, begun).map_err(create)? })
+    }
+
+    /// Compares the first instants with their checksums: damage there would stay.
+    fn check_rows(&self, count: usize) -> Result<(), FileError> {
+        let block = (BLOCK / (24 * self.mesh().node_count())).max(1);
+        for start in (0..count).step_by(block) {
+            let steps = start..count.min(start + block);
+            self.displacement(steps.clone())?;
+            self.velocity(steps.clone())?;
+            self.acceleration(steps.clone())?;
+            self.reaction(steps.clone())?;
+            self.touching(steps)?;
+        }
+        Ok(())
     }
 
     /// The places of all that a run writes.

@@ -213,6 +213,23 @@ fn a_bar_goes_on_too() {
     assert!(std::fs::read(&path).unwrap() == whole);
 }
 
+/// A step that was damaged before the checkpoint would stay so.
+#[test]
+fn a_damaged_step_is_refused_before_the_work() {
+    let (folder, problem) = (folder(), block(6, 5));
+    let times = steps(&problem, 200);
+    let path = folder.path().join("damaged.vtkhdf");
+    leave(&path, &problem, &times, 180, false);
+    let file = plane_file(&path);
+    let array = file.arrays().unwrap().into_iter().find(|array| array.name == "displacement").unwrap();
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes[array.offset.unwrap() as usize + 24 * problem.mesh().node_count() * 100 + 9] ^= 1;
+    std::fs::write(&path, &bytes).unwrap();
+    let error = plane_file(&path).resume(&problem).unwrap_err();
+    assert!(matches!(&error.cause, FileCause::Checksum { step: Some(100), .. }), "{error}");
+    assert!(std::fs::read(&path).unwrap() == bytes, "left alone");
+}
+
 /// The file of a run belongs to one writer.
 #[test]
 fn a_file_in_use_is_refused() {
