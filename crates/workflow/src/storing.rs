@@ -77,8 +77,7 @@ impl<const D: usize, const N: usize> StateSink<D> for Storing<'_, '_, '_, D, N> 
         if let Some(keep) = memory {
             keep(&Step { velocity: None, acceleration: None, ..step })?;
         }
-        let due = file.as_mut().filter(|file| file.is_due(state.step().index)).zip(state.checkpoint());
-        due.map_or(Ok(()), |(file, checkpoint)| file.keep(ordered.stated(checkpoint)))
+        file.as_mut().map_or(Ok(()), |file| file.keep(state, |checkpoint| ordered.stated(checkpoint)))
     }
 }
 

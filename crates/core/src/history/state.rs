@@ -68,9 +68,13 @@ impl<'a, const D: usize> State<'a, D> {
     /// balance.
     #[must_use]
     pub fn checkpoint(&self) -> Option<Checkpoint<D>> {
-        let Step { index, displacement, .. } = self.step;
-        let (displacement, half_step) = (displacement.to_vec(), self.half_step.to_vec());
-        self.sums.map(|sums| Checkpoint { step: index, displacement, half_step, sums: *sums })
+        let Step { index: step, displacement, .. } = self.step;
+        self.sums.map(|sums| Checkpoint {
+            step,
+            displacement: displacement.to_vec(),
+            half_step: self.half_step.to_vec(),
+            sums: *sums,
+        })
     }
 
     /// The step.

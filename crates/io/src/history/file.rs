@@ -2,7 +2,7 @@
 
 use super::kept::KeptSteps;
 use super::rows::FIELDS;
-use super::sums::{check_rows, of_flags, of_vectors};
+use super::sums::{check_rows, compare, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
@@ -304,12 +304,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         found: impl Iterator<Item = Checksum>,
         sums: &[i64],
     ) -> Result<(), FileError> {
-        let column = FIELDS.iter().position(|name| *name == field).unwrap_or(0);
-        let stored = sums.iter().skip(column).step_by(FIELDS.len());
-        match steps.iter().zip(found.zip(stored)).find(|(_, (found, stored))| found.stored() != **stored) {
-            None => Ok(()),
-            Some((&step, _)) => Err(FileCause::Checksum { name: field.to_string(), step: Some(step) }.at(self.path())),
-        }
+        compare(field, steps.iter().copied(), found, sums).map_err(|cause| cause.at(self.path()))
     }
 
     fn steps<T>(

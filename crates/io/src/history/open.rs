@@ -21,15 +21,12 @@ use std::path::Path;
 pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
     let path = path.as_ref();
     let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
-    reading(path, |opened| {
-        opened.expect(Kind::History)?;
-        match opened.root().group("percute")?.integer_attribute("dimension")? {
-            1 => contents(path, identity, opened).map(AnyHistoryFile::Bar),
-            2 => contents(path, identity, opened).map(AnyHistoryFile::Plane),
-            other => {
-                let detail = format!("{other} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
-                Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
-            }
+    reading(path, |opened| match dimension(opened)? {
+        1 => contents(path, identity, opened).map(AnyHistoryFile::Bar),
+        2 => contents(path, identity, opened).map(AnyHistoryFile::Plane),
+        other => {
+            let detail = format!("{other} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
+            Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
         }
     })
 }
@@ -45,8 +42,7 @@ where
     pub fn of(path: &Path) -> Result<Self, FileError> {
         let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
         reading(path, |opened| {
-            opened.expect(Kind::History)?;
-            let given = opened.root().group("percute")?.integer_attribute("dimension")?;
+            let given = dimension(opened)?;
             if given != D as i64 {
                 let detail = format!("it is {given}, but the body here has the dimension {D}");
                 return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
@@ -54,6 +50,12 @@ where
             contents(path, identity, opened)
         })
     }
+}
+
+/// The dimension of a history; any other file is refused.
+fn dimension(opened: &Opened) -> Result<i64, FileCause> {
+    opened.expect(Kind::History)?;
+    opened.root().group("percute")?.integer_attribute("dimension")
 }
 
 pub(super) fn contents<const D: usize, const N: usize>(

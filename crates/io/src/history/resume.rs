@@ -18,9 +18,6 @@ use percute_core::time::TimeGrid;
 use percute_system::write_all_at;
 use std::fs::File;
 
-/// Bytes of displacements that are read at once.
-const BLOCK: usize = 1 << 23;
-
 /// A history to which its run goes on to add steps.
 #[derive(Debug)]
 pub struct Unended<const D: usize> {
@@ -108,9 +105,7 @@ where
 
     /// Compares the first instants with their checksums: damage there would stay.
     fn check_rows(&self, count: usize) -> Result<(), FileError> {
-        let block = (BLOCK / (24 * self.mesh().node_count())).max(1);
-        for start in (0..count).step_by(block) {
-            let steps = start..count.min(start + block);
+        for steps in self.blocks(count) {
             self.displacement(steps.clone())?;
             self.velocity(steps.clone())?;
             self.acceleration(steps.clone())?;

@@ -32,6 +32,13 @@ struct StepBlock<const D: usize> {
 }
 
 impl<const D: usize, const N: usize> HistoryFile<D, N> {
+    /// The first `count` steps in blocks that are read at once.
+    pub(super) fn blocks(&self, count: usize) -> impl Iterator<Item = Range<usize>> {
+        let step = 24 * self.mesh().node_count() + 16 * self.contact_nodes().len();
+        let size = (BLOCK / step.max(1)).max(1);
+        (0..count).step_by(size).map(move |start| start..count.min(start + size))
+    }
+
     /// The steps for a problem that was built from this file.
     ///
     /// # Errors
@@ -202,10 +209,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
     }
 
     fn replay_stored(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
-        let step = 24 * self.file.mesh().node_count() + 16 * self.file.contact_nodes().len();
-        let size = (BLOCK / step.max(1)).max(1);
-        for start in (0..self.count()).step_by(size) {
-            let steps = start..self.count().min(start + size);
+        for steps in self.file.blocks(self.count()) {
             let block = self.block(steps.clone())?;
             self.hand_on(&block, steps, take)?;
         }

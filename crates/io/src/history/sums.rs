@@ -46,15 +46,26 @@ pub(super) fn check_rows<T>(
 ) -> Result<(), FileCause> {
     let ours = opened.root().group("percute")?;
     let Some(stored) = ours.optional("checksums")? else { return Ok(()) };
-    let Some(column) = FIELDS.iter().position(|name| *name == field) else { return Ok(()) };
     let rows = stored.integer_rows(steps.clone())?;
     let row = values.len() / steps.len().max(1);
-    for (k, step) in steps.enumerate() {
-        if rows.get(FIELDS.len() * k + column) != Some(&sum(&values[k * row..(k + 1) * row]).stored()) {
-            return Err(FileCause::Checksum { name: field.to_string(), step: Some(step) });
-        }
+    let found = (0..steps.len()).map(|k| sum(&values[k * row..(k + 1) * row]));
+    compare(field, steps, found, &rows)
+}
+
+/// Compares the checksums found of a field at some instants with the rows of `checksums` there.
+pub(super) fn compare(
+    field: &str,
+    steps: impl IntoIterator<Item = usize>,
+    found: impl Iterator<Item = Checksum>,
+    rows: &[i64],
+) -> Result<(), FileCause> {
+    let Some(column) = FIELDS.iter().position(|name| *name == field) else { return Ok(()) };
+    let differs =
+        |(k, (_, sum)): &(usize, (usize, Checksum))| rows.get(FIELDS.len() * k + column) != Some(&sum.stored());
+    match steps.into_iter().zip(found).enumerate().find(differs) {
+        None => Ok(()),
+        Some((_, (step, _))) => Err(FileCause::Checksum { name: field.to_string(), step: Some(step) }),
     }
-    Ok(())
 }
 
 /// The checksum of nodal vectors.

@@ -210,18 +210,22 @@ impl<const D: usize> Writer<D> {
         Err(failure.cause())
     }
 
-    /// Whether the run can go on from this step, if it is kept by [`Writer::keep`].
-    #[must_use]
-    pub fn is_due(&self, step: usize) -> bool {
-        self.places.checkpoints.is_some() && is_due(step)
-    }
-
-    /// Keeps the state of the step appended last, from which the run can go on if it is killed.
+    /// Keeps the state of the step appended last, if it is one from which the run can go on. `restated` gives the state
+    /// the numbers of the file.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn keep(&mut self, checkpoint: Checkpoint<D>) -> Result<(), SinkError> {
-        Ok(self.pass_on(Entry::Checkpoint(checkpoint)).map_err(|cause| cause.at(&self.path))?)
+    pub fn keep(
+        &mut self,
+        state: &State<'_, D>,
+        restated: impl FnOnce(Checkpoint<D>) -> Checkpoint<D>,
+    ) -> Result<(), SinkError> {
+        if self.places.checkpoints.is_none() || !is_due(state.step().index) {
+            return Ok(());
+        }
+        let Some(checkpoint) = state.checkpoint() else { return Ok(()) };
+        let kept = self.pass_on(Entry::Checkpoint(restated(checkpoint)));
+        Ok(kept.map_err(|cause| cause.at(&self.path))?)
     }
 
     /// Appends a step; one that the file does not keep is only counted.
@@ -236,8 +240,7 @@ impl<const D: usize> Writer<D> {
 impl<const D: usize> StateSink<D> for Writer<D> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         self.push(state.step())?;
-        let due = self.is_due(state.step().index);
-        due.then(|| state.checkpoint()).flatten().map_or(Ok(()), |checkpoint| self.keep(checkpoint))
+        self.keep(state, |checkpoint| checkpoint)
     }
 }
 
