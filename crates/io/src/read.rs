@@ -1,9 +1,12 @@
 //! Reading with HDF5: every size is checked against the stored bytes before memory is allocated.
 
+mod attribute;
 mod data;
 mod heap;
+mod superblock;
 
 pub(crate) use data::Data;
+pub use superblock::is_hdf5;
 
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
@@ -20,9 +23,6 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::sync::MutexGuard;
-
-/// First bytes of an HDF5 file.
-const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 
 /// The layout of histories and estimates.
 pub(crate) const LAYOUT: i64 = 2;
@@ -105,24 +105,13 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     if found.len() == 0 {
         return Err(FileCause::Empty);
     }
-    if begins_as_hdf5(held.file()).map_err(refused)? { Ok((held, found.len())) } else { Err(FileCause::NotHdf5) }
-}
-
-/// Whether a file is HDF5, by its first bytes. Only regular files are read.
-///
-/// # Errors
-/// A file that is missing or cannot be read.
-pub fn is_hdf5(path: &Path) -> io::Result<bool> {
-    if path.metadata()?.is_file() { begins_as_hdf5(&File::open(path)?) } else { Ok(false) }
-}
-
-/// HDF5 allows a user block before the signature; histories have none.
-fn begins_as_hdf5(file: &File) -> io::Result<bool> {
-    let mut first = [0; 8];
-    match read_exact_at(file, &mut first, 0) {
-        Err(error) if error.kind() != io::ErrorKind::UnexpectedEof => Err(error),
-        _ => Ok(first == SIGNATURE),
+    if !superblock::begins_as_hdf5(held.file()).map_err(refused)? {
+        return Err(FileCause::NotHdf5);
     }
+    if superblock::names_driver(held.file(), found.len()).map_err(refused)? {
+        return Err(FileCause::Damaged { detail: "its first bytes name a file in several parts".to_string() });
+    }
+    Ok((held, found.len()))
 }
 
 /// A group of the file.
@@ -215,15 +204,17 @@ impl<'f> Part<'f> {
 
     pub(crate) fn text_attribute(&self, name: &str) -> Result<String, FileCause> {
         let (attribute, path, kind) = self.attribute(name)?;
-        self.check_heaps(&kind)?;
+        if is_variable(&kind) {
+            self.check_heaps()?;
+            let found = File::open(self.file.filename()).and_then(|f| attribute::check(&f, name, self.file_bytes));
+            let fault = |fault| FileCause::Damaged { detail: format!("the text attribute `{path}` {fault}") };
+            found.map_err(|source| FileCause::Read { source })?.map_err(fault)?;
+        }
         text(&attribute, &kind, path)
     }
 
-    /// Makes sure that a text of variable length can be read.
-    fn check_heaps(&self, kind: &TypeDescriptor) -> Result<(), FileCause> {
-        if !matches!(kind, TypeDescriptor::VarLenUnicode | TypeDescriptor::VarLenAscii) {
-            return Ok(());
-        }
+    /// Makes sure that texts of variable length can be read.
+    fn check_heaps(&self) -> Result<(), FileCause> {
         if self.heaps.get().is_none() {
             let found = File::open(self.file.filename()).and_then(|file| heap::check(&file, self.file_bytes));
             // It was found empty, and one thread reads the file.
@@ -265,8 +256,10 @@ impl<'f> Part<'f> {
             seal::check(&data.set, &data.name, || Checksum::new().text(&text))?;
             return Ok(Some(text));
         }
-        self.check_heaps(&data.kind)?;
-        self.check_length(&data)?;
+        if is_variable(&data.kind) {
+            self.check_heaps()?;
+            self.check_length(&data)?;
+        }
         text(&data.set, &data.kind, data.name).map(Some)
     }
 
@@ -283,6 +276,11 @@ impl<'f> Part<'f> {
             false => Ok(()),
         }
     }
+}
+
+/// Whether it is the type of a text of variable length.
+fn is_variable(kind: &TypeDescriptor) -> bool {
+    matches!(kind, TypeDescriptor::VarLenUnicode | TypeDescriptor::VarLenAscii)
 }
 
 /// A single text of either length.

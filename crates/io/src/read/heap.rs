@@ -3,6 +3,7 @@
 //! place of its heap (8) and the number of its object (4). The library takes memory for the length before it looks for
 //! the object.
 
+use super::superblock::size_of_lengths;
 use memchr::memmem;
 use percute_system::read_exact_at;
 use std::fs::File;
@@ -49,7 +50,7 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
 }
 
 /// Where these bytes are in a file.
-fn places(file: &File, bytes: u64, wanted: &[u8]) -> io::Result<Vec<u64>> {
+pub(super) fn places(file: &File, bytes: u64, wanted: &[u8]) -> io::Result<Vec<u64>> {
     let mut block = vec![0; BLOCK.min(bytes as usize)];
     let (mut start, mut found) = (0, Vec::new());
     while start < bytes {
@@ -72,13 +73,6 @@ fn number(file: &File, place: u64) -> io::Result<u32> {
     let mut stored = [0; 4];
     read_exact_at(file, &mut stored, place)?;
     Ok(u32::from_le_bytes(stored))
-}
-
-/// The size of a length in the file, from its superblock.
-fn size_of_lengths(file: &File) -> io::Result<u8> {
-    let mut superblock = [0; 16];
-    read_exact_at(file, &mut superblock, 0)?;
-    Ok(if superblock[8] < 2 { superblock[14] } else { superblock[10] })
 }
 
 /// Whether a signature begins a heap: one whose reserved bytes are damaged has a size that fits into the file, which

@@ -89,6 +89,13 @@ fn other_kinds_and_layouts() {
     assert_eq!(Kind::Estimate.to_string(), "an estimate");
 }
 
+/// The library would take memory for the length that the attribute states, in this file 0.5 GB, before it refuses it.
+#[test]
+fn texts_of_attributes_longer_than_the_file() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/history/refused-attribute.vtkhdf");
+    assert_says(&open(file).unwrap_err().to_string(), &["the text attribute `percute.kind` is longer than the file"]);
+}
+
 #[test]
 fn missing_parts() {
     for name in [
