@@ -2,6 +2,7 @@
 
 mod attribute;
 mod data;
+mod groups;
 mod heap;
 mod superblock;
 
@@ -110,6 +111,9 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     }
     if superblock::names_driver(held.file(), found.len()).map_err(refused)? {
         return Err(FileCause::Damaged { detail: "its first bytes name a file in several parts".to_string() });
+    }
+    if let Err(detail) = groups::check(held.file()).map_err(refused)? {
+        return Err(FileCause::Damaged { detail: detail.to_string() });
     }
     Ok((held, found.len()))
 }

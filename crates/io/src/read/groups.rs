@@ -1,0 +1,206 @@
+//! Groups in the oldest format of HDF5, whose names are in local heaps, checked before the library reads them: the free
+//! blocks of a heap form a chain, and one without an end keeps the library in an endless loop that takes all memory.
+//! Other damage is left to the library.
+
+use percute_system::read_exact_at;
+use std::collections::HashSet;
+use std::fs::File;
+use std::io;
+
+/// Messages of an object header: where it goes on, and the names of a group.
+const CONTINUATION: u16 = 0x10;
+const SYMBOLS: u16 = 0x11;
+/// Bytes of an entry for a name, and of a free block without its room.
+const ENTRY: u64 = 40;
+const FREE: u64 = 16;
+/// The end of the chain of free blocks.
+const LAST: u64 = 1;
+
+/// A file, and the place from which addresses count.
+struct Groups<'f> {
+    file: &'f File,
+    base: u64,
+    /// Places that were looked at: a damaged file may have circles.
+    seen: HashSet<u64>,
+    /// Object headers and nodes of the trees of names to be looked at.
+    headers: Vec<u64>,
+    nodes: Vec<u64>,
+}
+
+/// Follows all groups from the first one.
+///
+/// # Errors
+/// What is wrong with them; a file that cannot be read.
+pub(super) fn check(file: &File) -> io::Result<Result<(), &'static str>> {
+    let mut groups = Groups { file, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
+    let Some(first) = groups.bytes::<16>(0)? else { return Ok(Ok(())) };
+    let start = match first[8] {
+        0 => 24,
+        1 => 28,
+        // Newer files have newer groups.
+        _ => return Ok(Ok(())),
+    };
+    if first[13..15] != [8, 8] {
+        return Ok(Err("its addresses have a length that percute does not read"));
+    }
+    // Behind four addresses and a place in a heap.
+    groups.headers.extend(groups.number(start + 40)?);
+    groups.base = groups.number(start)?.unwrap_or(0);
+    groups.follow()
+}
+
+impl Groups<'_> {
+    fn follow(&mut self) -> io::Result<Result<(), &'static str>> {
+        loop {
+            if let Some(node) = self.nodes.pop() {
+                if self.seen.insert(node) {
+                    self.node(node)?;
+                }
+            } else if let Some(header) = self.headers.pop() {
+                if self.seen.insert(header) && !self.header(header)? {
+                    return Ok(Err("the names of a group"));
+                }
+            } else {
+                return Ok(Ok(()));
+            }
+        }
+    }
+
+    /// Bytes at an address; none beyond the end.
+    fn bytes<const N: usize>(&self, address: u64) -> io::Result<Option<[u8; N]>> {
+        let mut bytes = [0; N];
+        let Some(place) = self.base.checked_add(address) else { return Ok(None) };
+        match read_exact_at(self.file, &mut bytes, place) {
+            Err(error) if matches!(error.kind(), io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput) => {
+                Ok(None)
+            }
+            read => read.map(|()| Some(bytes)),
+        }
+    }
+
+    fn number(&self, address: u64) -> io::Result<Option<u64>> {
+        Ok(self.bytes(address)?.map(u64::from_le_bytes))
+    }
+
+    /// Looks at the messages of an object header; whether its heap, if it has one, is sound.
+    fn header(&mut self, header: u64) -> io::Result<bool> {
+        let Some(first) = self.bytes::<16>(header)? else { return Ok(true) };
+        if first[0] != 1 {
+            return Ok(true);
+        }
+        let length = u64::from(u32::from_le_bytes([first[8], first[9], first[10], first[11]]));
+        let mut parts = vec![(header.saturating_add(16), length)];
+        while let Some((mut at, length)) = parts.pop() {
+            let end = at.saturating_add(length);
+            while at.saturating_add(8) <= end {
+                let Some(head) = self.bytes::<4>(at)? else { break };
+                let [kind, size] = [[head[0], head[1]], [head[2], head[3]]].map(u16::from_le_bytes);
+                if let (CONTINUATION | SYMBOLS, Some(pair)) = (kind, self.pair(at + 8)?) {
+                    match kind {
+                        CONTINUATION if self.seen.insert(pair[0]) => parts.push((pair[0], pair[1])),
+                        SYMBOLS if !self.is_sound(pair[1])? => return Ok(false),
+                        SYMBOLS => self.nodes.push(pair[0]),
+                        _ => (),
+                    }
+                }
+                at = at.saturating_add(8 + u64::from(size));
+            }
+        }
+        Ok(true)
+    }
+
+    fn pair(&self, address: u64) -> io::Result<Option<[u64; 2]>> {
+        let second = self.number(address.saturating_add(8))?;
+        Ok(self.number(address)?.zip(second).map(|(first, second)| [first, second]))
+    }
+
+    /// Looks at a node of the tree of names, or at a list of names.
+    fn node(&mut self, node: u64) -> io::Result<()> {
+        let Some(head) = self.bytes::<8>(node)? else { return Ok(()) };
+        let count = u64::from(u16::from_le_bytes([head[6], head[7]]));
+        match &head[..4] {
+            b"TREE" => {
+                // Behind two neighbours, a key before each child.
+                for child in 0..count {
+                    let child = self.number(node + 32 + 16 * child)?;
+                    self.nodes.extend(child);
+                }
+            }
+            b"SNOD" => {
+                for entry in 0..count {
+                    let header = self.number(node + 16 + ENTRY * entry)?;
+                    self.headers.extend(header);
+                }
+            }
+            _ => (),
+        }
+        Ok(())
+    }
+
+    /// Whether the chain of free blocks of a heap has an end.
+    fn is_sound(&self, heap: u64) -> io::Result<bool> {
+        let Some(head) = self.bytes::<32>(heap)? else { return Ok(true) };
+        let number = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| head[at + k]));
+        let (size, mut free, data) = (number(8), number(16), number(24));
+        for _ in 0..=size / FREE {
+            if free == LAST || free >= size {
+                return Ok(true);
+            }
+            match self.number(data.saturating_add(free))? {
+                Some(next) => free = next,
+                None => return Ok(true),
+            }
+        }
+        Ok(false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_system::write_all_at;
+
+    /// Each group, the first one and the deepest, is found, and its chain followed.
+    #[test]
+    fn chains_without_an_end_are_found_in_all_groups() {
+        let folder = tempfile::tempdir().unwrap();
+        let _alone = crate::library::alone();
+        let path = folder.path().join("a.h5");
+        let mut options = hdf5::File::with_options();
+        let file = options.with_fapl(|p| p.libver_earliest()).create(&path).unwrap();
+        let mut group = file.as_group().unwrap();
+        for depth in 0..3 {
+            // Many names, so that the trees have several nodes.
+            for name in 0..20 {
+                group.create_group(&format!("{depth}-{name:02}-{}", "x".repeat(20))).unwrap();
+            }
+            group = group.create_group("in").unwrap();
+        }
+        file.close().unwrap();
+        drop(group);
+        let mut bytes = std::fs::read(&path).unwrap();
+        let file = File::options().read(true).write(true).open(&path).unwrap();
+        assert_eq!(check(&file).unwrap(), Ok(()));
+        let heaps: Vec<usize> = memchr::memmem::find_iter(&bytes, b"HEAP\0\0\0\0").collect();
+        assert_eq!(heaps.len(), 1 + 3 * 21);
+        for heap in heaps {
+            let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
+            let (free, data) = (number(heap + 16), number(heap + 24));
+            if free == LAST {
+                continue;
+            }
+            // The first free block is followed by itself.
+            write_all_at(&file, &free.to_le_bytes(), data + free).unwrap();
+            assert_eq!(check(&file).unwrap(), Err("the names of a group"), "the heap at {heap}");
+            write_all_at(&file, &bytes[(data + free) as usize..][..8], data + free).unwrap();
+        }
+        // Circles of other kinds end, and so does each part of a file.
+        for end in (0..bytes.len()).step_by(37).rev() {
+            file.set_len(end as u64).unwrap();
+            assert_eq!(check(&file).unwrap(), Ok(()), "{end} bytes");
+        }
+        bytes[13] = 4;
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(check(&file).unwrap().is_err());
+    }
+}
