@@ -84,7 +84,7 @@ def test_a_run_whose_file_is_lost_has_its_estimate(tmp_path: Path) -> None:
         if (tmp_path / "before").exists():
             (tmp_path / "before").rename(tmp_path / "after")
 
-    with pytest.raises(pc.StorageError, match=r"was moved, .* during the run; it is complete, as .*after/a\.vtkhdf") as raised:
+    with pytest.raises(pc.StorageError, match=r"was moved, .* during the run; all steps done are in it, as .*after/a\.vtkhdf") as raised:
         pc.run(case, store=tmp_path / "before" / "a.vtkhdf", progress=move)
     assert raised.value.estimate.sup == expected.sup
     assert raised.value.history.path == tmp_path / "after" / "a.vtkhdf"

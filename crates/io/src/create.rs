@@ -7,7 +7,7 @@ use crate::temporary::{probe, temporary};
 use crate::unfinished::Unfinished;
 use crate::write::Texts;
 use hdf5::file::LibraryVersion;
-use percute_system::free;
+use percute_system::{REPLACES_OPEN_FILES, free};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -87,7 +87,11 @@ impl Unnamed {
         loop {
             // A file is replaced only by the one that holds the lock on it: of two runs that begin together, one is
             // refused.
-            let put = match old.as_ref().is_some_and(|old| old.is_at(&path)) {
+            let replaced = old.as_ref().is_some_and(|old| old.is_at(&path));
+            if !REPLACES_OPEN_FILES {
+                drop(old.take());
+            }
+            let put = match replaced {
                 true => temporary.persist(&path),
                 false => temporary.persist_noclobber(&path),
             };

@@ -38,7 +38,7 @@ pub enum FileCause {
     #[error("the file cannot be created: {source}; check that the folder exists and is writable")]
     Create { source: io::Error },
     /// Not enough space.
-    #[error("the file needs {needed} bytes, but only {free} are free there; make room, or store it elsewhere")]
+    #[error("the file needs {needed} bytes of room, but only {free} are free there; make room, or store it elsewhere")]
     NoSpace { needed: u64, free: u64 },
     /// Writing failed during the run.
     #[error("step {step} could not be written: {source}; all steps before it are in the file")]
@@ -65,7 +65,7 @@ pub enum FileCause {
     NoStep,
     /// The file of a run disappeared during the run; `now` is its place and name, if it still has one.
     #[error("the file was moved, removed or replaced during the run{}", match now {
-        Some(now) => format!("; it is complete, as {}", now.display()),
+        Some(now) => format!("; all steps done are in it, as {}", now.display()),
         None => ": its steps are lost".to_string(),
     })]
     Lost { now: Option<PathBuf> },

@@ -1,7 +1,7 @@
 //! Files under a lock.
 
 use crate::error::FileCause;
-use percute_system::{is_at, name_of};
+use percute_system::{is_at, name_of, try_lock, try_lock_shared, unlock};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -14,17 +14,17 @@ pub(crate) struct Held(File);
 impl Held {
     /// Others may read.
     pub(crate) fn shared(file: File) -> Result<Self, FileCause> {
-        taken(file.try_lock_shared()).map(|()| Self(file))
+        taken(try_lock_shared(&file)).map(|()| Self(file))
     }
 
     /// It is held here alone.
     pub(crate) fn alone(file: File) -> Result<Self, FileCause> {
-        taken(file.try_lock()).map(|()| Self(file))
+        taken(try_lock(&file)).map(|()| Self(file))
     }
 
     /// Lets others read.
     pub(crate) fn share(self) -> Result<Self, FileCause> {
-        taken(self.0.try_lock_shared()).map(|()| self)
+        taken(try_lock_shared(&self.0)).map(|()| self)
     }
 
     pub(crate) fn file(&self) -> &File {
@@ -53,6 +53,6 @@ fn taken(lock: Result<(), TryLockError>) -> Result<(), FileCause> {
 
 impl Drop for Held {
     fn drop(&mut self) {
-        let _ = self.0.unlock();
+        unlock(&self.0);
     }
 }

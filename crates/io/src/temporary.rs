@@ -1,7 +1,7 @@
 //! Files under a temporary name. Each is locked by its process, so that one without a lock is known to be left behind.
 
 use crate::unfinished::Unfinished;
-use percute_system::{is_at, permissions};
+use percute_system::{is_at, permissions, try_lock, try_lock_shared};
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub(crate) fn temporary(folder: &Path) -> io::Result<(NamedTempFile, Unfinished)
         permissions().into_iter().for_each(|permissions| _ = builder.permissions(permissions));
         let made = builder.tempfile_in(folder)?;
         // Another process may have taken it for one that was left behind, until it was locked.
-        let locked = made.as_file().try_lock_shared();
+        let locked = try_lock_shared(made.as_file());
         if matches!(locked, Err(std::fs::TryLockError::WouldBlock)) || !is_at(made.as_file(), made.path()) {
             continue;
         }
@@ -50,7 +50,7 @@ fn remove_left_behind(folder: &Path) {
         let path = entry.path();
         // File systems without locks refuse one: nothing is known of the file then.
         let Ok(file) = File::open(&path) else { continue };
-        if file.try_lock().is_ok() {
+        if try_lock(&file).is_ok() {
             // Locked until it is gone: its process may be about to lock it.
             let _ = std::fs::remove_file(&path);
         }

@@ -2,6 +2,7 @@
 //! its end.
 
 use crate::plan::Planned;
+use percute_system::try_lock;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -64,7 +65,7 @@ pub(crate) struct Attempt {
     folder: PathBuf,
     place: PathBuf,
     /// Held open for its lock.
-    _lock: File,
+    lock: File,
 }
 
 impl Attempt {
@@ -78,9 +79,9 @@ impl Attempt {
         fs::create_dir(&folder)?;
         let lock = File::create(folder.join(LOCK))?;
         // File systems without locks go without: the folder of a killed run stays.
-        let _ = lock.try_lock();
+        let _ = try_lock(&lock);
         fs::write(folder.join(CASE), &case.text)?;
-        Ok(Self { folder, place: all.join(&case.name), _lock: lock })
+        Ok(Self { folder, place: all.join(&case.name), lock })
     }
 
     pub(crate) fn folder(&self) -> &Path {
@@ -94,18 +95,21 @@ impl Attempt {
 
     /// Gives the folder the name of the case, in place of an older one; with the reason if the run failed.
     pub(crate) fn finish(self, failure: Option<&str>) -> io::Result<()> {
-        let warnings = self.folder.join(WARNINGS);
+        let Self { folder, place, lock } = self;
+        let warnings = folder.join(WARNINGS);
         if let Some(reason) = failure {
-            fs::write(self.folder.join(FAILURE), format!("{}\n", reason.trim()))?;
-            fs::remove_file(self.folder.join(RESULT))?;
+            fs::write(folder.join(FAILURE), format!("{}\n", reason.trim()))?;
+            fs::remove_file(folder.join(RESULT))?;
             fs::remove_file(warnings)?;
         } else if warnings.metadata()?.len() == 0 {
             fs::remove_file(warnings)?;
         }
-        fs::remove_file(self.folder.join(LOCK))?;
-        match fs::remove_dir_all(&self.place) {
+        fs::remove_file(folder.join(LOCK))?;
+        // A folder with an open file cannot be renamed on every system.
+        drop(lock);
+        match fs::remove_dir_all(&place) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            _ => fs::rename(&self.folder, &self.place),
+            _ => fs::rename(folder, place),
         }
     }
 
@@ -128,7 +132,7 @@ pub(crate) fn clean(folder: &Path) {
     let prefix = prefix();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if entry.file_name().to_string_lossy().starts_with(&prefix) {
-            let ended = File::open(entry.path().join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok());
+            let ended = File::open(entry.path().join(LOCK)).is_ok_and(|lock| try_lock(&lock).is_ok());
             if ended {
                 let _ = fs::remove_dir_all(entry.path());
             }

@@ -1,5 +1,5 @@
 //! What percute asks of the operating system beyond the standard library: numbers at a place of a file, room on a disk,
-//! whether two names are one file, processes. What a system cannot do is left out here, and nowhere else: without
+//! whether two names are one file, locks, processes. What a system cannot do is left out here, and nowhere else: without
 //! reserved room, a full disk is noticed when it is full.
 
 #[cfg(unix)]
@@ -12,7 +12,7 @@ use unix as system;
 #[cfg(windows)]
 use windows as system;
 
-use std::fs::{File, FileType, Permissions};
+use std::fs::{File, FileType, Permissions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Child;
@@ -32,6 +32,31 @@ pub fn read_exact_at(file: &File, bytes: &mut [u8], place: u64) -> io::Result<()
 pub fn write_all_at(file: &File, bytes: &[u8], place: u64) -> io::Result<()> {
     system::write_all_at(file, bytes, place)
 }
+
+/// Locks a file for this process alone, if no other has a lock on it. Where a lock would keep this process from its own
+/// writes and HDF5 from its reads, as on Windows, there is none.
+///
+/// # Errors
+/// A lock of another, or no locks here.
+pub fn try_lock(file: &File) -> Result<(), TryLockError> {
+    system::try_lock(file)
+}
+
+/// Locks a file together with others.
+///
+/// # Errors
+/// As [`try_lock`].
+pub fn try_lock_shared(file: &File) -> Result<(), TryLockError> {
+    system::try_lock_shared(file)
+}
+
+/// Gives a lock back.
+pub fn unlock(file: &File) {
+    system::unlock(file);
+}
+
+/// Whether a file can take the name of one that is open.
+pub const REPLACES_OPEN_FILES: bool = cfg!(not(windows));
 
 /// Whether an open file is the one that has this name.
 #[must_use]
@@ -58,6 +83,13 @@ pub fn reserve(file: &File, bytes: u64) -> io::Result<()> {
 /// without holes keep the room and the bytes.
 pub fn give_back(file: &File, place: u64, bytes: u64) {
     system::give_back(file, place, bytes);
+}
+
+/// Bytes that a file takes on its disk; a file with holes takes less than its length. Zero where the system does
+/// not tell.
+#[must_use]
+pub fn occupied(file: &File) -> u64 {
+    system::occupied(file)
 }
 
 /// Bytes available in a folder, where the system tells.

@@ -2,7 +2,7 @@
 
 use rustix::fs::fstatvfs;
 use rustix::process::{Pid, Signal, kill_process};
-use std::fs::{File, FileType, Permissions};
+use std::fs::{File, FileType, Permissions, TryLockError};
 use std::io;
 use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
@@ -14,6 +14,18 @@ pub(super) fn read_exact_at(file: &File, bytes: &mut [u8], place: u64) -> io::Re
 
 pub(super) fn write_all_at(file: &File, bytes: &[u8], place: u64) -> io::Result<()> {
     file.write_all_at(bytes, place)
+}
+
+pub(super) fn try_lock(file: &File) -> Result<(), TryLockError> {
+    file.try_lock()
+}
+
+pub(super) fn try_lock_shared(file: &File) -> Result<(), TryLockError> {
+    file.try_lock_shared()
+}
+
+pub(super) fn unlock(file: &File) {
+    let _ = file.unlock();
 }
 
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
@@ -55,6 +67,12 @@ pub(super) fn reserve(_: &File, _: u64) -> io::Result<()> {
 
 #[cfg(not(target_os = "linux"))]
 pub(super) fn give_back(_: &File, _: u64, _: u64) {}
+
+pub(super) fn occupied(file: &File) -> u64 {
+    /// The unit of `blocks`, whatever the blocks of the disk are.
+    const UNIT: u64 = 512;
+    file.metadata().map_or(0, |found| UNIT * found.blocks())
+}
 
 pub(super) fn free(folder: &Path) -> Option<u64> {
     let status = fstatvfs(File::open(folder).ok()?).ok()?;

@@ -1,7 +1,7 @@
 //! Windows.
 
 use same_file::Handle;
-use std::fs::{File, FileType, Permissions};
+use std::fs::{File, FileType, Permissions, TryLockError};
 use std::io;
 use std::os::windows::fs::FileExt;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,17 @@ pub(super) fn write_all_at(file: &File, mut bytes: &[u8], mut place: u64) -> io:
     Ok(())
 }
 
+/// A lock of the standard library is one on all bytes here, which no handle may then write, its own included.
+pub(super) fn try_lock(_: &File) -> Result<(), TryLockError> {
+    Err(TryLockError::Error(io::ErrorKind::Unsupported.into()))
+}
+
+pub(super) fn try_lock_shared(file: &File) -> Result<(), TryLockError> {
+    try_lock(file)
+}
+
+pub(super) fn unlock(_: &File) {}
+
 pub(super) fn is_at(file: &File, path: &Path) -> bool {
     let mine = file.try_clone().and_then(Handle::from_file);
     mine.is_ok_and(|mine| Handle::from_path(path).is_ok_and(|there| mine == there))
@@ -41,6 +52,10 @@ pub(super) fn reserve(_: &File, _: u64) -> io::Result<()> {
 }
 
 pub(super) fn give_back(_: &File, _: u64, _: u64) {}
+
+pub(super) fn occupied(_: &File) -> u64 {
+    0
+}
 
 pub(super) fn free(_: &Path) -> Option<u64> {
     None

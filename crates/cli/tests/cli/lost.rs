@@ -31,7 +31,7 @@ fn a_folder_that_is_renamed_costs_no_result() {
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     assert!(stdout(&output).contains("\nresult    sup "), "{}", stdout(&output));
     let told = stderr(&output);
-    assert!(told.contains("was moved, removed or replaced during the run; it is complete, as "), "{told}");
+    assert!(told.contains("was moved, removed or replaced during the run; all steps done are in it, as "), "{told}");
     assert!(told.contains("after/a.vtkhdf"), "{told}");
     assert!(bench.path("p.svg").exists() && bench.path("e.vtkhdf").exists());
     let info = bench.percute(&["info", "after/a.vtkhdf"]);

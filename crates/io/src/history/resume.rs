@@ -15,7 +15,7 @@ use percute_core::history::Checkpoint;
 use percute_core::problem::Problem;
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
-use percute_system::write_all_at;
+use percute_system::{occupied, write_all_at};
 use std::fs::File;
 
 /// A history to which its run goes on to add steps.
@@ -96,7 +96,11 @@ where
         let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint<D>| checkpoint.step + 1);
         let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
         now.check_rows(stored).map_err(|error| error.cause)?;
-        reserve(held.file(), path, bytes)?;
+        let missing = bytes.saturating_sub(occupied(held.file()));
+        reserve(held.file(), path, bytes).map_err(|cause| match cause {
+            FileCause::NoSpace { free, .. } => FileCause::NoSpace { needed: missing, free },
+            other => other,
+        })?;
         write_all_at(held.file(), &[0], places.complete).map_err(create)?;
         let (kept, given) = (now.keeps(), now.stored());
         let begun = Begun { last: now.run_times().step_count(), next, stored, given, kept };

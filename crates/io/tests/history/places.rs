@@ -4,6 +4,7 @@ use crate::common::*;
 use percute_io::history::{Plan, Writer, open, recover};
 use percute_io::{FileCause, FileError, Overwrite};
 use std::fs::{self, File};
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::Command;
 
@@ -173,6 +174,15 @@ fn small_disk() {
         (1..201).for_each(|n| writer.push(&history.step(n).unwrap()).unwrap());
         writer.finish().unwrap();
         assert_same(&replayed(&path, &problem).unwrap(), &history, 201);
+        // A run that goes on tells the room that it lacks: its file has given back that of the steps to come.
+        fs::remove_file(&path).unwrap();
+        fs::remove_file(disk.join("filler")).unwrap();
+        write_some(&path, &problem, &history, 3).finish().unwrap();
+        let found = fs::metadata(&path).unwrap();
+        assert!(fs::write(disk.join("filler"), vec![1; 1 << 20]).is_err());
+        let missing = found.len() - 512 * found.blocks();
+        let error = plane_file(&path).resume(&problem).unwrap_err();
+        assert!(matches!(error.cause, FileCause::NoSpace { needed, .. } if needed == missing), "{missing}: {error}");
     });
     // Lazily: a process that another test is about to start may still hold what this one has closed.
     assert!(Command::new("umount").arg("-l").arg(&disk).status().unwrap().success());
@@ -229,6 +239,15 @@ fn files_that_go_away() {
     let error = writer.finish().unwrap_err();
     assert!(matches!(&error.cause, FileCause::Lost { now: Some(now) } if *now == moved), "{error}");
     assert!(plane_file(&moved).is_complete(), "it is completed in its new place");
+
+    // One that was stopped as well holds a part of its steps.
+    let problem = block(4, 3);
+    let writer = write_some(&path, &problem, &run(&problem, &steps(&problem, 12)), 3);
+    let stopped = folder.path().join("c.vtkhdf");
+    fs::rename(&path, &stopped).unwrap();
+    let error = writer.finish().unwrap_err().to_string();
+    assert!(error.ends_with(&format!("; all steps done are in it, as {}", stopped.display())), "{error}");
+    assert!(!plane_file(&stopped).has_ended() && plane_file(&stopped).count() == 3);
 
     let writer = create(&path, Overwrite::Refuse).unwrap();
     fs::remove_file(&path).unwrap();
