@@ -1,5 +1,7 @@
 //! Runs that were killed or stopped, and go on from their histories.
 
+mod difference;
+
 use crate::case::{CaseOf, statement};
 use crate::failure::Failure;
 use crate::history::Stored;
@@ -19,13 +21,13 @@ impl<const D: usize, const N: usize> Stored<D, N>
 where
     Element<D, N>: Simplex<D, N>,
 {
-    /// Opens the history of the run of a case, which is to go on.
+    /// Opens the history of the run of a case, which is to go on; `estimated` if the error is estimated then.
     ///
     /// # Errors
     /// As [`open`](crate::history::open), and the history of another case.
-    pub fn of_case(case: &CaseOf<D, N>, file: &Path) -> Result<Self, Failure> {
+    pub fn of_case(case: &CaseOf<D, N>, file: &Path, estimated: bool) -> Result<Self, Failure> {
         let stored = Self::new(HistoryFile::of(file)?, file)?;
-        match stored.difference(case)? {
+        match stored.difference(case, estimated)? {
             None => Ok(stored),
             Some(what) => Err(Failure::Argument(format!(
                 "--resume: {} is the history of another case: {what}; give that case, another file, or --force without \
@@ -36,7 +38,7 @@ where
     }
 
     /// The first difference between the run of this history and that of a case.
-    fn difference(&self, case: &CaseOf<D, N>) -> Result<Option<&'static str>, Failure> {
+    fn difference(&self, case: &CaseOf<D, N>, estimated: bool) -> Result<Option<String>, Failure> {
         let (file, times) = (&self.file, self.file.run_times());
         let problem = &case.problem;
         let kept = |kept: Option<Kept>| {
@@ -46,19 +48,21 @@ where
         };
         let same_start = file.initial_displacement() == problem.initial_displacement()
             && file.initial_velocity() == problem.initial_velocity();
-        Ok(if !same_mesh(problem.mesh(), file.mesh()) {
+        let stated = difference::of_statements(&statement(problem, Some(&case.options))?, file.statement(), estimated);
+        let differs = if !same_mesh(problem.mesh(), file.mesh()) {
             Some("its mesh differs")
         } else if !same_start {
             Some("its initial displacement or velocity differs")
-        } else if statement(problem, Some(&case.options))? != file.statement() {
-            Some("its material, planes, loads, supports or options of the estimate differ")
+        } else if stated.is_some() {
+            return Ok(stated);
         } else if !self.same_time(case) {
             Some("its end or its steps differ")
         } else if kept(case.output.keep.of(times)) != kept(file.keeps()) {
             Some("`every`, `times` or `fields` of its [output] differ")
         } else {
             None
-        })
+        };
+        Ok(differs.map(str::to_string))
     }
 
     /// Whether the case asks for the instants of the file. Those of a run that ends with the rebound follow from its

@@ -21,11 +21,12 @@ pub(super) enum Left<const D: usize, const N: usize> {
     Whole(Box<Stored<D, N>>),
 }
 
-/// Looks for the history that a run of this case left, if it is to go on.
+/// Looks for the history that a run of this case left, if it is to go on; `estimated` if its error is estimated.
 pub(super) fn left<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     history: Option<OutputFile<'_>>,
     resume: bool,
+    estimated: bool,
 ) -> Result<Left<D, N>, Failure>
 where
     Element<D, N>: Simplex<D, N>,
@@ -40,7 +41,7 @@ where
     if !file.exists() {
         return Ok(Left::Nothing);
     }
-    let stored = Box::new(Stored::of_case(case, file)?);
+    let stored = Box::new(Stored::of_case(case, file, estimated)?);
     Ok(if stored.file.has_ended() { Left::Whole(stored) } else { Left::Begun(stored) })
 }
 

@@ -35,7 +35,7 @@ where
 {
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
-    let left = left(case, history, arguments.resume)?;
+    let left = left(case, history, arguments.resume, true)?;
     left.refuse_a_part(arguments)?;
     let mut inputs = case.inputs(Some(&arguments.case));
     inputs.extend(history.filter(|_| left.history().is_some()).map(|history| ("history", history.file)));
@@ -99,7 +99,7 @@ where
                 console.say(simulated(&case.subject(), &simulation, file, seconds).trim_end());
                 return Ok(Break(INTERRUPTED));
             }
-            again(&Stored::of_case(case, file)?, analysis, work, console)
+            again(&Stored::of_case(case, file, true)?, analysis, work, console)
         }
     };
     match done {

@@ -34,7 +34,7 @@ where
     let keys = ["--history", "[output] history"];
     let chosen = chosen(keys, arguments.history.as_deref(), case.output.history.as_deref());
     let history = chosen.unwrap_or(OutputFile { what: "history", file: &named });
-    let left = left(case, Some(history), arguments.resume)?;
+    let left = left(case, Some(history), arguments.resume, false)?;
     let new = left.history().is_none().then_some(history);
     check(&case.inputs(Some(&arguments.case)), &[new], None, force)?;
     case.check_run(false, Long::asked(long, "--long"))?;

@@ -70,6 +70,16 @@ fn no_command_is_aborted_for_want_of_memory() {
     never_aborts(&small, verify, [80_000, 120_000, 2_000_000], "which cannot be had");
 }
 
+/// A mesh of arrays makes a case long, and its document takes many times the memory of the text.
+#[test]
+fn a_text_is_measured_before_it_is_read() {
+    let bench = Bench::new(&format!("[mesh]\npoints = [{}]\n", "1,".repeat(5_000_000)));
+    let output = limited(&bench, 700_000, "info case.toml");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let words = "case.toml:1: a case of 10.0 MB needs up to 800 MB of memory, which cannot be had: name a mesh of Gmsh";
+    assert!(stderr(&output).contains(words), "{}", stderr(&output));
+}
+
 #[test]
 fn mistakes_are_found_before_a_large_mesh_is_made() {
     for (right, wrong) in [("friction = 0.2", "friction = -0.2"), ("group = \"left\"", "group = \"lft\"")] {

@@ -116,7 +116,12 @@ fn another_case_is_refused() {
     let before = std::fs::read(bench.path("case.vtkhdf")).unwrap();
     for (from, to, told) in [
         ("nx = 5", "nx = 6", "its mesh differs"),
-        ("poisson = 0.3", "poisson = 0.31", "its material, planes"),
+        ("poisson = 0.3", "poisson = 0.31", "[[material]] 1, poisson is 0.31 in this case and 0.3 in the history"),
+        (
+            "[time]",
+            "[[body_force]]\nvalue = [0.0, 1.0]\n\n[time]",
+            "[body_force] is given 1 times in this case and missing",
+        ),
         ("velocity = [", "displacement = [1e-9, 0.0]\nvelocity = [", "its initial displacement or velocity differs"),
         ("end = 5e-6", "end = 6e-6", "its end or its steps differ"),
         ("[time]", "[output]\nevery = 3\n\n[time]", "`every`, `times` or `fields`"),
@@ -128,6 +133,12 @@ fn another_case_is_refused() {
         let (code, told_here) = refused(&bench.percute(&["simulate", "case.toml", "--resume"]));
         assert!(code == Some(2) && told_here.contains(told), "{to}: {told_here}");
     }
+    // A simulation has no estimate, and goes on with other options of it; the estimate of a run does not.
+    std::fs::write(bench.path("case.toml"), BLOCK.replacen("every = 1", "every = 3", 1)).unwrap();
+    let output = bench.percute(&["simulate", "case.toml", "--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let (code, told) = refused(&bench.percute(&["run", "case.toml", "--history", FILE, "--resume"]));
+    assert!(code == Some(2) && told.contains("[estimate], every is 3 in this case and"), "{told}");
     assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == before, "left alone");
 }
 

@@ -52,11 +52,13 @@ pub use statement::{NotRepresentable, problem_from, statement};
 pub use stranger::stranger;
 
 use crate::effort::{Effort, Long};
+use crate::message::bytes;
 use crate::report::Subject;
 use crate::until::Until;
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::each_dimension;
+use percute_core::memory::can_be_had;
 use percute_core::problem::{Place, Problem, cause_of_refused_start};
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
@@ -110,6 +112,7 @@ pub type Case = ByDimension<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>;
 /// # Errors
 /// The first thing that is wrong with it.
 pub fn parse(source: Source) -> Result<Case, CaseError> {
+    check_length(&source)?;
     let document = parsed(&source)?;
     let root = Table::root(&source, document.get_ref());
     root.only(&TABLES)?;
@@ -125,6 +128,22 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
         }
         ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(read(&source, &root, triangles, file)?))),
     }
+}
+
+/// Refuses a text whose document would take more memory than there is: with a mesh in it, a case may be long.
+fn check_length(source: &Source) -> Result<(), CaseError> {
+    /// Bytes of memory for each of the text: 27 to 40 were measured with meshes, 76 with numbers of one digit.
+    const MOST: u64 = 80;
+    let needed = MOST * source.text().len() as u64;
+    if can_be_had(needed) {
+        return Ok(());
+    }
+    let (length, needed) = (bytes(source.text().len() as u64), bytes(needed));
+    let told = format!(
+        "a case of {length} needs up to {needed} of memory, which cannot be had: name a mesh of Gmsh in [mesh] by \
+         `file`, or use a larger machine or limit (`ulimit -v`)"
+    );
+    Err(source.error(&At { path: String::new(), span: 0..0 }, told))
 }
 
 /// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make; see [`Coarsest`].

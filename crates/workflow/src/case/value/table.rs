@@ -78,6 +78,11 @@ impl<'a> Table<'a> {
                 .error(&at, format!("is not a table; write [{name}] on a line of its own, or several [[{name}]]"))
         };
         let entries = value.get_ref().as_array().ok_or_else(wrong)?;
+        if entries.is_empty() {
+            let at = At { path: name.to_string(), span: key.span() };
+            let told = format!("is an empty list; write [{name}] on a line of its own, or leave it out");
+            return Err(self.source.error(&at, told));
+        }
         let numbered = entries.iter().enumerate();
         numbered
             .map(|(i, entry)| {
