@@ -182,7 +182,7 @@ def read_case(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
         raise StorageError(f"`case`: {os.fspath(path)!r} is not a regular file; name a case file")
     try:
         content = path.read_bytes()
-        if (told := None if content[:4] == b"\x89HDF" else _percute.stranger(os.fspath(path), content)) is not None:
+        if (told := _percute.stranger(os.fspath(path), content)) is not None:
             raise InputError(f"`case`: {os.fspath(path)!r}: {told}")
         return encodable(os.fspath(path)), content.decode().replace("\r\n", "\n"), os.fspath(path)
     except FileNotFoundError:
@@ -190,10 +190,6 @@ def read_case(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     except IsADirectoryError:
         raise StorageError(f"`case`: {os.fspath(path)!r} is a folder; name a case file in it") from None
     except UnicodeDecodeError:
-        if content[:4] == b"\x89HDF":
-            raise InputError(
-                f"`case`: {os.fspath(path)!r} is an HDF5 file, not a case; use percute.open and percute.estimate for a history"
-            ) from None
         raise InputError(f"`case`: {os.fspath(path)!r} is not UTF-8 text") from None
     except OSError as error:
         raise StorageError(f"`case`: cannot read {os.fspath(path)!r}: {error.strerror}") from error

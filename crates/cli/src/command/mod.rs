@@ -36,6 +36,8 @@ use std::path::Path;
 
 /// Most bytes of a case; pipes may have no end.
 const MOST: u64 = 1 << 30;
+/// As many tell the kind of a file that is no text.
+const BEGINNING: u64 = 512;
 
 /// Where a command prints, and what may stop it.
 pub struct Console<'a> {
@@ -202,12 +204,9 @@ fn read(file: &Path) -> Result<Source, Failure> {
         return Err(Failure::Argument(format!("{name}: this is not a regular file; name a case file")));
     }
     // Asked first: a history may be larger than memory.
-    if is_hdf5(file).map_err(unreadable)? {
-        let message = "this is an HDF5 file, not a case; use `percute estimate` for a history, `percute info` for any";
-        return Err(Failure::Argument(format!("{name}: {message}")));
-    }
+    let most = if is_hdf5(file).map_err(unreadable)? { BEGINNING } else { MOST + 1 };
     let mut bytes = Vec::new();
-    File::open(file).and_then(|file| file.take(MOST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+    File::open(file).and_then(|file| file.take(most).read_to_end(&mut bytes)).map_err(unreadable)?;
     if bytes.len() as u64 > MOST {
         return Err(Failure::Argument(format!("{name}: a case file has at most 1 GiB; name a mesh file in the case")));
     }

@@ -384,7 +384,7 @@ fn what_an_estimate_file_holds_needs_one() {
     }
     let said = bench.percute(&["run", "case.vtkhdf"]);
     assert_eq!(said.status.code(), Some(2));
-    assert!(stderr(&said).contains("use `percute estimate` for a history"), "{}", stderr(&said));
+    assert!(stderr(&said).contains("this is a history, not a case; `percute estimate` estimates"), "{}", stderr(&said));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Files that are no cases, by their first bytes and their names.
 
+use percute_io::{Kind, kind};
 use std::path::Path;
 
 /// The way out for arrays.
@@ -21,6 +22,24 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
     (b"<", "XML, such as an SVG picture, an HTML page or a VTU file, not a case"),
 ];
 
+/// The first bytes of HDF5.
+const HDF5: &[u8] = b"\x89HDF";
+
+/// What an HDF5 file is, and what can be done with it.
+fn of_hdf5(file: &Path) -> &'static str {
+    match kind(file) {
+        Ok(Kind::Estimate) => {
+            "an estimate file, not a case; `percute info` describes it, `percute report` writes its page, `percute \
+             plot` draws it"
+        }
+        Ok(Kind::History) => {
+            "a history, not a case; `percute estimate` estimates its error, `percute report` writes a page on it, \
+             `percute info` describes it"
+        }
+        _ => "an HDF5 file, not a case, and neither a history nor an estimate file of percute",
+    }
+}
+
 /// What a file is, if it is no case: of another kind, or by its name a history or an estimate file.
 #[must_use]
 pub fn stranger(file: &Path, content: &[u8]) -> Option<String> {
@@ -30,6 +49,7 @@ pub fn stranger(file: &Path, content: &[u8]) -> Option<String> {
     let hdf5 = matches!(ending.as_deref(), Some("vtkhdf" | "h5" | "hdf5"));
     let found = match known {
         Some(kind) => kind.to_string(),
+        None if begins.starts_with(HDF5) => of_hdf5(file).to_string(),
         None if begins.is_empty() && hdf5 => "an empty file, no history and no estimate file".to_string(),
         // The reader of cases says what is missing.
         None if begins.is_empty() => return None,
@@ -55,6 +75,7 @@ mod tests {
             ("a.json", b"\n{\"levels\": []}", "a JSON document"),
             ("a.npz", b"PK\x03\x04", "`pc.History.from_arrays` (docs/foreign.md)"),
             ("a.npy", b"\x93NUMPY\x01", "`pc.History.from_arrays` (docs/foreign.md)"),
+            ("a.h5", b"\x89HDF\r\n\x1a\n", "neither a history nor an estimate file"),
             ("a.svg", b"<svg/>", "an SVG picture"),
             ("a.vtkhdf", b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
         ] {

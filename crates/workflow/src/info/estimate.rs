@@ -54,13 +54,23 @@ impl EstimateInfo {
             vec![("estimate", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", counts(self.dimension, self.elements, self.nodes)));
-        let ends = self.instants.first().zip(self.instants.last());
-        let ends = ends.map_or_else(String::new, |(a, b)| format!(" from {} to {} s", trimmed(*a, 5), trimmed(*b, 5)));
-        let fields = if self.fields { ", with the admissible fields" } else { "" };
-        lines.push(("holds", counted(self.instants.len(), "instant") + &ends + fields));
+        lines.push(("holds", "the error over time and of each element;".to_string()));
+        lines.push(("", self.maps()));
         if let [Some(sup), Some(mean)] = ["sup", "mean"].map(|key| self.report["error"][key].as_f64()) {
             lines.push(("error", format!("sup {} J^½, mean {} J^½", short(sup, 4), short(mean, 4))));
         }
+        let uses = "percute report writes its page, percute plot draws it, percute.open reads it in Python";
+        lines.push(("use", uses.to_string()));
         lines
+    }
+
+    /// The maps of the elements at chosen instants.
+    fn maps(&self) -> String {
+        let (Some(first), Some(last)) = (self.instants.first(), self.instants.last()) else {
+            return "no maps at instants: `instants` of the estimate makes them".to_string();
+        };
+        let [first, last] = [first, last].map(|instant| trimmed(*instant, 5));
+        let fields = if self.fields { ", with the admissible fields" } else { "" };
+        format!("maps at {} from {first} to {last} s{fields}", counted(self.instants.len(), "instant"))
     }
 }
