@@ -4,7 +4,6 @@ The source folder is the root: the site has the same pages, in the same places, 
 Nothing is fetched at build or at view time: equations are MathML, fonts are those of the reader's system.
 """
 
-import os
 import re
 import shlex
 import subprocess
@@ -70,9 +69,7 @@ class Command(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Run it."""
         program, *arguments = shlex.split(self.arguments[0])
-        # The width of the lines of `--help`.
-        environment = os.environ | {"COLUMNS": "100"}
-        done = subprocess.run([*PROGRAMS[program], *arguments], cwd=ROOT, env=environment, capture_output=True, text=True)
+        done = subprocess.run([*PROGRAMS[program], *arguments], cwd=ROOT, capture_output=True, text=True)
         if done.returncode != 0:
             raise self.error(f"{self.arguments[0]}: {done.stderr}")
         printed = re.sub(r"(?m)^(case .*), \S+ s\)$", r"\1)", done.stdout).rstrip()

@@ -160,3 +160,16 @@ def test_the_pages_of_the_crates_have_the_method(monkeypatch: pytest.MonkeyPatch
     for crate in crate_pages.PAGES:
         written = (ROOT / "crates" / crate / "src" / "method.md").read_text(encoding="utf-8")
         assert written == crate_pages.page(crate), "docs/method.md has changed: run `python tools/crate_pages.py`"
+
+
+def test_the_page_on_the_command_has_all_options(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    option_tables = importlib.import_module("option_tables")
+    written = option_tables.PAGE.read_text(encoding="utf-8")
+    assert written == option_tables.page(), "options have changed: run `python tools/option_tables.py`"
+    commands = re.findall(r"(?m)^\| `(\w+)` \|", written.split("## `percute new`")[0])
+    assert len(commands) > 10
+    for command in commands:
+        part = written.split(f"<!-- percute {command} --help -->")[1].split("<!-- end -->")[0]
+        options = {name for name in re.findall(r"(?<![\w-])--[a-z-]+", option_tables.printed([command])) if name != "--help"}
+        assert not [name for name in options if f"`{name}" not in part], command

@@ -47,7 +47,7 @@ WORDS = {"`save`": "--save", "`path`": "--save", "overwrite=True": "--force", "f
 
 def _parser() -> argparse.ArgumentParser:
     text = "Draw a picture: the same as from Python. A history is estimated first if the picture shows the error; a case is run."
-    kinds = "\n".join(f"  {name:11} {told}" for name, told in KINDS.items())
+    kinds = "\n".join(f"  {name:12} {told}" for name, told in KINDS.items())
     parser = argparse.ArgumentParser(
         "percute plot", description=text, epilog=f"kinds:\n{kinds}", allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter
     )
