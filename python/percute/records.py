@@ -21,7 +21,7 @@ class Parts:
     """The parts of η (J), eq. [14]."""
 
     kinetic: float
-    """From inertia: ½∫ρ(u̇_DA − u̇_CA)²."""
+    """Kinetic: the misfit of the law of inertia, ½∫ρ(u̇_DA − u̇_CA)²."""
     elastic: float
     """From stress: ½∫(σ_DA − σ_CA):K⁻¹(σ_DA − σ_CA)."""
     contact: float

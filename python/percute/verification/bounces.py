@@ -45,7 +45,7 @@ class Bounces:
     relative: float
     """ε_sup, eq. [22]."""
     kinetic: float
-    """The part of inertia in the largest η."""
+    """The kinetic part of the largest η, as a share."""
     moved: float
     """By how much the finer reference moves the largest true error, relative."""
 
@@ -116,7 +116,7 @@ def _compare(history: pc.History, estimate: pc.Estimate, coarse: pc.TrueError, f
 def add(section: Section, resolution: Resolution) -> None:
     """Compute the runs and add text and tables."""
     after = [f"{measure} after {k}" for measure in ("sup", "mean") for k in PHASES_SHOWN]
-    columns = [Column("case"), Column("mesh"), Column("phases"), Column("ε sup", "%", "[22]", digits=3), Column("part of inertia", "%", digits=3)]
+    columns = [Column("case"), Column("mesh"), Column("phases"), Column("ε sup", "%", "[22]", digits=3), Column("kinetic part", "%", digits=3)]
     columns += [*(Column(name, digits=3) for name in after), Column("references differ by", "%", digits=2)]
     caption = "Effectivity index of `corrected` after so many contact phases and the flight that follows, and at the end of the run, on each mesh."
     table = Table("bounces-runs", caption, columns, on_page=False)

@@ -122,7 +122,7 @@ def _table(results: Iterable[tuple[Run, Result]]) -> Table:
     columns = [Column("case"), Column("speed across the plane", "m/s", digits=3), Column("mesh"), Column("elements"), Column("T", "µs", digits=3)]
     columns += [Column("touches from", "µs", digits=3), Column("until", "µs", digits=3), Column("impulse kept", digits=3)]
     columns += [Column("sup", digits=3), Column("mean", digits=3), Column("time of the sup", "µs", digits=3)]
-    columns += [Column(f"part of {part} at the sup", "%", digits=3) for part in ("contact", "inertia", "stress")]
+    columns += [Column(f"{part} part at the sup", "%", digits=3) for part in ("contact", "kinetic", "elastic")]
     columns += [Column(name, digits=3) for name in VERDICT]
     columns += [Column(f"e_ref {measure}, {which} reference", "J^½") for which in ("coarser", "finer") for measure in ("sup", "mean")]
     caption = "Effectivity index over speed, on each mesh: with the parts of the largest η, and with the true error against two references."

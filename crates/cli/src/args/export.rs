@@ -17,7 +17,7 @@ pub struct ExportArguments {
     #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["every", "times"])]
     pub steps: Option<Vec<i64>>,
-    /// Write every k-th step, and the last
+    /// Write every k-th step and the last
     #[arg(long, value_name = "K", value_parser = steps, conflicts_with = "times")]
     pub every: Option<usize>,
     /// Write the steps nearest to these times in s, separated by commas

@@ -57,8 +57,8 @@ pub(super) fn over_time(document: &Document) -> String {
         mark: document.number("time_of_sup").map(|time| (time, "sup")),
     };
     let Some(svg) = chart.draw() else { return String::new() };
-    let caption = "√η over time and the roots of its parts [14]: the misfits of inertia (kinetic), of stress (elastic) \
-                   and of the contact law. The parts of η, not their roots, add up.";
+    let caption = "√η over time and the roots of its parts [14]: kinetic, the misfit of the law of inertia, elastic, \
+                   that of Hooke's law, and contact, that of the contact law. The parts of η, not their roots, add up.";
     let figure = figure(&svg, "error over time with its parts", caption);
     let parts = ["kinetic", "elastic", "contact"].map(|name| (name, document.number(&format!("parts.{name}"))));
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();

@@ -4,6 +4,7 @@ use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
+use percute_estimator::Sampling;
 
 /// Nature of the error, in a line.
 const MEASURE: &str = "An estimate, not a strict bound, of the errors of space, time, mass and contact.";
@@ -83,10 +84,10 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
         (
             "options",
             format!(
-                "reconstruction {}, acceleration {}, every {}",
+                "reconstruction {}, acceleration {}, samples at {}",
                 options.reconstruction,
                 options.acceleration(report.problem.dimension),
-                options.every
+                sampled(options.every)
             ),
         ),
     ];
@@ -100,6 +101,15 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
         lines.push(("derived", format!("{derived}: not in the history")));
     }
     lines
+}
+
+/// The steps at which the error is sampled.
+fn sampled(every: Sampling) -> String {
+    match every {
+        Sampling::Auto => "steps of `auto`".to_string(),
+        Sampling::Every(1) => "each step".to_string(),
+        Sampling::Every(k) => format!("one step in {k}"),
+    }
 }
 
 /// How far the run or the history went.

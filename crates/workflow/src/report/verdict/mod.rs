@@ -72,11 +72,11 @@ pub struct Verdict {
 /// Parts of η at its largest value, over η, eq. \[14\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shares {
-    /// Misfit of the contact law.
+    /// The contact part: misfit of the contact law.
     pub contact: f64,
-    /// Misfit of inertia.
+    /// The kinetic part: misfit of the law of inertia.
     pub inertia: f64,
-    /// Misfit of stress.
+    /// The elastic part: misfit of Hooke's law.
     pub stress: f64,
 }
 

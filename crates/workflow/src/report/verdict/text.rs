@@ -72,15 +72,14 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
 }
 
 fn place(facts: &Facts, shares: Shares) -> String {
-    let Shares { contact, inertia, stress } = shares;
-    let [contact, inertia, stress] = [contact, inertia, stress].map(whole_percent);
+    let [contact, kinetic, elastic] = [shares.contact, shares.inertia, shares.stress].map(whole_percent);
     if facts.contact.touches == Touches::None {
-        return format!("The squared largest error is {inertia} inertia, {stress} stress.");
+        return format!("The squared largest error is {kinetic} kinetic, {elastic} elastic.");
     }
     let near = whole_percent(facts.at_contact);
     format!(
         "Elements that touch hold {near} of the squared mean error; the squared largest error is {contact} contact, \
-         {inertia} inertia, {stress} stress."
+         {kinetic} kinetic, {elastic} elastic."
     )
 }
 
