@@ -59,6 +59,7 @@ _Integers = NDArray[np.int64]
 _Tell = Callable[[Progress], object] | None
 _Times = tuple[float | None, float | None, float | None, Sequence[float] | None]
 _Kept = tuple[int | None, Sequence[float] | None, Sequence[str] | None]
+_Told = tuple[str | None, str | None, str | None]
 _TrueError = tuple[float, float, dict[str, _Floats]]
 
 class _Measures(TypedDict):
@@ -148,7 +149,7 @@ class HistoryData:
         touching: NDArray[np.bool_],
         options: tuple[str, str | None, int | str],
         motion: tuple[_Floats | None, _Floats | None],
-        derived: Sequence[str] | None,
+        origin: tuple[str | None, Sequence[str]] | None,
     ) -> HistoryData: ...
     @staticmethod
     def foreign(
@@ -159,8 +160,11 @@ class HistoryData:
         touching: NDArray[np.bool_] | None,
         velocity: _Floats | None,
         acceleration: _Floats | None,
+        program: str | None,
     ) -> tuple[HistoryData, str | None]: ...
     derived: Final[list[str] | None]
+    program: Final[str | None]
+    def save(self, path: str | PathLike[str], overwrite: bool) -> None: ...
     given: Final[list[bool]]
     problem: Final[ProblemData]
     times: Final[_Floats]
@@ -291,8 +295,10 @@ def run_case(
 ) -> tuple[HistoryData, EstimateData]: ...
 def colour_scale(values: _Floats, count: int) -> tuple[float, float, bool, list[tuple[float, str]]]: ...
 def deformed_outline(mesh: MeshData, report: str) -> tuple[list[list[list[float]]], str] | None: ...
-def present(estimate: EstimateData, page: bool, path: str | PathLike[str], overwrite: bool, name: str, history: HistoryData | None) -> None: ...
-def present_file(estimate: str | PathLike[str], page: bool, path: str | PathLike[str], overwrite: bool) -> None: ...
+def present(
+    estimate: EstimateData, page: _Told | None, path: str | PathLike[str], overwrite: bool, name: str, history: HistoryData | None
+) -> None: ...
+def present_file(estimate: str | PathLike[str], page: _Told | None, path: str | PathLike[str], overwrite: bool) -> None: ...
 def export(
     history: HistoryData,
     path: str | PathLike[str],

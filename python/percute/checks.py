@@ -104,6 +104,15 @@ def text(name: str, value: object) -> str:
     return value
 
 
+def words(name: str, value: object) -> str | None:
+    """Give a text with at least one word, or None."""
+    if value is None:
+        return None
+    if not text(name, value).strip() or "\0" in str(value):
+        raise wrong(name, value, "a text with a word, without NUL")
+    return str(value)
+
+
 def path(name: str, value: object) -> str:
     """Give the name of a file."""
     try:

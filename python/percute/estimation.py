@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute import _percute
-from percute.checks import flag, instance, vtkhdf, whole
+from percute.checks import flag, instance, vtkhdf, whole, words
 from percute.checks import path as file_name
 from percute.contact import Contact
 from percute.errors import InputError
@@ -48,7 +48,7 @@ class Estimate(EstimateViews):
 
     _data: _percute.EstimateData | StoredEstimate
     _history: History | None
-    _name: str
+    _named: str
 
     def __init__(self) -> None:
         raise TypeError("estimates are made by percute.estimate, percute.run and percute.open")
@@ -58,8 +58,13 @@ class Estimate(EstimateViews):
         made = cls.__new__(cls)
         made._data = data
         made._history = history
-        made._name = name
+        made._named = name
         return made
+
+    @property
+    def _name(self) -> str:
+        """The name of the case or history; that of a file into which the history was saved later."""
+        return self._named or ("" if self._history is None else self._history._name)
 
     @property
     def history(self) -> History | None:
@@ -278,9 +283,17 @@ class Estimate(EstimateViews):
         ExistingFileError, StorageError
             The file exists already or cannot be written.
         """
-        self._present(False, path, overwrite)
+        self._present(None, path, overwrite)
 
-    def report(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+    def report(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        title: str | None = None,
+        author: str | None = None,
+        program: str | None = None,
+        overwrite: bool = False,
+    ) -> None:
         """Write the page of ``percute report``: one HTML file to read, to print and to hand over, described in ``docs/report.md``.
 
         It shows the pressure along the surface unless the estimate was unpickled without its history.
@@ -289,19 +302,25 @@ class Estimate(EstimateViews):
         ----------
         path : str or path
             The file, ``.html``.
+        title : str, optional
+            Title of the page; by default "Error of the simulation" and the name of the case or history.
+        author : str, optional
+            Who hands the page over.
+        program : str, optional
+            The program that simulated, of a history of another program; by default as `History.from_arrays` was told.
         overwrite : bool, default: False
             Whether a file that exists already is replaced.
 
         Raises
         ------
         InputError
-            The name of the file ends otherwise, or is that of the estimate.
+            The name of the file ends otherwise, or is that of the estimate. ``program`` is given, but percute simulated.
         ExistingFileError, StorageError
             The file exists already or cannot be written.
         """
-        self._present(True, path, overwrite)
+        self._present((words("title", title), words("author", author), words("program", program)), path, overwrite)
 
-    def _present(self, page: bool, path: str | os.PathLike[str], overwrite: bool) -> None:
+    def _present(self, page: tuple[str | None, str | None, str | None] | None, path: str | os.PathLike[str], overwrite: bool) -> None:
         file, replace = os.path.abspath(file_name("path", path)), flag("overwrite", overwrite)
         if isinstance(self._data, StoredEstimate):
             _percute.present_file(self._data.path, page, file, replace)

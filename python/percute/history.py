@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -13,12 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.balance import Balance
-from percute.checks import instance, warn
+from percute.checks import encodable, flag, instance, vtkhdf, warn, words
 from percute.contact import Contact
 from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
 from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.rebound import Rebound
+from percute.termination import file_closed_at_signals
 from percute.views import HistoryViews
 from percute.words import counted
 
@@ -62,6 +64,7 @@ class History(HistoryViews):
         velocity: ArrayLike | None = None,
         acceleration: ArrayLike | None = None,
         contact_nodes: ArrayLike | None = None,
+        program: str | None = None,
     ) -> History:
         """Make a history of the arrays of another program.
 
@@ -86,6 +89,8 @@ class History(HistoryViews):
         contact_nodes : (contact nodes,) ints, optional
             The nodes of the rows of ``reaction`` and ``touching``, by default `Problem.contact_nodes`. Arrays of all nodes are
             accepted without it.
+        program : str, optional
+            The name of the other program, for reports.
 
         Returns
         -------
@@ -112,6 +117,7 @@ class History(HistoryViews):
             arrays.touching(touching),
             arrays.optional("velocity", velocity),
             arrays.optional("acceleration", acceleration),
+            words("program", program),
         )
         warn([] if notice is None else [notice])
         return cls._of(data, problem)
@@ -318,9 +324,41 @@ class History(HistoryViews):
         return tuple(self._data.derived or ())
 
     @property
+    def program(self) -> str | None:
+        """The program that simulated a history of another program, if its name is known."""
+        return self._data.program
+
+    @property
     def complete(self) -> bool:
         """Whether all planned steps are present."""
         return self._data.complete
+
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write a history that is in memory into a file, for ``percute estimate``, ``report``, ``info``, ``export`` and `percute.open`.
+
+        It is the file that ``store`` of `simulate` makes, byte by byte. A history of another program stays one. The file gives
+        the same arrays and the same estimate, bit by bit. Described in ``docs/history.md``.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, such as ``"history.vtkhdf"``.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+
+        Raises
+        ------
+        InputError
+            The history is in a file; copy that instead.
+        ExistingFileError, MissingFileError, StorageError
+            The file exists already, its folder does not exist, or it cannot be written.
+        """
+        file, replace = vtkhdf("path", path), flag("overwrite", overwrite)
+        if self.path is not None:
+            raise InputError(f"the history is in the file {str(self.path)!r}; copy that")
+        with file_closed_at_signals(file):
+            self._data.save(os.path.abspath(file), replace)
+        self._name = self._name or encodable(file)
 
     def __len__(self) -> int:
         return self._data.count
@@ -338,7 +376,8 @@ class History(HistoryViews):
         arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
         velocity, acceleration = self._data.given
         motion = (self.velocity.copy() if velocity else None, self.acceleration.copy() if acceleration else None)
-        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options(), motion, self._data.derived)
+        origin = None if self._data.derived is None else (self._data.program, self._data.derived)
+        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options(), motion, origin)
 
 
 def _reopen(path: str) -> History:

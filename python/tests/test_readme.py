@@ -1,6 +1,7 @@
 """The Python of the README and of the package runs as it stands."""
 
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -41,7 +42,7 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
     for command in (made, *commands):
         # Pages name the same file twice: for a run, and for its history.
         extra = ["--force"] if command.startswith(("report", "run")) else []
-        done = subprocess.run([sys.executable, "-m", "percute", *command.split(), *extra], cwd=tmp_path, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-m", "percute", *shlex.split(command), *extra], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, f"percute {command}: {done.stderr}"
     readers = [each for each in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "vtkHDFReader" in each]
     for reader in readers:

@@ -95,19 +95,44 @@ def test_the_outline_has_the_last_displacements(estimate: pc.Estimate) -> None:
 def test_a_page_says_how_a_history_in_memory_was_made(estimate: pc.Estimate, tmp_path: Path) -> None:
     estimate.report(tmp_path / "simulated.html")
     page = (tmp_path / "simulated.html").read_text(encoding="utf-8")
-    assert "percute.simulate(problem, end=5e-6, step=" in page and "vtkhdf" not in page
+    assert "simulated in Python and is in no file" in page and "estimate.history.save(&quot;history.vtkhdf&quot;)" in page
     history = estimate.history
     assert history is not None and estimate.problem is not None
     arrays = pc.History.from_arrays(estimate.problem, history.time, history.displacement, history.reaction)
     pc.estimate(arrays).report(tmp_path / "arrays.html")
     page = (tmp_path / "arrays.html").read_text(encoding="utf-8")
-    assert "made from arrays in Python" in page and "percute.History.from_arrays(problem" in page and "vtkhdf" not in page
+    assert "made from arrays of another program in Python" in page and "estimate.history.save(&quot;history.vtkhdf&quot;)" in page
     # An estimate of a case has its text, from a file and from Python alike.
     case = (Path(__file__).parents[2] / "tests/bases/block.toml").read_text(encoding="utf-8")
     (tmp_path / "block.toml").write_text(case, encoding="utf-8")
     pc.run(tmp_path / "block.toml").report(tmp_path / "case.html")
     page = (tmp_path / "case.html").read_text(encoding="utf-8")
     assert "percute run block.toml --report report.html" in page and "<h3>Case file block.toml</h3>" in page
+
+
+def test_the_head_is_that_of_the_command(estimate: pc.Estimate, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    history = estimate.history
+    assert history is not None
+    arrays = pc.History.from_arrays(history.problem, history.time, history.displacement, history.reaction, program="One")
+    graded = pc.estimate(arrays)
+    arrays.save("a.vtkhdf")
+    graded.report(tmp_path / "ours.html", title="A <title>", author="A. & B.", program="Two")
+    head = ["--title", "A <title>", "--author", "A. & B.", "--program", "Two"]
+    for file in ("a.vtkhdf", "e.vtkhdf"):
+        if file == "e.vtkhdf":
+            graded.save(tmp_path / file)
+        arguments = [sys.executable, "-m", "percute", "report", file, "theirs.html", "--force", "--quiet", *head]
+        subprocess.run(arguments, cwd=tmp_path, check=True, capture_output=True)
+        ours, page = ((tmp_path / name).read_text(encoding="utf-8") for name in ("ours.html", "theirs.html"))
+        assert ours == page and "<h1>A &lt;title&gt;</h1>\n<p>A. &amp; B.</p>" in page and "simulated by Two, estimated by" in page
+    # percute's own simulation has no other program.
+    with pytest.raises(pc.InputError, match="percute simulated this"):
+        estimate.report(tmp_path / "none.html", program="Two")
+    for argument in ("title", "author", "program"):
+        with pytest.raises(pc.InputError, match=f"`{argument}` is ' '; it must be a text"):
+            graded.report(tmp_path / "none.html", **{argument: " "})
+    assert not (tmp_path / "none.html").exists()
 
 
 def test_pictures_are_those_of_the_command(tmp_path: Path) -> None:

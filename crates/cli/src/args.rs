@@ -9,6 +9,7 @@ pub use sweep::SweepArguments;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, Sampling, UnknownName, UnknownSampling};
+use percute_presentation::About;
 use percute_workflow::case::Instants;
 use percute_workflow::message::hint;
 use std::ffi::OsString;
@@ -155,7 +156,8 @@ pub struct EstimateArguments {
     #[arg(long, value_name = "NAME", value_parser = choice::<Acceleration>)]
     #[arg(help = named("Choice of the admissible acceleration", Acceleration::ALL))]
     pub acceleration: Option<Acceleration>,
-    /// Sample the error at every k-th step, or at those that "auto" chooses [default: as stored in the history]
+    /// Sample the error at every k-th step and the last, or at those that "auto" chooses [default: as stored in the
+    /// history]
     #[arg(long, value_name = "K", value_parser = sampling)]
     pub every: Option<Sampling>,
     /// Estimate a history of another program even if it contradicts itself or its problem
@@ -182,6 +184,15 @@ pub struct ReportArguments {
     /// The page, as an option
     #[arg(short, long, value_name = "PAGE", conflicts_with = "page")]
     pub output: Option<PathBuf>,
+    /// Title of the page [default: "Error of the simulation" and the name of the file]
+    #[arg(long, value_name = "TEXT")]
+    pub title: Option<String>,
+    /// Who hands the page over
+    #[arg(long, value_name = "TEXT")]
+    pub author: Option<String>,
+    /// The program that simulated, of a history of another program [default: as the history states]
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
     /// Estimate a history of another program although it contradicts itself or its problem
     #[arg(long)]
     pub accept_inconsistent: bool,
@@ -283,6 +294,9 @@ pub struct PrintArguments {
     /// Write a page with verdict, figures and tables (.html)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+    /// The head of this page.
+    #[arg(skip)]
+    pub about: About,
     /// Write tables: forces, energies and error over time in a file (.csv), or these and tables of elements and contact
     /// nodes in a folder
     #[arg(long, value_name = "FILE|FOLDER")]

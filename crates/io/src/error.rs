@@ -57,6 +57,9 @@ pub enum FileCause {
     /// A file without checksums.
     #[error("its run cannot go on: the file has no checksums, so that its steps may have been changed; run again")]
     Unsummed,
+    /// A stored history of another program.
+    #[error("its run cannot go on: another program has simulated it, and percute has only stored it")]
+    Elsewhere,
     /// Steps with their own velocities or accelerations.
     #[error("its run cannot go on: it has velocities or accelerations of its own, which the scheme does not give")]
     GivenMotion,

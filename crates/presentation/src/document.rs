@@ -60,6 +60,11 @@ impl Document {
         numbers(self.at(path))
     }
 
+    /// Whether another program than percute simulated.
+    pub(crate) fn is_foreign(&self) -> bool {
+        !self.at("consistency").is_null()
+    }
+
     /// The name of the case or history without its folder.
     pub(crate) fn name(&self) -> String {
         let name = std::path::Path::new(self.text("case")).file_name();

@@ -17,7 +17,7 @@ mod typeset;
 pub use body::Body;
 pub use deformed::Deformed;
 pub use document::{Document, NoDocument};
-pub use page::{Contents, Surface, page};
+pub use page::{About, Contents, Surface, page};
 pub use png::DrawError;
 pub use scale::{ColourScale, colour_scale};
 pub use svg::SERIES;

@@ -86,7 +86,7 @@ fn estimate_one<const D: usize, const N: usize>(
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
     let mut made = Made::new(run.problem.clone(), times, options, results, held, seconds);
     made.checked = checked;
-    made.case = run.file().and_then(|file| file.case().cloned());
+    made.case = run.case();
     Ok(Arc::new(made))
 }
 

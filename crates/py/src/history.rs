@@ -2,20 +2,20 @@
 
 use crate::any::AnyProblem;
 use crate::bridge::Watch;
+use crate::given::{Given, slice};
 use crate::options::Stated;
 use crate::problem::ProblemData;
 use crate::run::{AnyRun, Run};
 use crate::{bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::dynamics::Balance;
-use percute_core::history::{History, SinkError, Step, StepSource};
-use percute_core::problem::Problem;
+use percute_core::history::History;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
-use percute_io::FileError;
 use percute_io::history::HistoryFile;
-use percute_workflow::foreign::{Completed, Derived, Lacks, Origin};
+use percute_io::{FileError, Overwrite};
+use percute_workflow::foreign::{Derived, Origin};
 use percute_workflow::history::lacks;
 use percute_workflow::report::{ENERGIES, Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
@@ -32,8 +32,8 @@ pub(crate) struct HistoryData {
 
 #[pymethods]
 impl HistoryData {
-    /// A history put together from its arrays; `times` are the instants planned. With `derived`, the names of the parts
-    /// that were derived before, it is one of another program.
+    /// A history put together from its arrays; `times` are the instants planned. With `origin`, the program that
+    /// simulated and the names of the parts that were derived before, it is one of another program.
     #[staticmethod]
     #[allow(clippy::too_many_arguments)]
     fn from_arrays(
@@ -45,7 +45,7 @@ impl HistoryData {
         touching: PyReadonlyArray2<'_, bool>,
         options: Stated,
         motion: (Option<PyReadonlyArray3<'_, f64>>, Option<PyReadonlyArray3<'_, f64>>),
-        derived: Option<Vec<String>>,
+        origin: Option<(Option<String>, Vec<String>)>,
     ) -> PyResult<Self> {
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
@@ -56,7 +56,10 @@ impl HistoryData {
             motion: [slice(motion.0.as_ref())?, slice(motion.1.as_ref())?],
         };
         let options = stated(py, &options)?;
-        let origin = derived.map(|names| Origin { derived: derived_parts(&names), ..Origin::default() });
+        let origin = origin.map(|(program, names)| {
+            let derived = names.iter().filter_map(|name| Derived::of_name(name)).collect();
+            Origin { program, derived, ..Origin::default() }
+        });
         Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times, options, origin)?)) })
     }
 
@@ -72,6 +75,7 @@ impl HistoryData {
         touching: Option<PyReadonlyArray2<'_, bool>>,
         velocity: Option<PyReadonlyArray3<'_, f64>>,
         acceleration: Option<PyReadonlyArray3<'_, f64>>,
+        program: Option<String>,
     ) -> PyResult<(Self, Option<String>)> {
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, format!("`time`: {error}")))?;
         let given = Given {
@@ -83,7 +87,7 @@ impl HistoryData {
         };
         let left_out;
         let run = map_dimension!(&problem.problem, p => {
-            let (run, last) = given.completed(py, p, &times)?;
+            let (run, last) = given.completed(py, p, &times, program)?;
             left_out = last;
             Arc::new(run)
         });
@@ -99,14 +103,30 @@ impl HistoryData {
         })
     }
 
+    /// The program that simulated a history of another program, if its name is known.
+    #[getter]
+    fn program(&self) -> Option<String> {
+        each_dimension!(&self.run, run => run.origin.as_ref().and_then(|origin| origin.program.clone()))
+    }
+
+    /// Writes a history that is in memory into a file.
+    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+        let overwrite = Overwrite::allowed(overwrite);
+        each_dimension!(&self.run, run => {
+            let run = run.clone();
+            let saved = bridge::writing(py, None, move |watch, open| {
+                let saved = run.save(&path, overwrite, watch);
+                drop(open);
+                saved
+            });
+            saved?.map_err(|failure| errors::failure(py, &failure))
+        })
+    }
+
     /// Whether it has velocities and accelerations of its own.
     #[getter]
     fn given(&self) -> [bool; 2] {
-        each_dimension!(&self.run, run => match (run.file(), run.memory().and_then(|history| history.step(0))) {
-            (Some(file), _) => file.given(),
-            (None, Some(step)) => [step.velocity.is_some(), step.acceleration.is_some()],
-            (None, None) => [false; 2],
-        })
+        each_dimension!(&self.run, run => run.given())
     }
 
     #[getter]
@@ -331,87 +351,6 @@ fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyD
     view::columns(py, balance, &[&ENERGIES[..], &drifts].concat())
 }
 
-/// The parts with these names.
-fn derived_parts(names: &[String]) -> Vec<Derived> {
-    [Derived::Reaction, Derived::Touching].into_iter().filter(|part| names.iter().any(|n| n == part.name())).collect()
-}
-
 fn stated(py: Python<'_>, (reconstruction, acceleration, every): &Stated) -> PyResult<Options> {
     options::options(py, reconstruction, acceleration.as_deref(), every)
-}
-
-fn slice<'a>(array: Option<&'a PyReadonlyArray3<'_, f64>>) -> PyResult<Option<&'a [f64]>> {
-    Ok(array.map(PyReadonlyArray3::as_slice).transpose()?)
-}
-
-/// Arrays of a history.
-struct Given<'a> {
-    count: usize,
-    displacement: &'a [f64],
-    reaction: Option<&'a [f64]>,
-    touching: Option<&'a [bool]>,
-    motion: [Option<&'a [f64]>; 2],
-}
-
-impl Given<'_> {
-    fn run<const D: usize, const N: usize>(
-        &self,
-        py: Python<'_>,
-        problem: &Arc<Problem<D, N>>,
-        times: &TimeGrid,
-        options: Options,
-        origin: Option<Origin>,
-    ) -> PyResult<Run<D, N>> {
-        let history = self.history(py, problem, times)?;
-        Ok(match origin {
-            Some(origin) => Run::foreign(problem.clone(), history, options, origin),
-            None => Run::new(problem.clone(), history, options, None),
-        })
-    }
-
-    /// With what it lacks, and the last instant (s) if it was left out.
-    fn completed<const D: usize, const N: usize>(
-        &self,
-        py: Python<'_>,
-        problem: &Arc<Problem<D, N>>,
-        times: &TimeGrid,
-    ) -> PyResult<(Run<D, N>, Option<f64>)> {
-        let history = self.history(py, problem, times)?;
-        let lacks = Lacks { reaction: self.reaction.is_none(), touching: self.touching.is_none() };
-        let refused = |error: SinkError| errors::input(py, error);
-        let complete = Completed::new(problem, &history, lacks).map_err(refused)?;
-        let mut all = History::new(complete.times());
-        complete.replay(&mut |step| all.push(step)).map_err(refused)?;
-        let origin = Origin { derived: complete.derived().to_vec(), ..Origin::default() };
-        Ok((Run::foreign(problem.clone(), all, Options::default(), origin), complete.left_out()))
-    }
-
-    fn history<const D: usize, const N: usize>(
-        &self,
-        py: Python<'_>,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-    ) -> PyResult<History<D>> {
-        let mut history = History::new(times);
-        let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
-        let (no_force, no_touch) = (vec![[0.0; D]; contact], vec![false; contact]);
-        for (index, &time) in times.instants().iter().enumerate().take(self.count) {
-            let step = Step {
-                index,
-                time,
-                displacement: rows(self.displacement.as_chunks().0, index, nodes),
-                reaction: self.reaction.map_or(&no_force, |r| rows(r.as_chunks().0, index, contact)),
-                touching: self.touching.map_or(&no_touch, |t| rows(t, index, contact)),
-                velocity: self.motion[0].map(|a| rows(a.as_chunks().0, index, nodes)),
-                acceleration: self.motion[1].map(|a| rows(a.as_chunks().0, index, nodes)),
-            };
-            history.push(&step).map_err(|error| errors::input(py, error))?;
-        }
-        Ok(history)
-    }
-}
-
-/// The rows of one step; too few if the array ends before.
-fn rows<T>(array: &[T], step: usize, count: usize) -> &[T] {
-    array.get(step * count..(step + 1) * count).unwrap_or_default()
 }

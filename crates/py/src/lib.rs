@@ -10,6 +10,7 @@ mod errors;
 mod estimate;
 mod exact;
 mod export;
+mod given;
 mod history;
 mod made;
 mod mesh;

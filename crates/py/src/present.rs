@@ -12,7 +12,7 @@ use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_io::{Case, Overwrite, estimate_file};
 use percute_presentation::picture::svg;
-use percute_presentation::{Body, ColourScale, Contents, Deformed, Document, Surface, file};
+use percute_presentation::{About, Body, ColourScale, Contents, Deformed, Document, Surface, file};
 use percute_workflow::Failure;
 use percute_workflow::case::statement;
 use percute_workflow::outputs::{self, OutputFile};
@@ -29,36 +29,44 @@ struct Shown {
     surface: Option<Surface>,
 }
 
+/// Title, author and program of a page.
+type Told = (Option<String>, Option<String>, Option<String>);
+
 /// What is to be written.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone)]
 enum Form {
     Picture,
-    Page,
+    Page(About),
 }
 
 impl Form {
-    fn of(page: bool) -> Self {
-        if page { Self::Page } else { Self::Picture }
+    fn of(page: Option<Told>) -> Self {
+        page.map_or(Self::Picture, |(title, author, program)| Self::Page(About { title, author, program }))
+    }
+
+    fn is_page(&self) -> bool {
+        matches!(self, Self::Page(_))
     }
 
     /// Checks the file before any work.
-    fn check(self, path: &Path, input: Option<&Path>, overwrite: bool) -> Result<(), Failure> {
+    fn check(&self, path: &Path, input: Option<&Path>, overwrite: bool) -> Result<(), Failure> {
         let output = named(path);
         let input: Vec<(&str, &Path)> = input.map(|input| ("estimate", input)).into_iter().collect();
         outputs::check(&input, &[Some(output)], overwrite)?;
         match self {
             Self::Picture => file::picture(&output).map(drop),
-            Self::Page => file::page(&output),
+            Self::Page(_) => file::page(&output),
         }
     }
 
-    fn write(self, shown: &Shown, path: &Path, overwrite: bool) -> Result<(), Failure> {
+    fn write(&self, shown: &Shown, path: &Path, overwrite: bool) -> Result<(), Failure> {
         let Shown { body, document, statement, case, surface } = shown;
         let (output, overwrite) = (named(path), Overwrite::allowed(overwrite));
-        if self == Self::Picture {
+        let Self::Page(about) = self else {
             return file::write_picture(&output, overwrite, &svg(body, document));
-        }
-        let contents = Contents { document, body, statement, case: case.as_ref(), surface: surface.as_ref() };
+        };
+        about.fits(document).map_err(Failure::Argument)?;
+        let contents = Contents { about, document, body, statement, case: case.as_ref(), surface: surface.as_ref() };
         file::write_page(&output, overwrite, &contents).map(drop)
     }
 }
@@ -96,12 +104,12 @@ pub(crate) fn deformed_outline(py: Python<'_>, mesh: &MeshData, report: &str) ->
     Ok(Deformed::new(&body, &document).map(|Deformed { lines, label }| (lines, label)))
 }
 
-/// Writes the page of an estimate, or the picture; the page has the contact results of the history.
+/// Writes the page of an estimate, or without `page` the picture; the page has the contact results of the history.
 #[pyfunction]
 pub(crate) fn present(
     py: Python<'_>,
     estimate: &EstimateData,
-    page: bool,
+    page: Option<Told>,
     path: PathBuf,
     overwrite: bool,
     name: String,
@@ -109,29 +117,29 @@ pub(crate) fn present(
 ) -> PyResult<()> {
     let form = Form::of(page);
     form.check(&path, None, overwrite).map_err(|failure| refused(py, &failure))?;
-    let history = history.filter(|_| page).map(|history| &history.run);
+    let history = history.filter(|_| form.is_page()).map(|history| &history.run);
     match (&estimate.made, history) {
         (ByDimension::Bar(made), Some(ByDimension::Bar(run))) => {
-            write(py, form, made, (path, overwrite), name, Some(run))
+            write(py, &form, made, (path, overwrite), name, Some(run))
         }
         (ByDimension::Plane(made), Some(ByDimension::Plane(run))) => {
-            write(py, form, made, (path, overwrite), name, Some(run))
+            write(py, &form, made, (path, overwrite), name, Some(run))
         }
-        (ByDimension::Bar(made), _) => write(py, form, made, (path, overwrite), name, None),
-        (ByDimension::Plane(made), _) => write(py, form, made, (path, overwrite), name, None),
+        (ByDimension::Bar(made), _) => write(py, &form, made, (path, overwrite), name, None),
+        (ByDimension::Plane(made), _) => write(py, &form, made, (path, overwrite), name, None),
     }
 }
 
 fn write<const D: usize, const N: usize>(
     py: Python<'_>,
-    form: Form,
+    form: &Form,
     made: &Arc<Made<D, N>>,
     (path, overwrite): (PathBuf, bool),
     name: String,
     history: Option<&Arc<Run<D, N>>>,
 ) -> PyResult<()> {
     let contact = made.contact_steps(py, history)?;
-    let made = made.clone();
+    let (form, made) = (form.clone(), made.clone());
     let work = move |_| {
         let shown = shown(&made, &name, contact.as_deref())?;
         form.write(&shown, &path, overwrite)
@@ -160,7 +168,7 @@ fn shown<const D: usize, const N: usize>(
 pub(crate) fn present_file(
     py: Python<'_>,
     estimate: PathBuf,
-    page: bool,
+    page: Option<Told>,
     path: PathBuf,
     overwrite: bool,
 ) -> PyResult<()> {
@@ -168,7 +176,7 @@ pub(crate) fn present_file(
     form.check(&path, Some(&estimate), overwrite).map_err(|failure| refused(py, &failure))?;
     let work = move |_| {
         let found = estimate_file::open(&estimate)?;
-        let contact = if page { estimate_file::contact(&estimate)? } else { None };
+        let contact = if form.is_page() { estimate_file::contact(&estimate)? } else { None };
         let shown = Shown {
             body: Body::of(&found.mesh),
             document: Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?,

@@ -8,13 +8,16 @@ use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
-use percute_io::FileError;
 use percute_io::history::{HistoryFile, HistorySource, StoredSteps};
+use percute_io::{Case, FileError, Overwrite};
 use percute_workflow::Failure;
+use percute_workflow::case::Source;
 use percute_workflow::foreign::Origin;
 use percute_workflow::grade::{self, Graded};
-use percute_workflow::history::Stored;
+use percute_workflow::history::{Stored, stored_case};
 use percute_workflow::run::Analysis;
+use percute_workflow::saving::Whole;
+use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
@@ -24,6 +27,8 @@ pub(crate) struct Run<const D: usize, const N: usize> {
     pub(crate) steps: Steps<D, N>,
     /// Options that its estimate takes unless told otherwise.
     pub(crate) options: Options,
+    /// The case that was run, of a history in memory.
+    pub(crate) case: Option<Source>,
     /// Of a history of another program.
     pub(crate) origin: Option<Origin>,
     balance: OnceLock<Vec<Balance>>,
@@ -55,7 +60,8 @@ impl<const D: usize, const N: usize> Run<D, N> {
         balance: Option<Vec<Balance>>,
     ) -> Self {
         let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
-        Self { problem, steps: Steps::Memory(history), options, origin: None, balance, contact: OnceLock::new() }
+        let (steps, contact) = (Steps::Memory(history), OnceLock::new());
+        Self { problem, steps, options, case: None, origin: None, balance, contact }
     }
 
     /// A history of another program, in memory.
@@ -69,7 +75,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
         let origin = stored.origin();
         let steps = Steps::File(stored.file, source);
         let (problem, options) = (Arc::new(stored.problem), stored.options);
-        Ok(Self { problem, steps, options, origin, balance: OnceLock::new(), contact: OnceLock::new() })
+        Ok(Self { problem, steps, options, case: None, origin, balance: OnceLock::new(), contact: OnceLock::new() })
     }
 
     /// The steps, one after the other.
@@ -107,6 +113,28 @@ impl<const D: usize, const N: usize> Run<D, N> {
             Steps::Memory(history) => Some(history),
             Steps::File(..) => None,
         }
+    }
+
+    /// Whether it has velocities and accelerations of its own.
+    pub(crate) fn given(&self) -> [bool; 2] {
+        match (self.file(), self.memory().and_then(|history| history.step(0))) {
+            (Some(file), _) => file.given(),
+            (None, Some(step)) => [step.velocity.is_some(), step.acceleration.is_some()],
+            (None, None) => [false; 2],
+        }
+    }
+
+    /// The case that was run.
+    pub(crate) fn case(&self) -> Option<Case> {
+        self.file().map_or_else(|| self.case.as_ref().map(stored_case), |file| file.case().cloned())
+    }
+
+    /// Writes a history that is in memory into a file.
+    pub(crate) fn save(&self, path: &Path, overwrite: Overwrite, watch: Watch) -> Result<(), Failure> {
+        let Self { problem, options, case, origin, .. } = self;
+        let (case, origin) = (case.as_ref(), origin.as_ref());
+        let steps = &self.stoppable(watch);
+        Whole { problem, steps, given: self.given(), options, case, origin }.write(path, overwrite)
     }
 
     /// The instants planned.

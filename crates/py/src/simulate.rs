@@ -16,7 +16,7 @@ use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
-use percute_io::history::Writer;
+use percute_io::history::{Plan, Writer};
 use percute_io::{FileCause, FileError, Overwrite};
 use percute_workflow::Failure;
 use percute_workflow::case::{CaseOf, Instants, Keep, Source, refused_start};
@@ -72,7 +72,7 @@ pub(crate) fn simulate(
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let keep = keep_of(py, keep, &times)?;
-    let store = store.map(|path| Store::new(path, overwrite, Options::default(), None, keep));
+    let store = store.map(|path| Store::new(path, overwrite, keep));
     match &problem.problem {
         ByDimension::Bar(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Bar),
         ByDimension::Plane(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Plane),
@@ -95,7 +95,7 @@ fn simulate_one<const D: usize, const N: usize>(
             Ok(Done { balance: results.balance_over_time, rest: drifted.map(|warning| warning.message), unstored })
         }
     };
-    let planned = Planned { problem: problem.clone(), times, options: Options::default(), store };
+    let planned = Planned { problem: problem.clone(), times, options: Options::default(), case: None, store };
     let (history, drifted) = planned.carry_out(py, progress, either, work, &|failure| failure)?;
     Ok((history?, drifted))
 }
@@ -147,8 +147,7 @@ fn run_one<const D: usize, const N: usize>(
     either: Either<D, N>,
 ) -> PyResult<(PyResult<HistoryData>, Arc<Made<D, N>>)> {
     let (problem, times, options) = (Arc::new(case.problem.clone()), case.times.clone(), analysis.options);
-    let store = store
-        .map(|path| Store::new(path, overwrite, case.options, Some(case.source.clone()), case.output.keep.clone()));
+    let store = store.map(|path| Store::new(path, overwrite, case.output.keep.clone()));
     let work = {
         let (problem, times) = (problem.clone(), times.clone());
         move |storage: Storage<'_, D>, watch: &mut Watch| {
@@ -158,7 +157,9 @@ fn run_one<const D: usize, const N: usize>(
             Ok(Done { balance, rest: (results, start.elapsed().as_secs_f64()), unstored })
         }
     };
-    let planned = Planned { problem: problem.clone(), times: times.clone(), options: case.options, store };
+    let source = Some(case.source.clone());
+    let planned =
+        Planned { problem: problem.clone(), times: times.clone(), options: case.options, case: source, store };
     let (history, (results, seconds)) =
         planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
     let mut made = Made::new(problem, times, options, results, None, seconds);
@@ -292,9 +293,6 @@ fn opened(path: &Path) -> Result<AnyRun, Failure> {
 struct Store {
     path: PathBuf,
     overwrite: bool,
-    /// Options that its estimate takes unless told otherwise.
-    options: Options,
-    case: Option<Source>,
     /// The part of the run that it keeps.
     keep: Keep,
     /// Set as soon as the file is that of this run.
@@ -302,17 +300,12 @@ struct Store {
 }
 
 impl Store {
-    fn new(path: PathBuf, overwrite: bool, options: Options, case: Option<Source>, keep: Keep) -> Self {
-        Self { path, overwrite, options, case, keep, ours: Arc::default() }
+    fn new(path: PathBuf, overwrite: bool, keep: Keep) -> Self {
+        Self { path, overwrite, keep, ours: Arc::default() }
     }
 
-    /// Makes the file.
-    fn begin<const D: usize, const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-    ) -> Result<Writer<D>, Failure> {
-        let plan = plan(problem, times, &self.options, self.case.as_ref(), &self.keep)?;
+    /// Makes the planned file.
+    fn begin<const D: usize, const N: usize>(&self, plan: &Plan<'_, D, N>) -> Result<Writer<D>, Failure> {
         let writer = plan.create(&self.path, Overwrite::allowed(self.overwrite))?;
         self.ours.store(true, Relaxed);
         Ok(writer)
@@ -333,6 +326,7 @@ struct Planned<const D: usize, const N: usize> {
     times: TimeGrid,
     /// Options that the estimate of its history takes unless told otherwise.
     options: Options,
+    case: Option<Source>,
     store: Option<Store>,
 }
 
@@ -346,12 +340,13 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         work: impl FnOnce(Storage<'_, D>, &mut Watch) -> Result<Done<T>, Failure> + Send + 'static,
         located: &dyn Fn(Failure) -> Failure,
     ) -> PyResult<(PyResult<HistoryData>, T)> {
-        let Self { problem, times, options, store } = self;
+        let Self { problem, times, options, case, store } = self;
         let growing = store.is_none().then(|| Growing::new(&times));
         let task = {
-            let (problem, store, growing) = (problem.clone(), store.clone(), growing.clone());
+            let (problem, case, store, growing) = (problem.clone(), case.clone(), store.clone(), growing.clone());
             move |mut watch: Watch, open: Option<Box<dyn Any + Send>>| {
-                let file = store.as_ref().map(|store| store.begin(&problem, &times)).transpose()?;
+                let begin = |store: &Store| store.begin(&plan(&problem, &times, &options, case.as_ref(), &store.keep)?);
+                let file = store.as_ref().map(begin).transpose()?;
                 let mut keep = growing.as_ref().map(|growing| |step: &Step<'_, D>| growing.push(step));
                 let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
                 let done = work(Storage { file, memory, open }, &mut watch);
@@ -369,8 +364,11 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         };
         let outcome = done.and_then(|done| done.map_err(|failure| errors::run(py, &located(failure))));
         let kept = growing.and_then(|growing| growing.take());
-        let data =
-            |history, balance| HistoryData { run: either(Arc::new(Run::new(problem, history, options, balance))) };
+        let data = |history, balance| {
+            let mut run = Run::new(problem, history, options, balance);
+            run.case = case;
+            HistoryData { run: either(Arc::new(run)) }
+        };
         match (outcome, store) {
             (Ok(Done { rest, unstored: Some(lost), .. }), Some(_)) => {
                 let error = errors::file(py, &lost);

@@ -39,7 +39,8 @@ pub fn estimate<const D: usize, const N: usize>(
     let critical = critical_time_step(problem);
     let (consistency, samples) =
         check(problem, &complete, critical, &derived, origin.accept).map_err(|refusal| refused(refusal, origin))?;
-    let mut checked = Checked { derived, left_out: complete.left_out(), consistency, samples };
+    let program = origin.program.clone();
+    let mut checked = Checked { program, derived, left_out: complete.left_out(), consistency, samples };
     let last = complete.times().step_count();
     let between = samples.map(|_| Between::new(&complete, critical)).transpose();
     let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);

@@ -2,7 +2,7 @@
 
 use crate::case::{CaseError, Keep, NotRepresentable, Source, problem_from, statement};
 use crate::failure::Failure;
-use crate::foreign::{Lacks, Origin, REVERSED, runs_backwards};
+use crate::foreign::{Derived, Lacks, Origin, REVERSED, runs_backwards};
 use crate::grade::{self, Graded};
 use crate::report::Subject;
 use crate::run::{self, Analysis};
@@ -76,7 +76,7 @@ pub fn lacks<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> Option
 /// Whether the end of a history of another program fits its initial velocity, backwards.
 fn backwards<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> bool {
     let (count, nodes) = (file.count(), file.mesh().node_count());
-    if file.provenance().is_percute() || count < 2 {
+    if !file.is_foreign() || count < 2 {
         return false;
     }
     let dt = file.times().step(count - 2);
@@ -98,15 +98,17 @@ impl<const D: usize, const N: usize> Stored<D, N> {
         Ok(Self { file, problem, options, name })
     }
 
-    /// Where it comes from; none if percute wrote it.
+    /// Where it comes from; none if percute simulated it.
     #[must_use]
     pub fn origin(&self) -> Option<Origin> {
-        if self.file.provenance().is_percute() {
+        if !self.file.is_foreign() {
             return None;
         }
         let [reaction, touching] = self.file.given_contact().map(|given| !given);
         let file = Some(self.file.path().to_path_buf());
-        Some(Origin { file, lacks: Lacks { reaction, touching }, ..Origin::default() })
+        let program = self.file.simulated_by().map(str::to_string);
+        let derived = self.file.derived().iter().filter_map(|name| Derived::of_name(name)).collect();
+        Some(Origin { program, file, lacks: Lacks { reaction, touching }, derived, accept: false })
     }
 
     /// What a report on it is about: computes the critical step, which takes a while on a large mesh and

@@ -18,6 +18,7 @@ pub mod outputs;
 pub mod report;
 mod resume;
 pub mod run;
+pub mod saving;
 mod storing;
 pub mod tables;
 mod through;

@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -65,7 +66,7 @@ def histories(cases: Cases) -> Iterator[pc.History]:
 
 def figures(history: pc.History, kind: str, forces: str) -> dict[str, float]:
     """Give the figures of a history as another program would have stored it; it must not be refused."""
-    arrays = {"displacement": history.displacement.astype(kind)}
+    arrays: dict[str, Any] = {"displacement": history.displacement.astype(kind)}
     if forces == "with forces":
         arrays["reaction"] = history.reaction.astype(kind)
     given = pc.History.from_arrays(history.problem, history.time.astype(kind), **arrays)

@@ -35,6 +35,7 @@ fn estimate<const D: usize, const N: usize>(
     console: &mut Console<'_>,
 ) -> Result<u8, Failure> {
     let EstimateArguments { maps, print, work, .. } = arguments;
+    print.about.check(stored.origin().is_some()).map_err(Failure::Argument)?;
     let options = options(stored.options, arguments);
     let instants = maps.instants.clone().unwrap_or_default();
     let times = stored.file.times();

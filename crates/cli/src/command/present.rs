@@ -30,7 +30,8 @@ pub(super) fn present(
     let drawn = picture(print)
         .map_or(Ok(()), |output| file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused));
     let written = page(print).map_or(Ok(()), |output| {
-        let contents = Contents { document, body, statement, case: *case, surface: surface.as_ref() };
+        let about = &print.about;
+        let contents = Contents { about, document, body, statement, case: *case, surface: surface.as_ref() };
         let size = file::write_page(&output, overwrite, &contents).map_err(refused)?;
         if !work.quiet {
             console.say(&format!("report {}: {}", output.file.display(), bytes(size)));

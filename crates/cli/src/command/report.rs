@@ -7,17 +7,19 @@ use crate::args::{EstimateArguments, PrintArguments, ReportArguments, RunArgumen
 use crate::exit::DONE;
 use percute_core::each_dimension;
 use percute_io::{Kind, estimate_file, is_hdf5, is_vtkhdf_name, kind};
-use percute_presentation::{Body, Document, Surface};
+use percute_presentation::{About, Body, Document, Surface};
 use percute_workflow::Failure;
 use std::path::{Path, PathBuf};
 
 pub(super) fn command(arguments: &ReportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    let ReportArguments { file, page, output, accept_inconsistent, work } = arguments;
+    let ReportArguments { file, page, output, title, author, program, accept_inconsistent, work } = arguments;
     let page = page.clone().or_else(|| output.clone()).unwrap_or_else(|| named_after(file));
-    let (print, work) = (PrintArguments { report: Some(page), ..PrintArguments::default() }, work.clone());
+    let about = About { title: title.clone(), author: author.clone(), program: program.clone() };
+    let (print, work) = (PrintArguments { report: Some(page), about, ..PrintArguments::default() }, work.clone());
     // A file that cannot be read is refused by the reader of histories or of cases, which says what it can of it.
     if !is_hdf5(file).unwrap_or(false) && !is_vtkhdf_name(file) {
         let case = file.clone();
+        print.about.check(false).map_err(Failure::Argument)?;
         return run::command(&RunArguments { case, print, work, ..RunArguments::default() }, console);
     }
     if kind(file)? == Kind::Estimate {
@@ -34,9 +36,11 @@ fn stored(file: &Path, print: &PrintArguments, work: &WorkArguments, console: &m
     let found = estimate_file::open(file)?;
     let contact = estimate_file::contact(file)?;
     let unusable = |error| Failure::Argument(format!("{}: {error}", file.display()));
+    let document = Document::parse(&found.report).map_err(unusable)?;
+    print.about.fits(&document).map_err(Failure::Argument)?;
     let shown = Shown {
         body: Body::of(&found.mesh),
-        document: Document::parse(&found.report).map_err(unusable)?,
+        document,
         statement: found.statement,
         case: found.case.as_ref(),
         surface: contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results))),

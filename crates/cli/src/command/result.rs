@@ -69,7 +69,7 @@ fn show<const D: usize, const N: usize>(
     let shown = Shown {
         body: Body::new(subject.problem.mesh()),
         document: Document::parse(json).map_err(|error| Failure::Argument(error.to_string()))?,
-        statement: statement(subject.problem, Some(options))?,
+        statement: statement(subject.problem, Some(&options.filled(D)))?,
         case: case.as_ref(),
         surface: Surface::new(&results.contact),
     };
@@ -93,7 +93,7 @@ fn store<const D: usize, const N: usize>(
     force: bool,
 ) -> Result<(), Failure> {
     let Finished { subject: Subject { problem, .. }, options, case, results, .. } = finished;
-    let statement = statement(problem, Some(options))?;
+    let statement = statement(problem, Some(&options.filled(D)))?;
     let Results { estimate, contact, .. } = results;
     let (case, contact) = (case.as_ref(), Some(contact));
     let contents = EstimateContents { problem, estimate, contact, statement: &statement, case, report: json };

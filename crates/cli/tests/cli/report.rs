@@ -120,3 +120,24 @@ fn pages_that_cannot_be_made_fail_before_the_work() {
     assert!(stderr(&output).contains("case.toml"), "{}", stderr(&output));
     assert_eq!(bench.files(), ["case.toml"]);
 }
+
+#[test]
+fn the_head_of_a_page_is_stated() {
+    let bench = Bench::new(BLOCK);
+    let head = ["--title", "A <b>", "--author", "B & C"];
+    let done = bench.percute(&[&["report", "case.toml", "--quiet"][..], &head].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+    let page = std::fs::read_to_string(bench.path("case.html")).unwrap();
+    assert!(page.contains("<title>A &lt;b&gt;</title>"), "{}", &page[..400]);
+    assert!(page.contains(
+        "<h1>A &lt;b&gt;</h1>\n<p>B &amp; C</p>\n<p class=\"faint\">Error of the simulation case.toml · percute"
+    ));
+    // Refused before the run: percute is the program, and a text has a word.
+    for (wrong, told) in
+        [(["--program", "Akantu"], "percute simulated this"), (["--title", " "], "`title` has no word")]
+    {
+        let done = bench.percute(&[&["report", "case.toml", "none.html"][..], &wrong].concat());
+        assert!(done.status.code() == Some(2) && stderr(&done).contains(told), "{}", stderr(&done));
+    }
+    assert!(!bench.path("none.html").exists());
+}

@@ -112,6 +112,7 @@ fn only_what_may_be_absent_is_null() {
             // The history is of percute.
             ".consistency",
             ".samples",
+            ".simulated_by",
             // A bar has none.
             ".outline",
             // Contact goes on at the end.

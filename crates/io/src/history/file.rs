@@ -1,5 +1,6 @@
 //! An open history file.
 
+use super::elsewhere::Elsewhere;
 use super::kept::KeptSteps;
 use super::rows::FIELDS;
 use super::sums::{check_rows, compare, of_flags, of_vectors};
@@ -49,6 +50,7 @@ pub(super) struct Contents<const D: usize, const N: usize> {
     pub(super) statement: String,
     pub(super) case: Option<Case>,
     pub(super) provenance: Provenance,
+    pub(super) elsewhere: Option<Elsewhere<D>>,
     pub(super) initial_displacement: Vec<[f64; D]>,
     pub(super) initial_velocity: Vec<[f64; D]>,
     pub(super) times: TimeGrid,
@@ -124,16 +126,37 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         &self.contents.provenance
     }
 
+    /// Whether another program than percute has simulated it.
+    #[must_use]
+    pub fn is_foreign(&self) -> bool {
+        !self.provenance().is_percute() || self.contents.elsewhere.is_some()
+    }
+
+    /// The other program that has simulated it, if its name is known.
+    #[must_use]
+    pub fn simulated_by(&self) -> Option<&str> {
+        let writer = &self.provenance().program;
+        let program = self.contents.elsewhere.as_ref().map_or(writer, |elsewhere| &elsewhere.program);
+        Some(program.as_str()).filter(|program| self.is_foreign() && !program.is_empty())
+    }
+
+    /// Names of the parts that were derived before it was stored.
+    #[must_use]
+    pub fn derived(&self) -> &[String] {
+        self.contents.elsewhere.as_ref().map_or(&[], |elsewhere| &elsewhere.derived)
+    }
+
     /// Whether its numbers are compared with checksums when they are read. Those of other programs have none.
     #[must_use]
     pub fn has_checksums(&self) -> bool {
         self.contents.checksums
     }
 
-    /// u₀ at the nodes (m): step 0.
+    /// u₀ at the nodes (m): step 0, unless the file has that of the problem.
     #[must_use]
     pub fn initial_displacement(&self) -> &[[f64; D]] {
-        &self.contents.initial_displacement
+        let Contents { elsewhere, initial_displacement, .. } = &*self.contents;
+        elsewhere.as_ref().map_or(initial_displacement, |elsewhere| &elsewhere.initial_displacement)
     }
 
     /// v₀ at the nodes (m/s).

@@ -1,9 +1,11 @@
 //! Histories in files.
 
 mod checkpoints;
+mod elsewhere;
 mod file;
 mod kept;
 mod native;
+mod nodal;
 mod open;
 mod plan;
 mod recover;
@@ -14,6 +16,7 @@ mod sums;
 mod thinned;
 mod writer;
 
+pub use elsewhere::Elsewhere;
 pub use file::{AnyHistoryFile, HistoryFile, NativeArray};
 pub use kept::{Kept, KeptSteps};
 pub use open::open;

@@ -1,8 +1,10 @@
 //! Opens a history file: everything but the steps is read and checked.
 
 use super::DISPLACEMENT;
+use super::elsewhere::Elsewhere;
 use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
 use super::kept;
+use super::nodal::{finite, nodal};
 use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -77,20 +79,17 @@ where
     let kept = kept::read(&ours, times.instants())?;
     // Motion by the scheme follows from all steps as well.
     let given = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
-    let velocity = ours.data("initial_velocity")?;
-    velocity.expect(&[nodes, D], "(nodes, dimension)")?;
-    let initial_velocity = velocity.floats()?.as_chunks::<D>().0.to_vec();
-    finite(&velocity.name, &initial_velocity)?;
+    let initial_velocity = nodal::<D>(&ours, "initial_velocity", nodes)?;
     let (contact_nodes, given_contact) = contact(&ours, instants, nodes, D)?;
-    let statement = ours.optional_text("problem")?;
-    let statement = statement.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
-    let (case, provenance) = (case(&ours)?, provenance(&ours)?);
+    let statement =
+        ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
+    let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, nodes)?);
     let checksums = provenance.is_percute() && ours.optional("checksums")?.is_some();
     if checksums {
         let nodes = contact_nodes.iter().copied();
         let run = kept.as_ref().map_or(&[][..], |kept| kept.times.instants());
-        let found = fixed_part(&mesh, &initial_velocity, &statement, case.as_ref(), [times.instants(), run], nodes);
-        check_fixed_part(&ours, found)?;
+        let texts = (statement.as_str(), case.as_ref(), elsewhere.as_ref());
+        check_fixed_part(&ours, fixed_part(&mesh, &initial_velocity, texts, [times.instants(), run], nodes))?;
         if count > 0 {
             check_rows(opened, "displacement", 0..1, &initial_displacement, of_vectors)?;
         }
@@ -105,6 +104,7 @@ where
         case,
         provenance,
         initial_displacement,
+        elsewhere,
         initial_velocity,
         times,
         count,
@@ -208,14 +208,6 @@ fn field<'f>(vtk: &Part<'f>, name: &str, instants: usize, nodes: usize) -> Resul
         }
     }
     Ok(Some(field))
-}
-
-fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCause> {
-    let wrong = values.iter().enumerate().find_map(|(node, v)| Some((node, *v.iter().find(|x| !x.is_finite())?)));
-    match wrong {
-        Some((node, value)) => Err(FileCause::NotFinite { name: name.to_string(), step: 0, node, value }),
-        None => Ok(()),
-    }
 }
 
 /// Nodes of the rows of the contact data, if any, and whether forces and touching status are there. Status without

@@ -1,6 +1,7 @@
 //! A history file before its run: its size and its parts.
 
 use super::checkpoints;
+use super::elsewhere::Elsewhere;
 use super::kept::Kept;
 use super::native::write_vectors;
 use super::rows::{FIELDS, Places};
@@ -30,6 +31,7 @@ pub struct Plan<'p, const D: usize, const N: usize> {
     case: Option<Case>,
     given: [bool; 2],
     kept: Option<Kept>,
+    elsewhere: Option<Elsewhere<D>>,
 }
 
 impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
@@ -37,13 +39,25 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// language of the case files; `case` is the case file as given.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
-        Self { problem, times, statement: statement.to_string(), case: case.cloned(), given: [false; 2], kept: None }
+        let (statement, case) = (statement.to_string(), case.cloned());
+        Self { problem, times, statement, case, given: [false; 2], kept: None, elsewhere: None }
     }
 
     /// Whether the steps have their own velocities and accelerations.
     #[must_use]
     pub fn with_given(self, velocity: bool, acceleration: bool) -> Self {
         Self { given: [velocity, acceleration], ..self }
+    }
+
+    /// For a history that another program has simulated.
+    #[must_use]
+    pub fn simulated_elsewhere(self, elsewhere: Option<Elsewhere<D>>) -> Self {
+        Self { elsewhere, ..self }
+    }
+
+    /// Steps of a run that may go on; none of a history that is there already.
+    fn steps_to_go_on(&self) -> usize {
+        if self.elsewhere.is_some() { 0 } else { self.times.step_count() }
     }
 
     /// Keeps a part of the run only.
@@ -79,7 +93,11 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
         let groups = PER_GROUP * (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
         let texts = self.statement.len() + self.case.as_ref().map_or(0, |case| case.name.len() + case.text.len());
-        let checkpoints = checkpoints::size(self.times.step_count(), mesh.node_count(), D);
+        let elsewhere = self
+            .elsewhere
+            .as_ref()
+            .map_or(0, |origin| 8 * d * nodes + (origin.program.len() + origin.derived().len()) as u64 + 3 * PER_GROUP);
+        let checkpoints = checkpoints::size(self.steps_to_go_on(), mesh.node_count(), D);
         let fixed = grid
             + facets
             + elements
@@ -87,6 +105,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             + 8 * d * nodes
             + 8 * contact
             + texts as u64
+            + elsewhere
             + run
             + checkpoints
             + LIBRARY;
@@ -130,15 +149,18 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let ours = ours(file, Kind::History, D)?;
         statement(&ours, texts, &self.statement, self.case.as_ref())?;
         write_groups(&ours, mesh)?;
+        let elsewhere = self.elsewhere.as_ref();
+        elsewhere.map_or(Ok(()), |elsewhere| elsewhere.write(&ours, texts))?;
         let velocity = self.problem.initial_velocity();
         unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
         let surface = if self.has_contact() { self.problem.surface().nodes() } else { &[] };
         let nodes = surface.iter().map(|contact| contact.node.index());
         let run = if self.is_thinned() { self.times.instants() } else { &[] };
-        let sum = fixed_part(mesh, velocity, &self.statement, self.case.as_ref(), [&self.stored_times(), run], nodes);
+        let texts = (self.statement.as_str(), self.case.as_ref(), elsewhere);
+        let sum = fixed_part(mesh, velocity, texts, [&self.stored_times(), run], nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
         let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
-        let checkpoints = checkpoints::make_room(&ours, self.times.step_count(), mesh.node_count(), D)?;
+        let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), mesh.node_count(), D)?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
         let instants = &self.stored_times();

@@ -76,6 +76,9 @@ where
             let told = |by: &Provenance| format!("{} on {} {}", by.program, by.architecture, by.system);
             return Err(FileCause::Other { written: told(writer), here: told(&here) });
         }
+        if self.is_foreign() {
+            return Err(FileCause::Elsewhere);
+        }
         if self.given() != [false; 2] {
             return Err(FileCause::GivenMotion);
         }

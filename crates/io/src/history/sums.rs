@@ -1,5 +1,6 @@
 //! The checksums of a history: one of all that does not change in time, and one of each field at each instant.
 
+use super::elsewhere::Elsewhere;
 use super::rows::FIELDS;
 use crate::checksum::Checksum;
 use crate::error::FileCause;
@@ -8,18 +9,20 @@ use crate::write::Case;
 use percute_core::mesh::Mesh;
 use std::ops::Range;
 
-/// The checksum of all that does not change in time: mesh, initial velocity, texts, instants and contact nodes. `run`
-/// has all instants of the run of a thinned history, and is empty for others.
+/// The checksum of all that does not change in time: mesh, initial velocity, texts (statement, case and origin),
+/// instants and contact nodes. `run` has all instants of the run of a thinned history, and is empty for others.
 pub(super) fn fixed_part<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     initial_velocity: &[[f64; D]],
-    statement: &str,
-    case: Option<&Case>,
+    (statement, case, elsewhere): (&str, Option<&Case>, Option<&Elsewhere<D>>),
     [times, run]: [&[f64]; 2],
     contact_nodes: impl IntoIterator<Item = usize>,
 ) -> i64 {
     let all = Checksum::new().mesh(mesh).numbers(initial_velocity.as_flattened()).text(statement);
     let all = case.map_or(all, |case| all.text(&case.name).text(&case.text));
+    let all = elsewhere.map_or(all, |origin| {
+        all.text(&origin.program).text(&origin.derived()).numbers(origin.initial_displacement.as_flattened())
+    });
     let all = all.numbers(times).indices(contact_nodes);
     if run.is_empty() { all.stored() } else { all.numbers(run).stored() }
 }

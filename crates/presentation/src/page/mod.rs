@@ -1,5 +1,6 @@
 //! The page that hands an estimate over: one HTML file, which needs nothing else.
 
+mod about;
 mod contact;
 mod error;
 mod html;
@@ -9,6 +10,7 @@ mod reproduce;
 mod verdict;
 
 pub use crate::chart::Surface;
+pub use about::About;
 
 use crate::body::Body;
 use crate::document::Document;
@@ -21,6 +23,8 @@ const STYLE: &str = include_str!("page.css");
 /// What a page is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct Contents<'a> {
+    /// Title, author and program.
+    pub about: &'a About,
     /// The JSON document.
     pub document: &'a Document,
     /// The mesh.
@@ -38,8 +42,10 @@ pub struct Contents<'a> {
 pub fn page(contents: &Contents<'_>) -> String {
     let document = contents.document;
     let (marks, light) = svg::style();
-    let name = document.name();
-    let title = if name.is_empty() { "Error of a simulation".to_string() } else { format!("Error of {name}") };
+    let title = contents.about.title.clone().unwrap_or_else(|| match document.name() {
+        name if name.is_empty() => "Error of a simulation".to_string(),
+        name => format!("Error of {name}"),
+    });
     let sections = [
         verdict::section(document),
         error::map(contents),
@@ -57,7 +63,7 @@ pub fn page(contents: &Contents<'_>) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{style}{marks}</style>\n\
          </head>\n<body>\n<main>\n{}{}</main>\n</body>\n</html>\n",
-        verdict::head(document),
+        verdict::head(contents),
         sections.join(""),
         title = escaped(&title),
     )
@@ -71,11 +77,15 @@ mod tests {
 
     /// The page of a document on a mesh of two triangles.
     fn shown(document: &str, case: Option<&Case>) -> String {
+        shown_about(&About::default(), document, case)
+    }
+
+    fn shown_about(about: &About, document: &str, case: Option<&Case>) -> String {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mesh =
             TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
         let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
-        page(&Contents { document: &document, body: &body, statement: "", case, surface: None })
+        page(&Contents { about, document: &document, body: &body, statement: "", case, surface: None })
     }
 
     #[test]
@@ -85,19 +95,42 @@ mod tests {
             shown(&format!(r#"{{"error": {{"sup": 1.5}}, "end": 1e-3, "time_step": 1e-5, {options}, {rest}}}"#), None)
         };
         let arrays = about(r#""case": "", "consistency": {"balance": 0}"#);
-        assert!(arrays.contains("made from arrays in Python") && arrays.contains("History.from_arrays("), "{arrays}");
-        assert!(
-            arrays.contains("percute.estimate(history, reconstruction=&quot;corrected&quot;, every=2)"),
-            "{arrays}"
-        );
+        assert!(arrays.contains("made from arrays of another program in Python"), "{arrays}");
         let simulated = about(r#""case": """#);
-        assert!(simulated.contains("percute.simulate(problem, end=0.001, step=1e-5)"), "{simulated}");
+        assert!(simulated.contains("The history was simulated in Python and is in no file"), "{simulated}");
+        let command = "percute estimate history.vtkhdf --reconstruction corrected --every 2 --report report.html";
         for page in [arrays, simulated] {
-            assert!(!page.contains("vtkhdf") && page.contains("<title>Error of a simulation</title>"), "{page}");
+            assert!(page.contains("<pre>estimate.history.save(&quot;history.vtkhdf&quot;)</pre>"), "{page}");
+            assert!(page.contains(command) && page.contains("<title>Error of a simulation</title>"), "{page}");
+            // What a reader cannot run is no command.
+            assert!(!page.contains("percute.simulate(") && !page.contains("from_arrays("), "{page}");
         }
+        let named = about(r#""case": "a.vtkhdf", "consistency": {}, "simulated_by": "Akantu <5>""#);
+        assert!(named.contains("<code>Akantu &lt;5&gt;</code> simulated it, and no case file"), "{named}");
         let stored = about(r#""case": "runs/their.vtkhdf", "consistency": {}"#);
         assert!(stored.contains("percute estimate their.vtkhdf --reconstruction corrected --every 2"), "{stored}");
-        assert!(stored.contains("a program other than percute wrote it"), "{stored}");
+        assert!(stored.contains("another program simulated it"), "{stored}");
+    }
+
+    #[test]
+    fn the_head_has_title_author_and_program() {
+        let text = |text: &str| Some(text.to_string());
+        let document = r#"{"error": {"sup": 1.5}, "case": "a/b.vtkhdf", "consistency": {}, "simulated_by": "One"}"#;
+        let head = |about: &About| {
+            let page = shown_about(about, document, None);
+            let title = page.split("<title>").nth(1).unwrap().split("</title>").next().unwrap().to_string();
+            let rest = page.split("<main>").nth(1).unwrap();
+            (title, rest.split("<section>").next().unwrap().to_string())
+        };
+        let (title, plain) = head(&About::default());
+        assert_eq!(title, "Error of b.vtkhdf");
+        assert!(plain.contains("<h1>Error of the simulation b.vtkhdf</h1>\n<p class=\"faint\">simulated by One, "));
+        let about = About { title: text("Drop <test>"), author: text("A & B"), program: text("\"Two\"") };
+        let (title, told) = head(&about);
+        assert_eq!(title, "Drop &lt;test&gt;");
+        let wanted = "<h1>Drop &lt;test&gt;</h1>\n<p>A &amp; B</p>\n<p class=\"faint\">Error of the simulation \
+                      b.vtkhdf · simulated by &quot;Two&quot;, estimated by ";
+        assert!(told.contains(wanted), "{told}");
     }
 
     #[test]

@@ -9,6 +9,8 @@ use percute_workflow::message::{bytes, counted};
 
 /// Longest text of a case on the page (bytes): longer ones hold their mesh as arrays.
 const LONGEST: usize = 100_000;
+/// The name of a history that is not in a file yet.
+const UNSAVED: &str = "history.vtkhdf";
 
 pub(super) fn section(contents: &Contents<'_>) -> String {
     let document = contents.document;
@@ -77,24 +79,30 @@ fn commands(contents: &Contents<'_>, case: &Case) -> String {
     format!("percute simulate {case} --history {}\n{}", quoted(&name), estimate(document, &name))
 }
 
-/// The way to a page whose history was not made from a case: from its file, or else in Python.
+/// The way to a page whose history was not made from a case: from its file, or else from one to be made.
 fn without_case(document: &Document) -> String {
-    let (name, arrays) = (document.name(), !document.at("consistency").is_null());
+    let stated = document.at("simulated_by").as_str();
+    let program =
+        stated.filter(|_| document.is_foreign()).map_or("another program".to_string(), |name| format!("`{name}`"));
+    let name = document.name();
     if is_vtkhdf_name(name.as_ref()) {
-        let origin = if arrays { "a program other than percute wrote it" } else { "it was simulated in Python" };
+        let origin = if document.is_foreign() {
+            format!("{program} simulated it")
+        } else {
+            "it was simulated in Python".to_string()
+        };
         let told = format!("The estimate is that of the history `{name}`: {origin}, and no case file belongs to it.");
         return paragraph(&told) + &verbatim(&estimate(document, &name));
     }
-    let (origin, made) = if arrays {
-        ("made from arrays", "percute.History.from_arrays(problem, time, displacement, ...)".to_string())
-    } else {
-        let known = |(name, key)| document.number(key).map(|value| format!(", {name}={value:?}"));
-        let times: String = [("end", "end"), ("step", "time_step")].into_iter().filter_map(known).collect();
-        ("simulated", format!("percute.simulate(problem{times})"))
-    };
-    let told =
-        format!("The history was {origin} in Python and is in no file. With the `problem` that is stated below:");
-    paragraph(&told) + &verbatim(&format!("history = {made}\n{}", estimate_in_python(document)))
+    let origin =
+        if document.is_foreign() { format!("was made from arrays of {program}") } else { "was simulated".to_string() };
+    let told = format!(
+        "The history {origin} in Python and is in no file: the numbers cannot be computed again without it. Where the \
+         estimate was made, this stores it, and a page that is written afterwards names the file:"
+    );
+    let save = format!("estimate.history.save(\"{UNSAVED}\")");
+    let then = paragraph("With this file, the command is");
+    paragraph(&told) + &verbatim(&save) + &then + &verbatim(&estimate(document, UNSAVED))
 }
 
 /// The options of the estimate: name and value.
@@ -104,12 +112,6 @@ fn options(document: &Document) -> impl Iterator<Item = (&'static str, String)> 
         let text = value.as_str().map(str::to_string);
         Some((key, text.or_else(|| value.as_u64().map(|value| value.to_string()))?))
     })
-}
-
-fn estimate_in_python(document: &Document) -> String {
-    let value = |value: String| if value.parse::<u64>().is_ok() { value } else { format!("\"{value}\"") };
-    let options: String = options(document).map(|(key, text)| format!(", {key}={}", value(text))).collect();
-    format!("percute.estimate(history{options}).report(\"report.html\")")
 }
 
 /// The command for a history, with all options.

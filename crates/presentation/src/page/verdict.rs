@@ -1,13 +1,15 @@
 //! The verdict and the numbers that come first.
 
+use super::Contents;
 use super::html::{number, share, together};
 use crate::document::Document;
 use crate::scale::quantity;
 use crate::typeset::{escaped, html};
 use percute_workflow::message::{counted, short, trimmed};
 
-/// The title of the page.
-pub(super) fn head(document: &Document) -> String {
+/// The title of the page, its author, and the programs.
+pub(super) fn head(contents: &Contents<'_>) -> String {
+    let Contents { document, about, .. } = contents;
     let text = |path: &str| escaped(document.text(path));
     let mut line = format!(
         "percute {} on {} {}",
@@ -20,12 +22,20 @@ pub(super) fn head(document: &Document) -> String {
         line += &format!(" · {}", counted(elements as usize, kind));
     }
     // The steps of percute need no check.
-    if !document.at("consistency").is_null() {
-        line = format!("simulated by another program, estimated by {line}");
+    if document.is_foreign() {
+        let stated = document.at("simulated_by").as_str();
+        let program = about.program.as_deref().or(stated).unwrap_or("another program");
+        line = format!("simulated by {}, estimated by {line}", escaped(program));
     }
+    let mut title = format!("Error of the simulation {}", document.name()).trim_end().to_string();
+    if let Some(given) = &about.title {
+        line = format!("{} · {line}", escaped(&title));
+        title.clone_from(given);
+    }
+    let author = about.author.as_ref().map_or_else(String::new, |author| format!("<p>{}</p>\n", escaped(author)));
     format!(
-        "<h1>{}</h1>\n<p class=\"faint\">{line}</p>\n{}",
-        escaped(format!("Error of the simulation {}", document.name()).trim_end()),
+        "<h1>{}</h1>\n{author}<p class=\"faint\">{line}</p>\n{}",
+        escaped(&title),
         if document.flag("interrupted") { interrupted(document) } else { String::new() }
     )
 }

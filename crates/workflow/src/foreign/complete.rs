@@ -19,6 +19,12 @@ pub enum Derived {
 }
 
 impl Derived {
+    /// The part of this name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        [Self::Reaction, Self::Touching].into_iter().find(|part| part.name() == name)
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -55,6 +55,8 @@ use suspect::Suspect;
 /// What is known of the origin of a history of another program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Origin {
+    /// The program that simulated it, if its name is known.
+    pub program: Option<String>,
     /// Its file, if it is in one.
     pub file: Option<PathBuf>,
     /// The parts that it lacks.
@@ -68,6 +70,8 @@ pub struct Origin {
 /// What was found about a history of another program before its estimate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Checked {
+    /// The program that simulated it, if its name is known.
+    pub program: Option<String>,
     /// The parts that were derived.
     pub derived: Vec<Derived>,
     /// The last instant (s), if it was left out because its contact forces are not known.

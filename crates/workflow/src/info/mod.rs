@@ -67,6 +67,9 @@ pub struct HistoryInfo {
     pub versions: Versions,
     pub file: String,
     pub written_by: Provenance,
+    pub foreign: bool,
+    pub simulated_by: Option<String>,
+    pub derived: Vec<String>,
     pub checksums: bool,
     pub case: Option<String>,
     pub problem: ProblemSummary,
@@ -176,6 +179,9 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         versions: Versions::of_this_program(),
         file: stored.name.clone(),
         written_by: file.provenance().clone(),
+        foreign: file.is_foreign(),
+        simulated_by: file.simulated_by().map(str::to_string),
+        derived: file.derived().to_vec(),
         checksums: file.has_checksums(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
@@ -237,6 +243,10 @@ impl HistoryInfo {
     fn lines(&self) -> Vec<(&'static str, String)> {
         let mut lines =
             vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
+        if self.foreign {
+            let program = self.simulated_by.as_deref().map_or_else(String::new, |name| format!(": {name}"));
+            lines.push(("", format!("simulated by another program{program}")));
+        }
         if !self.checksums {
             lines.push(("", "without checksums: damage to its numbers is not found".to_string()));
         }

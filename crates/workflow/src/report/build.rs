@@ -42,6 +42,7 @@ impl Report {
             format: FORMAT,
             versions: Versions::of_this_program(),
             case: name.into(),
+            simulated_by: checked.and_then(|checked| checked.program.clone()),
             problem,
             warnings,
             options: options.filled(D),

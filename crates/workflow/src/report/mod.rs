@@ -66,6 +66,7 @@ pub struct Report {
     pub format: u32,
     pub versions: Versions,
     pub case: String,
+    pub simulated_by: Option<String>,
     pub problem: ProblemSummary,
     pub options: Options,
     pub time_step: f64,
