@@ -65,7 +65,7 @@ fn residuals(document: &Document) -> String {
 }
 
 /// Figures of a history of another program.
-const CONSISTENCY: [Named; 15] = [
+const CONSISTENCY: [Named; 16] = [
     ("balance", "residual M a + K u − F − R over its largest term", "%"),
     ("node", "at node", "#"),
     ("time", "at t", "s"),
@@ -79,6 +79,7 @@ const CONSISTENCY: [Named; 15] = [
     ("plane", "gap under contact forces, the same everywhere, over the element size", "%"),
     ("gap_under_force", "gap under a contact force, over the element size", "%"),
     ("penetration", "penetration over the element size", "%"),
+    ("penalty", "correlation of contact forces with penetrations", ""),
     ("touching", "disagreements of touching status and forces over their changes", "%"),
     ("energy", "drift of the energy", "%"),
 ];
@@ -188,9 +189,10 @@ fn time(document: &Document) -> String {
     row("critical step Δt_c", quantity(document.number("critical_time_step"), "s"));
     row("steps", number(document.number("steps")));
     row("end of the estimate", quantity(document.number("end"), "s"));
-    for key in ["reconstruction", "acceleration", "every"] {
+    let sampled = "error sampled at every k-th step, k";
+    for (key, name) in [("reconstruction", "reconstruction"), ("acceleration", "acceleration"), ("every", sampled)] {
         let value = document.at(&format!("options.{key}"));
-        row(key, value.as_str().map_or_else(|| number(value.as_f64()), str::to_string));
+        row(name, value.as_str().map_or_else(|| number(value.as_f64()), str::to_string));
     }
     for (key, name) in [("velocity", "velocities"), ("acceleration", "accelerations")] {
         if document.flag(&format!("given.{key}")) {

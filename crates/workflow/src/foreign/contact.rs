@@ -45,6 +45,8 @@ pub(super) struct Contact<'p, const D: usize, const N: usize> {
     pub(super) forced: Vec<bool>,
     /// Largest normal force (N), cone excess (N), product of force and gap (N m), penetration (m).
     largest: [f64; 4],
+    /// ∑R p (N m), ∑R² (N²) and ∑p² (m²) of normal forces and penetrations at the same instant.
+    pressed: [f64; 3],
     /// The largest rounding of displacements (m).
     unsure: f64,
     /// Disagreements of status and force: as given, if the status is a step early, and if it is a step late.
@@ -61,6 +63,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             planes: vec![PlaneSums::new(problem.surface().nodes().len()); problem.obstacles().len()],
             forced: vec![false; problem.surface().nodes().len()],
             largest: [0.0; 4],
+            pressed: [0.0; 3],
             unsure: 0.0,
             disagree: [0; 3],
             changes: [0; 2],
@@ -100,11 +103,16 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let force = &now.reaction[at];
         let [slip, tension] = self.problem.obstacles()[contact.obstacle].law().excess(frame, force);
         let slip = if contact.guided { 0.0 } else { slip };
-        self.largest[0] = self.largest[0].max(frame.split(force).0);
+        let normal = frame.split(force).0;
+        self.largest[0] = self.largest[0].max(normal);
         self.largest[1] = self.largest[1].max(slip).max(tension);
         if contact.free && now.index > 0 {
             let gap = self.problem.surface().gap(at, &now.displacement[contact.node.index()]);
             self.largest[3] = self.largest[3].max(-gap);
+            if normal > 0.0 {
+                let terms = [-gap * normal, normal * normal, gap * gap];
+                self.pressed.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
         }
     }
 
@@ -192,6 +200,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         found.cone = super::ratio(excess, normal.max(excess));
         found.gap_under_force = super::ratio(product, normal * size);
         found.penetration = depth / size;
+        let [product, force, path] = self.pressed;
+        found.penalty = (force * path > 0.0).then(|| product / (force * path).sqrt());
         let gaps = self.planes.iter().filter_map(|plane| plane.forced.common());
         found.plane = gaps.map(|gap| (gap - ADDED * self.unsure).max(0.0) / size).fold(0.0, f64::max);
         let [limit, misfit] = self.planes.iter().fold([0.0; 2], |[limit, misfit], plane| {

@@ -34,6 +34,9 @@ pub struct Consistency {
     pub gap_under_force: f64,
     /// Largest penetration, over the element size.
     pub penetration: f64,
+    /// ∑R p / √(∑R² ∑p²) of the normal forces R and the penetrations p at the same instant and node: 1 where a penalty
+    /// makes forces in proportion to penetrations, at most 0 with multipliers; none without forces.
+    pub penalty: Option<f64>,
     /// Number of nodes and instants at which touching status and contact force one step before disagree, over the
     /// number of changes of either.
     pub touching: f64,

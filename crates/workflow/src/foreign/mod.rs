@@ -43,7 +43,7 @@ pub(crate) use start::started;
 use crate::through::Through;
 pub(crate) use causes::REVERSED;
 pub(crate) use ends::runs_backwards;
-pub(crate) use limits::{by_a_penalty, exceeded};
+pub(crate) use limits::{by_a_penalty, exceeded, is_off_contact, off_contact};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
 use percute_core::history::{SinkError, StateSink, StepSource};

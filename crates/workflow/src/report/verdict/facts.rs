@@ -1,7 +1,7 @@
 //! The facts that a verdict follows from.
 
 use super::touches::Contact;
-use crate::foreign::{Checked, by_a_penalty, exceeded};
+use crate::foreign::{Checked, by_a_penalty, exceeded, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
 use percute_core::contact::ContactResults;
@@ -50,6 +50,8 @@ pub(in crate::report) struct Facts {
     pub(super) unbalanced: f64,
     /// Whether the contact of another program is by a penalty.
     pub(super) by_a_penalty: bool,
+    /// The largest distance of a node from its plane in contact, over the element size, if it is more than rounding.
+    pub(super) off_contact: Option<f64>,
     /// Whether the history has samples instead of steps.
     pub(super) sampled: bool,
 }
@@ -85,6 +87,9 @@ impl Facts {
         let figures = beside.checked.map(|checked| &checked.consistency);
         let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
+        let (size, slenderness) = (problem.mesh().size(), slenderness(problem.mesh()));
+        // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
+        let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
         let speed = beside.rebound.map(|rebound| -rebound.normal_before / wave_speed);
         Self {
             dimension: D,
@@ -94,8 +99,8 @@ impl Facts {
             speed_ratio: speed,
             courant: beside.courant,
             elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
-            phases: phases(results, APART * problem.mesh().size() / wave_speed),
-            slenderness: slenderness(problem.mesh()),
+            phases: phases(results, APART * size / wave_speed, shortest_release),
+            slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             supported: !problem.prescribed().is_empty(),
@@ -109,6 +114,7 @@ impl Facts {
             inconsistent: figures.and_then(|found| exceeded(found).into_iter().next()).map(|excess| excess.what),
             unbalanced: figures.map_or(0.0, |found| found.balance),
             by_a_penalty: figures.is_some_and(by_a_penalty),
+            off_contact: figures.filter(|found| is_off_contact(found)).map(off_contact),
             sampled: beside.checked.is_some_and(|checked| checked.samples.is_some()),
         }
     }
@@ -134,16 +140,22 @@ fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
     Some(Expected { surface, half_size, half_step: change(sources.mean_with_half_step())? })
 }
 
-/// Number of contact phases; contacts that begin within `apart` (s) are one.
-fn phases<const D: usize>(results: &ContactResults<D>, apart: f64) -> usize {
-    let (mut count, mut before, mut begun) = (0, false, f64::NEG_INFINITY);
+/// Number of contact phases; contacts that begin within `apart` (s) are one, and so are those that a release of less than
+/// `shortest` (s) parts.
+fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64) -> usize {
+    let (mut count, mut begun, mut released) = (0, f64::NEG_INFINITY, Some(f64::NEG_INFINITY));
     for (resultant, &time) in results.total.iter().zip(&results.instants) {
-        let touches = resultant.in_contact > 0;
-        if touches && !before {
-            count += usize::from(time - begun > apart);
-            begun = time;
+        match (resultant.in_contact > 0, released) {
+            (true, Some(since)) => {
+                if time - since >= shortest {
+                    count += usize::from(time - begun > apart);
+                    begun = time;
+                }
+                released = None;
+            }
+            (false, None) => released = Some(time),
+            (true, None) | (false, Some(_)) => {}
         }
-        before = touches;
     }
     count
 }

@@ -158,6 +158,9 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     }
     if facts.by_a_penalty {
         untested.push("contact by a penalty".to_string());
+    } else if let Some(off) = facts.off_contact {
+        untested
+            .push(format!("nodes that are {} of an element off their plane in contact", crate::message::short(off, 2)));
     }
     if facts.sampled {
         untested.push("samples instead of steps".to_string());
