@@ -19,6 +19,29 @@ def block(nx: int = 8, ny: int = 6, friction: float = 0.2) -> pc.Problem:
     return falling(pc.Mesh.rectangle(0.05, 0.04, nx=nx, ny=ny), friction)
 
 
+def block_case(mesh: str = "rectangle = { width = 0.05, height = 0.04, nx = 6, ny = 5 }", speed: float = 400.0, end: float = 6e-6, plane: str = "") -> str:
+    """The case of a block; a slower one starts nearer to its plane. Further keys of the plane may be given."""
+    return f"""
+[mesh]
+{mesh}
+[material]
+young = 70e9
+poisson = 0.3
+density = 2700.0
+plane = "stress"
+[initial]
+velocity = [{speed}, -{speed}]
+[[obstacle]]
+point = [0.0, -{speed / 2e6}]
+normal = [0.0, 1.0]
+friction = 0.2
+{plane}
+[time]
+end = {end}
+courant = 0.9
+"""
+
+
 def bar(elements: int = 40) -> pc.Problem:
     """The bar of the paper."""
     return pc.Problem(
@@ -60,3 +83,8 @@ def block_history() -> pc.History:
 @pytest.fixture(scope="session")
 def bar_history() -> pc.History:
     return pc.simulate(bar(), end=50e-6, courant=0.9)
+
+
+@pytest.fixture(scope="module", params=[bar, block, tilted, disc])
+def correct(request: pytest.FixtureRequest) -> pc.History:
+    return pc.simulate(request.param(), end=20e-6, courant=0.8)

@@ -1,10 +1,12 @@
 """Histories of other programs with mistakes."""
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import percute as pc
+import pytest
 from numpy.typing import NDArray
 
 Parts = dict[str, Any]
@@ -13,6 +15,9 @@ STATED = {
     **{"density": 1.0, "young": 1.0, "speed": 1.0, "friction": 1.0, "lengths": 1.0, "mesh": 1.0, "thickness": 1.0},
     **{"plane": 0.0, "turn": 0.0, "poisson": None, "hypothesis": None},
 }
+Change = Callable[[Parts], Parts]
+FALLS = "the norm of the residual(| away from the planes) falls from [0-9.]+ % to"
+"""What a message says of a cause that was tried."""
 
 
 def parts(history: pc.History) -> Parts:
@@ -59,3 +64,20 @@ def given(problem: pc.Problem, parts: Parts) -> pc.History:
     arrays = {name: value for name, value in parts.items() if name not in STATED}
     moving = {name: parts["lengths"] * arrays[name] for name in ("displacement", "velocity", "acceleration") if name in arrays}
     return pc.History.from_arrays(stated, **{**arrays, **moving})
+
+
+def times(name: str, factor: float) -> Change:
+    return changed(name, lambda value: factor * value)
+
+
+def cause(problem: pc.Problem, parts: Parts) -> str:
+    """The message of the refusal."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        with pytest.raises(pc.InputError) as refused:
+            pc.estimate(given(problem, parts))
+    return str(refused.value)
+
+
+def without(parts: Parts, *names: str) -> Parts:
+    return {name: value for name, value in parts.items() if name not in names}

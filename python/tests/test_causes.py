@@ -1,4 +1,4 @@
-"""Causes of inconsistent histories: units, planes, friction, accelerations, and contact by a penalty."""
+"""Causes of inconsistent histories: units, order, instants, forces, velocities and accelerations."""
 
 import re
 import warnings
@@ -8,33 +8,9 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
-from conftest import bar, block, disc, tilted
+from conftest import bar, block, tilted
 from numpy.typing import NDArray
-from spoiling import STATED, Parts, changed, given, parts, shifted
-
-Change = Callable[[Parts], Parts]
-
-
-@pytest.fixture(scope="module", params=[bar, block, tilted, disc])
-def correct(request: pytest.FixtureRequest) -> pc.History:
-    return pc.simulate(request.param(), end=20e-6, courant=0.8)
-
-
-def times(name: str, factor: float) -> Change:
-    return changed(name, lambda value: factor * value)
-
-
-def cause(problem: pc.Problem, parts: Parts) -> str:
-    """The message of the refusal."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-        with pytest.raises(pc.InputError) as refused:
-            pc.estimate(given(problem, parts))
-    return str(refused.value)
-
-
-def without(parts: Parts, *names: str) -> Parts:
-    return {name: value for name, value in parts.items() if name not in names}
+from spoiling import FALLS, Change, Parts, cause, changed, given, parts, shifted, times, without
 
 
 UNITS: dict[str, tuple[Change, str]] = {
@@ -93,7 +69,6 @@ def instant(keep: Callable[[NDArray[Any]], NDArray[Any]]) -> Mistake:
     return mistake
 
 
-FALLS = "the norm of the residual(| away from the planes) falls from [0-9.]+ % to"
 Told = str | tuple[str, str]
 """What is told; with two texts, the second one without contact forces."""
 PLANE: dict[str, tuple[Mistake, Told]] = {
@@ -269,17 +244,6 @@ def test_samples_within_a_critical_step_are_named(every: int, motion: tuple[str,
     assert re.search(f"Likely cause: the instants are samples, .* give all steps, or give {missing} too; .*{FALLS}", said), said
 
 
-@pytest.mark.parametrize("lacks", [(), ("reaction", "touching")])
-@pytest.mark.parametrize("turn", [-1e-3, -2e-2])
-def test_a_turned_normal_is_named(turn: float, lacks: tuple[str, ...]) -> None:
-    history = pc.simulate(block(), end=20e-6, courant=0.8)
-    # Turned so that the plane does not cut through the block.
-    said = cause(history.problem, without({**parts(history), "turn": turn}, *lacks))
-    found = re.search(r"the `normal` of the plane is off by (\S+) rad.* it should be (\S+), (\S+), ", said)
-    assert found, said
-    assert float(found[1]) == pytest.approx(abs(turn), rel=1e-3) and found[2] == "(0" and found[3] == "1)", said
-
-
 def test_velocities_within_the_limit_are_graded(correct: pc.History) -> None:
     whole = parts(correct)
     estimate = pc.estimate(given(correct.problem, {**whole, "velocity": 1.009 * correct.velocity}))
@@ -307,21 +271,6 @@ def test_a_wrong_value_and_lost_digits_are_named(correct: pc.History) -> None:
     noise[0], noise[:, correct.contact_nodes] = 0.0, 0.0
     said = cause(correct.problem, without({**whole, "displacement": whole["displacement"] + noise}, "touching"))
     assert re.search("along [xy], M a = .* N, K u = .* N, F = 0 N, R = .* N; 99 % of its square are at .* instants", said), said
-
-
-def test_forces_above_the_plane_are_named(correct: pc.History) -> None:
-    """Noise of 1e-7 m at the nodes that touch."""
-    whole = parts(correct)
-    noise = 1e-7 * np.random.default_rng(1).standard_normal(correct.displacement.shape)
-    noise[0] = 0.0
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.InputWarning)
-        history = given(correct.problem, without({**whole, "displacement": whole["displacement"] + noise}, "touching"))
-    with pytest.raises(pc.InputError) as refused:
-        pc.estimate(history)
-    said = str(refused.value)
-    assert "leave `touching` out" not in said, said
-    assert re.search("contact forces act at [0-9]+ nodes and instants where the node is more than 1e-5 of an element above", said), said
 
 
 def test_the_numbers_of_messages_are_short(correct: pc.History) -> None:
@@ -363,152 +312,9 @@ def test_a_shifted_status_is_named_however_long_the_contact(end: float) -> None:
         assert f"`touching` is a step {word}" in said, said
 
 
-def test_forces_of_rounding_size_do_not_touch() -> None:
-    history = pc.simulate(block(), end=13e-6, courant=0.9)
-    whole = parts(history)
-    faint = 1e-8 * np.abs(whole["reaction"]).max()
-    noise = faint * np.random.default_rng(1).standard_normal(whole["reaction"].shape)
-    estimate = pc.estimate(given(history.problem, {**whole, "reaction": whole["reaction"] + noise}))
-    assert estimate.consistency is not None and estimate.consistency["touching"] == 0.0
-
-
-def test_friction_that_is_too_large_is_named(correct: pc.History) -> None:
-    if correct.problem.mesh.dimension == 1:
-        pytest.skip("a bar has no friction")
-    for factor in (1.2, 3.0):
-        for lacks in ((), ("reaction", "touching")):
-            said = cause(correct.problem, without(times("friction", factor)(parts(correct)), *lacks))
-            assert f"is 0.2 on average, not {0.2 * factor:.3g}" in said, said
-    said = cause(correct.problem, times("friction", 0.5)(parts(correct)))
-    assert "is 0.2 on average, not 0.1" in said, said
-    # The shares of sliding nodes: μ is too large by a fifth of what is right, a sixth of what is stated.
-    forced = pc.estimate(given(correct.problem, times("friction", 1.2)(parts(correct))), force=True)
-    assert forced.consistency is not None and forced.consistency["slip"] == pytest.approx(1 / 6, rel=1e-6)
-
-
-@pytest.mark.parametrize("lacks", [(), ("touching",), ("reaction", "touching")])
-@pytest.mark.parametrize("offset", [2e-4, 1e-6, -2e-4, -1e-6])
-def test_a_plane_at_another_place_is_named(offset: float, lacks: tuple[str, ...], correct: pc.History) -> None:
-    whole = parts(correct)
-    # The plane of the problem is below that of the history, or cuts off the end of its flight.
-    offset = min(offset, 1.9e-4)
-    said = cause(correct.problem, without({**whole, "plane": offset}, *lacks))
-    found = re.search(r"the `point` of the plane is off by (\S+) m: .* m (below|above) it on average; move it by (\S+) m", said)
-    assert found, said
-    assert float(found[1]) == abs(offset) and float(found[3]) == -offset and (found[2] == "below") == (offset > 0), said
-
-
-@pytest.mark.parametrize("lacks", [("touching",), ("reaction", "touching")])
-def test_a_gap_of_rounding_size_is_contact(lacks: tuple[str, ...], correct: pc.History) -> None:
-    ours = pc.estimate(correct)
-    for offset in (1e-12, -1e-12, -1e-9):
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-            history = given(correct.problem, without({**parts(correct), "plane": offset}, *lacks))
-        assert np.array_equal(history.touching, correct.touching[: len(history)])
-        if len(history) == len(correct):
-            assert pc.estimate(history).sup == pytest.approx(ours.sup, rel=1e-4)
-
-
-def test_noise_is_no_contact(correct: pc.History) -> None:
-    noise = 1e-13 * np.random.default_rng(1).standard_normal(correct.displacement.shape)
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-        theirs = pc.History.from_arrays(correct.problem, correct.time, correct.displacement + noise * (correct.time > 0)[:, None, None])
-    assert np.array_equal(theirs.touching, correct.touching[: len(theirs)])
-
-
-def penalty(
-    stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 400.0, consistent: bool = False
-) -> tuple[pc.Problem, Parts]:
-    """A block of percute's mesh with contact and friction by penalties (Pa/m), R_n from the penetration at t_n."""
-    stated = block(friction=friction)
-    problem = pc.Problem(stated.mesh, material=stated.material, obstacles=stated.obstacles, initial_velocity=(sideways, -400.0))
-    points, cells, density, young, poisson = problem.mesh.points, problem.mesh.cells, 2700.0, 70e9, 0.3
-    hooke = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
-    matrix, mass = np.zeros((2 * len(points), 2 * len(points))), np.zeros((len(points), len(points)))
-    for cell in cells:
-        corners = np.column_stack([np.ones(3), points[cell]])
-        gradients, area = np.linalg.inv(corners)[1:], 0.5 * abs(np.linalg.det(corners))
-        b = np.zeros((3, 6))
-        b[0, 0::2], b[1, 1::2], b[2, 0::2], b[2, 1::2] = gradients[0], gradients[1], gradients[1], gradients[0]
-        rows = np.column_stack([2 * cell, 2 * cell + 1]).ravel()
-        matrix[np.ix_(rows, rows)] += area * b.T @ hooke @ b
-        share = (1.0 + np.eye(3)) / 12 if consistent else np.eye(3) / 3
-        mass[np.ix_(cell, cell)] += density * area * share
-    bottom = np.flatnonzero(points[:, 1] == 0.0)
-    springs = np.where((points[bottom, 0] == 0) | (points[bottom, 0] == 0.05), 0.5, 1.0) * stiffness * 0.05 / 8
-    stiff = matrix.copy()
-    stiff[2 * bottom + 1, 2 * bottom + 1] += springs
-    stiff[2 * bottom, 2 * bottom] += springs if friction else 0.0
-    inverse = np.linalg.inv(mass)
-    critical = 2 / np.sqrt(np.linalg.eigvals(np.kron(inverse, np.eye(2)) @ stiff).real.max())
-    steps = int(np.ceil(13e-6 / (courant * critical)))
-    dt = 13e-6 / steps
-    u, v = np.zeros_like(points), np.tile([sideways, -400.0], (len(points), 1))
-    anchor = np.full(len(bottom), np.nan)
-    displacement: list[NDArray[Any]] = []
-    reaction: list[NDArray[Any]] = []
-    for n in range(steps + 1):
-        r = np.zeros_like(u)
-        r[bottom, 1] = springs * np.maximum(0, -2e-4 - u[bottom, 1])
-        normal, along = r[bottom, 1], u[bottom, 0]
-        anchor = np.where(np.isnan(anchor), along, anchor)
-        r[bottom, 0] = np.clip(springs * (anchor - along), -friction * normal, friction * normal)
-        anchor = np.where(normal > 0, along + r[bottom, 0] / springs, np.nan)
-        displacement.append(u)
-        reaction.append(r)
-        v = v + (dt / 2 if n == 0 else dt) * inverse @ (r - (matrix @ u.ravel()).reshape(-1, 2))
-        u = u + dt * v
-    arrays = {"time": dt * np.arange(steps + 1), "displacement": np.array(displacement), "reaction": np.array(reaction)}
-    return problem, {**STATED, **arrays}
-
-
-@pytest.mark.parametrize("lacks", [(), ("reaction",)])
-@pytest.mark.parametrize("stiffness", [1e14, 1e15, 1e16])
-def test_contact_by_a_penalty_is_graded(stiffness: float, lacks: tuple[str, ...]) -> None:
-    problem, whole = penalty(stiffness)
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-        estimate = pc.estimate(given(problem, without(whole, *lacks)))
-    # Stiff springs make energy; the verdict warns of that, too.
-    assert estimate.trust == ("limited" if (estimate.consistency or {})["energy"] < 0.1 else "low") and "penalty" in estimate.verdict
-
-
-@pytest.mark.parametrize("sideways", [0.0, 5.0, 50.0, 400.0])
-def test_friction_by_a_penalty_is_graded(sideways: float) -> None:
-    """Nodes that stick move by the stretch of their springs: that is no other friction."""
-    problem, whole = penalty(1e14, friction=0.2, sideways=sideways)
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-        estimate = pc.estimate(given(problem, whole))
-    assert estimate.trust == "limited" and "penalty" in estimate.verdict, estimate.verdict
-
-
 def test_a_small_residual_of_the_balance_limits_the_trust(correct: pc.History) -> None:
     """A modulus that is 0.3 % too large."""
     estimate = pc.estimate(given(correct.problem, times("young", 1.003)(parts(correct))))
     balance = (estimate.consistency or {})["balance"]
     assert (estimate.trust == "limited" and "forces that balance to" in estimate.verdict) == (balance > 5e-4), estimate.verdict
     assert pc.estimate(given(correct.problem, parts(correct))).trust == "high" or correct.problem.mesh.dimension == 1
-
-
-def test_noise_is_no_sliding(correct: pc.History) -> None:
-    """A history with noise of 1e-10 m is not refused for its friction."""
-    noise = 1e-10 * np.random.default_rng(1).standard_normal(correct.displacement.shape)
-    noisy = {**parts(correct), "displacement": correct.displacement + noise * (correct.time > 0)[:, None, None]}
-    estimate = pc.estimate(given(correct.problem, without(noisy, "touching")), force=True)
-    assert ((estimate.consistency or {})["slip"] or 0.0) < 1e-2
-
-
-@pytest.mark.parametrize("lacks", [(), ("reaction",)])
-def test_a_consistent_mass_is_named(lacks: tuple[str, ...]) -> None:
-    problem, whole = penalty(1e14, consistent=True)
-    said = cause(problem, without(whole, *lacks))
-    assert re.search(f"the accelerations fit a consistent mass matrix, but percute lumps .*{FALLS} less than", said), said
-
-
-def test_an_unstable_penalty_is_named() -> None:
-    problem, whole = penalty(1e13, courant=1.5)
-    said = cause(problem, whole)
-    assert "the contact is unstable" in said and "penalty too stiff" in said, said

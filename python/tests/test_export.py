@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import percute as pc
 import pytest
-from conftest import bar, block
+from conftest import bar, block, block_case
 from percute import _percute
 
 
@@ -163,24 +163,7 @@ def test_an_estimate_of_another_mesh_is_refused(history: pc.History, tmp_path: P
         history.export(tmp_path / "out.vtkhdf", estimate=other)
 
 
-CASE = """
-[mesh]
-rectangle = { width = 0.05, height = 0.04, nx = 6, ny = 5 }
-[material]
-young = 70e9
-poisson = 0.3
-density = 2700.0
-plane = "stress"
-[initial]
-velocity = [400.0, -400.0]
-[[obstacle]]
-point = [0.0, -2e-4]
-normal = [0.0, 1.0]
-friction = 0.2
-[time]
-end = 6e-6
-courant = 0.9
-"""
+CASE = block_case()
 
 
 def table(file: Path) -> dict[str, np.ndarray]:

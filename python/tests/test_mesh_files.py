@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import percute as pc
 import pytest
+from conftest import block_case
 
 FILES = Path(__file__).parents[2] / "crates/io/tests/gmsh/files"
 LEFT_OUT = "ignore::percute.MeshWarning"
@@ -21,27 +22,8 @@ def test_a_file_of_gmsh_is_read(name: str) -> None:
     assert list(mesh.element_groups) == ["30", "aluminium", "steel"]
 
 
-def block(folder: Path, mesh: str) -> str:
-    return f"""
-[mesh]
-file = "{mesh}"
-scale = 1e-3
-[material]
-young = 70e9
-poisson = 0.3
-density = 2700.0
-plane = "stress"
-[initial]
-velocity = [0.0, -100.0]
-[[obstacle]]
-point = [0.0, -1e-4]
-normal = [0.0, 1.0]
-friction = 0.2
-group = "bottom"
-[time]
-end = 5e-6
-courant = 0.9
-"""
+def block(mesh: str) -> str:
+    return block_case(f'file = "{mesh}"\nscale = 1e-3', speed=100.0, end=5e-6, plane='group = "bottom"')
 
 
 @pytest.mark.filterwarnings(LEFT_OUT)
@@ -49,18 +31,18 @@ courant = 0.9
 def test_a_case_names_its_mesh_relative_to_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases/a.msh").write_bytes((FILES / "block-4.1-binary.msh").read_bytes())
-    (tmp_path / "cases/a.toml").write_text(block(tmp_path, "a.msh"))
+    (tmp_path / "cases/a.toml").write_text(block("a.msh"))
     monkeypatch.chdir(tmp_path)
     of_file = pc.run("cases/a.toml")
     # A text is nowhere but in the working directory.
-    of_text = pc.run(block(tmp_path, "cases/a.msh"))
+    of_text = pc.run(block("cases/a.msh"))
     assert of_file.by_element.tobytes() == of_text.by_element.tobytes()
     with pytest.raises(pc.InputError, match=r"there is no such file; names are relative"):
-        pc.run(block(tmp_path, "a.msh"))
+        pc.run(block("a.msh"))
 
 
 def test_a_case_warns_of_what_its_mesh_left_out(tmp_path: Path) -> None:
-    (tmp_path / "a.toml").write_text(block(tmp_path, str(FILES / "block-2.2.msh")))
+    (tmp_path / "a.toml").write_text(block(str(FILES / "block-2.2.msh")))
     with pytest.warns((pc.MeshWarning, pc.InputWarning)) as caught:
         estimate = pc.run(tmp_path / "a.toml")
     # The result has a warning of reoriented elements.

@@ -16,25 +16,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import percute as pc
 import pytest
+from conftest import block_case
 
-BLOCK = """
-[mesh]
-rectangle = { width = 0.05, height = 0.04, nx = 5, ny = 4 }
-[material]
-young = 70e9
-poisson = 0.3
-density = 2700.0
-plane = "stress"
-[initial]
-velocity = [4.0, -4.0]
-[[obstacle]]
-point = [0.0, -1e-6]
-normal = [0.0, 1.0]
-friction = 0.2
-[time]
-end = 4e-6
-courant = 0.9
-"""
+BLOCK = block_case("rectangle = { width = 0.05, height = 0.04, nx = 5, ny = 4 }", speed=4.0, end=4e-6)
 GRID: dict[str, list[object]] = {"mesh.rectangle.nx": [5, 6, 7], "obstacle.0.friction": [0.0, 0.3]}
 
 

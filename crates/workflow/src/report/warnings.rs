@@ -192,7 +192,7 @@ fn flat_elements(facts: &Facts<'_>) -> Option<Warning> {
     };
     let message = format!(
         "the mesh has elements that are nearly flat, with an angle above 150°: {named}{more}. They and the elements \
-         around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 40 times the \
+         around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 45 times the \
          true error{step}. Move their nodes, or mesh again"
     );
     warning("flat_elements", format!("nearly flat elements have {share} of the estimate"), message)

@@ -50,8 +50,8 @@ pub(super) const RULES: [Rule; 16] = [
         situation: "impacts with `published`",
         doubt: Some("`published` drops forces; estimate with `corrected`"),
     },
-    // See `report/flat.rs`; python/tests/test_flat_elements.py.
-    Rule { applies: |f| f.flat, range: [1.4, 40.0], situation: "meshes with nearly flat elements", doubt: None },
+    // See `report/flat.rs`; python/percute/verification/flat_elements.py.
+    Rule { applies: |f| f.flat, range: [1.4, 45.0], situation: "meshes with nearly flat elements", doubt: None },
     // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely.
     Rule {
         applies: |f| f.contact.touches == Touches::None,

@@ -1,0 +1,170 @@
+"""Histories with contact by a penalty: soft and stiff, with friction, beside noise and real double contacts."""
+
+import json
+import re
+import warnings
+from typing import Any
+
+import numpy as np
+import percute as pc
+import pytest
+from conftest import block, tilted
+from numpy.typing import NDArray
+from spoiling import FALLS, STATED, Parts, cause, given, parts, without
+
+
+def matrices(problem: pc.Problem, consistent: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Stiffness (both components of each node) and mass (of each node)."""
+    points, law = problem.mesh.points, problem.material
+    assert isinstance(law, pc.Elastic) and law.poisson is not None
+    young, poisson = law.young, law.poisson
+    if law.plane == "strain":
+        young, poisson = young / (1 - poisson**2), poisson / (1 - poisson)
+    hooke = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+    matrix, mass = np.zeros((2 * len(points), 2 * len(points))), np.zeros((len(points), len(points)))
+    for cell in problem.mesh.cells:
+        corners = np.column_stack([np.ones(3), points[cell]])
+        gradients, area = np.linalg.inv(corners)[1:], 0.5 * abs(np.linalg.det(corners))
+        b = np.zeros((3, 6))
+        b[0, 0::2], b[1, 1::2], b[2, 0::2], b[2, 1::2] = gradients[0], gradients[1], gradients[1], gradients[0]
+        rows = np.column_stack([2 * cell, 2 * cell + 1]).ravel()
+        matrix[np.ix_(rows, rows)] += area * b.T @ hooke @ b
+        share = (1.0 + np.eye(3)) / 12 if consistent else np.eye(3) / 3
+        mass[np.ix_(cell, cell)] += law.density * area * share
+    return matrix, mass
+
+
+def penalty(
+    stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 400.0, consistent: bool = False
+) -> tuple[pc.Problem, Parts]:
+    """A block of percute's mesh with contact and friction by penalties (Pa/m), R_n from the penetration at t_n."""
+    stated = block(friction=friction)
+    problem = pc.Problem(stated.mesh, material=stated.material, obstacles=stated.obstacles, initial_velocity=(sideways, -400.0))
+    points = problem.mesh.points
+    matrix, mass = matrices(problem, consistent)
+    bottom = np.flatnonzero(points[:, 1] == 0.0)
+    springs = np.where((points[bottom, 0] == 0) | (points[bottom, 0] == 0.05), 0.5, 1.0) * stiffness * 0.05 / 8
+    stiff = matrix.copy()
+    stiff[2 * bottom + 1, 2 * bottom + 1] += springs
+    stiff[2 * bottom, 2 * bottom] += springs if friction else 0.0
+    inverse = np.linalg.inv(mass)
+    critical = 2 / np.sqrt(np.linalg.eigvals(np.kron(inverse, np.eye(2)) @ stiff).real.max())
+    steps = int(np.ceil(13e-6 / (courant * critical)))
+    dt = 13e-6 / steps
+    u, v = np.zeros_like(points), np.tile([sideways, -400.0], (len(points), 1))
+    anchor = np.full(len(bottom), np.nan)
+    displacement: list[NDArray[Any]] = []
+    reaction: list[NDArray[Any]] = []
+    for n in range(steps + 1):
+        r = np.zeros_like(u)
+        r[bottom, 1] = springs * np.maximum(0, -2e-4 - u[bottom, 1])
+        normal, along = r[bottom, 1], u[bottom, 0]
+        anchor = np.where(np.isnan(anchor), along, anchor)
+        r[bottom, 0] = np.clip(springs * (anchor - along), -friction * normal, friction * normal)
+        anchor = np.where(normal > 0, along + r[bottom, 0] / springs, np.nan)
+        displacement.append(u)
+        reaction.append(r)
+        v = v + (dt / 2 if n == 0 else dt) * inverse @ (r - (matrix @ u.ravel()).reshape(-1, 2))
+        u = u + dt * v
+    arrays = {"time": dt * np.arange(steps + 1), "displacement": np.array(displacement), "reaction": np.array(reaction)}
+    return problem, {**STATED, **arrays}
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction",)])
+@pytest.mark.parametrize("stiffness", [1e14, 1e15, 1e16])
+def test_contact_by_a_penalty_is_graded(stiffness: float, lacks: tuple[str, ...]) -> None:
+    problem, whole = penalty(stiffness)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        estimate = pc.estimate(given(problem, without(whole, *lacks)))
+    # Stiff springs make energy; the verdict warns of that, too.
+    assert estimate.trust == ("limited" if (estimate.consistency or {})["energy"] < 0.1 else "low") and "penalty" in estimate.verdict
+    assert (estimate.consistency or {})["penalty"] > 0.9
+
+
+@pytest.mark.parametrize("sideways", [0.0, 5.0, 50.0, 400.0])
+def test_friction_by_a_penalty_is_graded(sideways: float) -> None:
+    """Nodes that stick move by the stretch of their springs: that is no other friction."""
+    problem, whole = penalty(1e14, friction=0.2, sideways=sideways)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        estimate = pc.estimate(given(problem, whole))
+    assert estimate.trust == "limited" and "penalty" in estimate.verdict, estimate.verdict
+
+
+@pytest.mark.parametrize("lacks", [(), ("reaction",)])
+def test_a_consistent_mass_is_named(lacks: tuple[str, ...]) -> None:
+    problem, whole = penalty(1e14, consistent=True)
+    said = cause(problem, without(whole, *lacks))
+    assert re.search(f"the accelerations fit a consistent mass matrix, but percute lumps .*{FALLS} less than", said), said
+
+
+def test_an_unstable_penalty_is_named() -> None:
+    problem, whole = penalty(1e13, courant=1.5)
+    said = cause(problem, whole)
+    assert "the contact is unstable" in said and "penalty too stiff" in said, said
+
+
+def tilted_trapezoid(stiffness: float, steps: int) -> pc.History:
+    """A trapezoid of steel, tilted by 4°, that strikes with one corner and then with the other, on springs (N/m)."""
+    nx, ny, angle = 12, 10, np.radians(4.0)
+    points = np.array([[(0.04 - 0.016 * j / ny) * (i / nx - 0.5), 0.03 * j / ny] for j in range(ny + 1) for i in range(nx + 1)])
+    points = points @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    points[:, 1] -= points[:, 1].min()
+    cells = []
+    for a in (j * (nx + 1) + i for j in range(ny) for i in range(nx)):
+        b, c, d = a + 1, a + nx + 2, a + nx + 1
+        cells += [[a, b, c], [a, c, d]] if (a % (nx + 1) + a // (nx + 1)) % 2 else [[a, b, d], [b, c, d]]
+    steel = pc.Elastic(young=210e9, poisson=0.3, density=7800.0, plane="strain")
+    plane = pc.Plane(point=(0, -2e-5), normal=(0, 1), friction=0.3)
+    problem = pc.Problem(pc.Mesh(points, cells), material=steel, obstacles=[plane], initial_velocity=(20, -40))
+    matrix, mass = matrices(problem)
+    dt, weights = 0.8 * problem.critical_time_step, mass.sum(axis=1)[:, None]
+    u, v = np.zeros_like(points), np.tile([20.0, -40.0], (len(points), 1))
+    displacement, reaction = [u], []
+    for n in range(steps):
+        r = np.zeros_like(u)
+        r[:, 1] = stiffness * np.maximum(0, -2e-5 - points[:, 1] - u[:, 1])
+        r[:, 0] = -0.3 * r[:, 1] * np.clip(v[:, 0] / 0.5, -1, 1)
+        v = v + (dt / 2 if n == 0 else dt) * (r - (matrix @ u.ravel()).reshape(-1, 2)) / weights
+        u = u + dt * v
+        displacement.append(u)
+        reaction.append(r)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
+        return pc.History.from_arrays(problem, dt * np.arange(steps + 1), displacement, reaction)
+
+
+@pytest.mark.filterwarnings("ignore:the relative error is")
+@pytest.mark.parametrize(("stiffness", "steps", "phases"), [(5e11, 140, 1), (5e11, 400, 2), (1e11, 400, 2), (1e10, 400, 2)])
+def test_nodes_that_bounce_on_a_penalty_are_one_contact(stiffness: float, steps: int, phases: int) -> None:
+    """The stiffest lets all nodes go for a step after 27 µs; after 40 µs the other corner strikes, with any stiffness."""
+    history = tilted_trapezoid(stiffness, steps)
+    forced = (history.reaction[:, :, 1] > 0).any(axis=1)
+    assert np.sum(np.diff(forced.astype(int)) > 0) == {(5e11, 140): 2, (5e11, 400): 4}.get((stiffness, steps), phases)
+    estimate = pc.estimate(history)
+    assert json.loads(estimate.to_json())["verdict"]["phases"] == phases
+    assert ("after several contacts" in estimate.verdict) == (phases > 1), estimate.verdict
+    assert "contact by a penalty" in estimate.verdict
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-8])
+def test_noise_is_no_penalty(size: float) -> None:
+    """Nodes that touch are off their plane by the noise, and forces do not follow it."""
+    history = pc.simulate(block(nx=32, ny=24), end=13e-6, courant=0.9)
+    noise = size * np.random.default_rng(1).standard_normal(history.displacement.shape) * (history.time > 0)[:, None, None]
+    noisy = pc.History.from_arrays(history.problem, history.time, history.displacement + noise, history.reaction, history.touching)
+    estimate = pc.estimate(noisy, force=True)
+    found = estimate.consistency or {}
+    assert found["penetration"] > 1e-6 and found["penalty"] < 0.1
+    off = re.search(r"nodes that are (\S+) of an element off their plane in contact", estimate.verdict)
+    assert off and float(off[1]) == pytest.approx(max(found["penetration"], found["gap_under_force"]), rel=0.05)
+    assert "penalty" not in estimate.verdict and estimate.trust != "high"
+
+
+def test_a_turned_plane_is_no_penalty() -> None:
+    """A node that slides on it goes off the plane of the problem little by little, but its force does not follow."""
+    history = pc.simulate(tilted(), end=13e-6, courant=0.9)
+    estimate = pc.estimate(given(history.problem, without({**parts(history), "turn": -1e-3}, "touching")), force=True)
+    found = estimate.consistency or {}
+    assert found["penalty"] < 0.87 and "penalty" not in estimate.verdict
