@@ -67,8 +67,11 @@ def test_the_readme_prints_what_it_says(capsys: pytest.CaptureFixture[str]) -> N
     assert told.splitlines()[1:] == given.splitlines()[1:]
 
 
-def test_the_solver_of_the_page_on_other_programs_is_graded(capsys: pytest.CaptureFixture[str]) -> None:
-    """It prints what the page says, and agrees with percute's own run."""
+def test_the_solver_of_the_page_on_other_programs_is_graded(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It prints what the page says, agrees with percute's own run, and makes a file and a page."""
+    monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "foreign.md").read_text()
     example, printed = re.findall(r"```python\n(.*?)```\n\nprints\n\n```text\n(.*?)```", text, re.DOTALL)[0]
     names: dict[str, Any] = {}
@@ -81,6 +84,9 @@ def test_the_solver_of_the_page_on_other_programs_is_graded(capsys: pytest.Captu
     last = names["history"].time[-1]
     shorter = pc.estimate(pc.simulate(names["problem"], end=last, step=names["dt"]))
     assert names["estimate"].sup == pytest.approx(shorter.sup, rel=1e-9)
+    exec(re.findall(r"```python\n(history.save.*?)```", text, re.DOTALL)[0], names)
+    assert names["estimate"].by_element.tobytes() == pc.estimate(pc.open("theirs.vtkhdf")).by_element.tobytes()
+    assert "simulated by Solver 3, estimated by" in Path("theirs.html").read_text(encoding="utf-8")
 
 
 def test_the_cut_of_the_page_on_other_programs_ends_with_the_first_contact() -> None:

@@ -79,8 +79,13 @@ def row(mesh: pc.Mesh, refinements: int = REFINEMENTS) -> tuple[float, float, fl
     return float(angles(mesh).max()), share(estimate), estimate.sup / error.sup, estimate.mean / error.mean
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Print the table."""
     print("| mesh | largest angle | share | index of sup | of mean |\n|---|---|---|---|---|")
     for name, mesh in meshes().items():
         angle, part, sup, mean = row(mesh)
         print(f"| {name} | {angle:.0f}° | {100 * part:.0f} % | {sup:.2f} | {mean:.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
