@@ -30,8 +30,9 @@ pub(super) const TOUCHING: f64 = 0.05;
 /// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less
 /// than 1e-7, also in single precision. Penalties have more.
 const OFF_CONTACT: f64 = 1e-6;
-/// The least `penalty` of a penalty: 0.94 and more in tests, soft and stiff, with damping, with noise of 1e-9 m and with
-/// forces of the next step's penetration. Multipliers have at most 0, a single node that slides on a turned plane 0.8.
+/// The least `penalty` of a penalty: 0.94 and more in tests, soft and stiff, with damping, with noise of 1e-9 m and
+/// with forces of the next step's penetration. Multipliers have at most 0, a single node that slides on a turned plane
+/// 0.8.
 const PENALTY: f64 = 0.87;
 /// Limit of `slip` of multipliers. A friction by a penalty lets nodes move before they slide, and has no limit: 0.21 in
 /// docs/recipes.md, above 1 where nodes stick.
