@@ -18,7 +18,16 @@ __all__ = ["HistoryFields"]
 
 
 class HistoryFields(Immutable):
-    """Fields of the elements, and probes."""
+    """Fields of nodes and elements, and probes."""
+
+    def displacement_at(self: History, step: Step) -> NDArray[np.float64]:  # type: ignore[misc]
+        """Give the displacement of each node (m), shape (nodes, dimension); ``step`` as for `strain`.
+
+        Of a history in a file, only these instants are read and compared with their checksums; ``displacement`` compares all.
+        """
+        chosen, one = element_fields.rows(self, step)
+        values = self._displacement_at(chosen)
+        return values[0] if one else values
 
     def strain(self: History, step: Step) -> NDArray[np.float64]:  # type: ignore[misc]
         """Give the strain of each element, eq. [5].

@@ -73,7 +73,8 @@ def test_views_of_a_history_are_checked(name: str, tmp_path: Path) -> None:
     assert np.array_equal(getattr(pc.open(path), name), getattr(whole, name))
 
 
-def test_the_stress_of_an_instant_is_checked_alone(tmp_path: Path) -> None:
+@pytest.mark.parametrize("field", ["stress", "displacement_at"])
+def test_the_field_of_an_instant_is_checked_alone(field: str, tmp_path: Path) -> None:
     path, other = tmp_path / "h.vtkhdf", tmp_path / "other.vtkhdf"
     whole = pc.simulate(block(), end=4e-6, courant=0.9, store=path)
     flipped(path, other, "VTKHDF/PointData/displacement", 0.5)
@@ -82,13 +83,13 @@ def test_the_stress_of_an_instant_is_checked_alone(tmp_path: Path) -> None:
     wrong = 0
     for step in range(len(history)):
         try:
-            assert np.array_equal(history.stress(step), whole.stress(step))
+            assert np.array_equal(getattr(history, field)(step), getattr(whole, field)(step))
         except pc.FileFormatError as error:
             wrong += 1
             assert f"at instant {step}:" in str(error)
     assert wrong == 1 and "History: " in repr(history)
     with pytest.raises(pc.FileFormatError, match="does not have its checksum at instant"):
-        history.stress(slice(None))
+        getattr(history, field)(slice(None))
 
 
 def test_the_instants_of_a_thinned_run_are_checked(tmp_path: Path) -> None:
