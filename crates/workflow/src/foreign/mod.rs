@@ -21,6 +21,7 @@ mod nearness;
 mod of_balance;
 mod orders;
 mod planes;
+mod quantity;
 mod residual;
 mod rounded;
 mod samples;
