@@ -137,7 +137,8 @@ impl ProblemData {
     /// Arguments of the planes.
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         each_dimension!(&self.problem, p => {
-            p.obstacles().iter().map(|plane| statement::plane_arguments(py, plane)).collect()
+            let planes = p.obstacles().iter().filter_map(|obstacle| Some((obstacle, obstacle.as_plane()?)));
+            planes.map(|plane| statement::plane_arguments(py, plane)).collect()
         })
     }
 

@@ -1,7 +1,7 @@
 //! From the value classes of `percute.statement` to the statement of a problem, and back.
 
 use crate::errors;
-use percute_core::contact::{Obstacle, ObstacleError};
+use percute_core::contact::{Obstacle, ObstacleError, Plane};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
 use pyo3::prelude::*;
@@ -170,13 +170,13 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
 /// What the value class of a plane takes.
 pub(crate) fn plane_arguments<'py, const D: usize>(
     py: Python<'py>,
-    plane: &Obstacle<D>,
+    (obstacle, plane): (&Obstacle<D>, &Plane<D>),
 ) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
-    arguments.set_item("point", tuple(py, plane.shape().point())?)?;
-    arguments.set_item("normal", tuple(py, plane.shape().direction())?)?;
-    arguments.set_item("friction", plane.law().friction())?;
-    arguments.set_item("group", plane.group())?;
+    arguments.set_item("point", tuple(py, plane.point())?)?;
+    arguments.set_item("normal", tuple(py, plane.direction())?)?;
+    arguments.set_item("friction", obstacle.law().friction())?;
+    arguments.set_item("group", obstacle.group())?;
     Ok(arguments)
 }
 

@@ -53,8 +53,20 @@ pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshErro
 /// # Errors
 /// None beyond those of the mesh.
 pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    mirror(mesh, 0)
+}
+
+/// The mesh seen in a mirror, y → −y; numbers and groups are kept.
+///
+/// # Errors
+/// None beyond those of the mesh.
+pub fn upside_down(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    mirror(mesh, 1)
+}
+
+fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
     let mut parts = Parts::of(mesh);
-    parts.points.iter_mut().for_each(|p| p[0] = -p[0]);
+    parts.points.iter_mut().for_each(|p| p[axis] = -p[axis]);
     // The mirror reverses the orientation; the core would reorient the elements and count them.
     parts.cells.iter_mut().for_each(|cell| cell.swap(1, 2));
     parts.mesh()

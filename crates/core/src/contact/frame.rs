@@ -12,7 +12,7 @@ impl<const D: usize> Frame<D> {
 
     /// The frame of a unit normal.
     #[inline]
-    pub(super) fn new(normal: [f64; D]) -> Self {
+    pub(crate) fn new(normal: [f64; D]) -> Self {
         Self { normal }
     }
 

@@ -1,4 +1,4 @@
-//! Contact with obstacles: geometry, Coulomb's law, the constraints of a step, and results.
+//! Contact with obstacles, rigid or of other bodies: geometry, Coulomb's law, the constraints of a step, and results.
 //!
 //! An [`Obstacle`] gives the gap of a point and the [`Frame`] at it. All other code uses these two only. [`Coulomb`] is
 //! the only implementation of the cone of friction.
@@ -6,6 +6,7 @@
 mod constraint;
 mod coulomb;
 mod frame;
+mod interface;
 mod obstacle;
 mod plane;
 mod results;
@@ -17,6 +18,7 @@ pub(crate) use coulomb::dissipation;
 pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;
 pub(crate) use frame::dot;
+pub use interface::Interface;
 pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
 pub use results::{

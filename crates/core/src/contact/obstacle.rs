@@ -1,4 +1,4 @@
-//! Rigid obstacles with friction.
+//! Obstacles with friction: rigid planes, and the surfaces of other bodies.
 
 use super::coulomb::Coulomb;
 use super::frame::{Frame, dot};
@@ -34,12 +34,20 @@ pub enum ObstacleError {
     },
 }
 
-/// A rigid obstacle that the body may touch.
+/// An obstacle that part of a body may touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle<const D: usize> {
-    shape: Plane<D>,
+    shape: Shape<D>,
     law: Coulomb,
     group: Option<String>,
+}
+
+/// The kinds of obstacles.
+#[derive(Clone, Debug, PartialEq)]
+enum Shape<const D: usize> {
+    Plane(Plane<D>),
+    /// The surface of another body, which moves; its frame does not turn.
+    Surface(Frame<D>),
 }
 
 impl<const D: usize> Obstacle<D> {
@@ -58,25 +66,21 @@ impl<const D: usize> Obstacle<D> {
         if point.iter().any(|x| !x.is_finite()) {
             return Err(ObstacleError::Point { point: point.to_vec() });
         }
-        if !friction.is_finite() || friction < 0.0 {
-            return Err(ObstacleError::Friction { friction });
-        }
-        if Frame::<D>::TANGENTS == 0 && friction != 0.0 {
-            return Err(ObstacleError::FrictionInOneDimension { friction });
-        }
-        Ok(Self { shape, law: Coulomb::new(friction), group })
+        Ok(Self { shape: Shape::Plane(shape), law: coulomb::<D>(friction)?, group })
     }
 
-    /// The shape as it was stated, for files and pictures.
+    /// The surface of another body, as a group of facets meets it; `normal` is the unit normal from there to the group.
+    pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String) -> Self {
+        Self { shape: Shape::Surface(Frame::new(normal)), law, group: Some(group) }
+    }
+
+    /// The plane, if it is one.
     #[must_use]
-    pub fn shape(&self) -> &Plane<D> {
-        &self.shape
-    }
-
-    /// The stated point (m), moved against the normal by a depth.
-    pub(crate) fn point_behind(&self, depth: f64) -> [f64; D] {
-        let (point, normal) = (self.shape.point(), self.shape.frame());
-        std::array::from_fn(|c| point[c] - depth * normal.normal()[c])
+    pub fn as_plane(&self) -> Option<&Plane<D>> {
+        match &self.shape {
+            Shape::Plane(plane) => Some(plane),
+            Shape::Surface(_) => None,
+        }
     }
 
     /// The law of contact on it.
@@ -99,17 +103,11 @@ impl<const D: usize> Obstacle<D> {
         self.group.as_deref()
     }
 
-    /// Signed distance of a point (m), positive outside, eq. \[3\].
-    #[inline]
-    #[must_use]
-    pub fn gap(&self, x: &[f64; D]) -> f64 {
-        self.shape.gap(x)
-    }
-
-    /// The gap (m) after a displacement from a point with this gap. A distant obstacle leaves no rounding in it.
+    /// The gap (m) after a displacement against the obstacle (m) from a place with this gap. A distant obstacle leaves no
+    /// rounding in it.
     #[inline]
     pub(super) fn gap_after(&self, gap: f64, displacement: &[f64; D]) -> f64 {
-        gap + dot(displacement, self.shape.frame().normal())
+        gap + dot(displacement, self.flat_frame().normal())
     }
 
     /// The frame at a point.
@@ -123,8 +121,22 @@ impl<const D: usize> Obstacle<D> {
     #[inline]
     #[must_use]
     pub fn flat_frame(&self) -> Frame<D> {
-        self.shape.frame()
+        match &self.shape {
+            Shape::Plane(plane) => plane.frame(),
+            Shape::Surface(frame) => *frame,
+        }
     }
+}
+
+/// The law of a coefficient of friction.
+pub(super) fn coulomb<const D: usize>(friction: f64) -> Result<Coulomb, ObstacleError> {
+    if !friction.is_finite() || friction < 0.0 {
+        return Err(ObstacleError::Friction { friction });
+    }
+    if Frame::<D>::TANGENTS == 0 && friction != 0.0 {
+        return Err(ObstacleError::FrictionInOneDimension { friction });
+    }
+    Ok(Coulomb::new(friction))
 }
 
 #[cfg(test)]
@@ -142,6 +154,6 @@ mod tests {
     #[test]
     fn the_gap_of_a_plane_is_the_distance() {
         let plane = Obstacle::plane([0.0, 0.0], [0.0, 2.0], 0.5, None).unwrap();
-        assert_eq!(plane.gap(&[7.0, -0.25]), -0.25);
+        assert_eq!(plane.as_plane().map(|plane| plane.gap(&[7.0, -0.25])), Some(-0.25));
     }
 }

@@ -30,14 +30,20 @@ impl<const D: usize> Plane<D> {
         &self.direction
     }
 
-    /// Signed distance of a point (m), positive outside.
+    /// Signed distance of a point (m), positive outside, eq. \[3\].
     #[inline]
-    pub(super) fn gap(&self, x: &[f64; D]) -> f64 {
+    #[must_use]
+    pub fn gap(&self, x: &[f64; D]) -> f64 {
         (0..D).map(|c| (x[c] - self.point[c]) * self.normal[c]).sum()
     }
 
     #[inline]
     pub(super) fn frame(&self) -> Frame<D> {
         Frame::new(self.normal)
+    }
+
+    /// The stated point (m), moved against the normal by a depth.
+    pub(crate) fn point_behind(&self, depth: f64) -> [f64; D] {
+        std::array::from_fn(|c| self.point[c] - depth * self.normal[c])
     }
 }

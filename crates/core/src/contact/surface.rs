@@ -20,6 +20,9 @@ pub struct ContactNode {
     /// Whether its tangential motion is prescribed, as on a plane of symmetry: its tangential
     /// reaction is then the support's.
     pub guided: bool,
+    /// The node of another body that it may touch, by its position in [`ContactSurface::nodes`]; `None` at a rigid
+    /// obstacle. The two have each other, and opposite reactions.
+    pub opposite: Option<usize>,
 }
 
 /// A facet that may touch an obstacle.
@@ -81,7 +84,56 @@ impl<const D: usize> ContactSurface<D> {
         areas
     }
 
-    /// The gap of a node with this displacement (m), eq. \[3\].
+    /// The value of a nodal field at a node less that at the node that it may touch, if there is one: displacement or
+    /// velocity against the obstacle.
+    #[inline]
+    #[must_use]
+    pub fn against_obstacle(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
+        let contact = &self.nodes[at];
+        let own = field[contact.node.index()];
+        let Some(opposite) = contact.opposite else { return own };
+        let other = &field[self.nodes[opposite].node.index()];
+        std::array::from_fn(|c| own[c] - other[c])
+    }
+
+    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one.
+    #[inline]
+    #[must_use]
+    pub fn leads(&self, at: usize) -> bool {
+        self.nodes[at].opposite.is_none_or(|opposite| at < opposite)
+    }
+
+    /// The mass that a force between a node and its obstacle moves (kg), from those of all nodes: 1/(1/m + 1/m') of two
+    /// nodes.
+    #[inline]
+    #[must_use]
+    pub fn moved_mass(&self, at: usize, mass: &[f64]) -> f64 {
+        let contact = &self.nodes[at];
+        let own = mass[contact.node.index()];
+        contact.opposite.map_or(own, |opposite| 1.0 / (1.0 / own + 1.0 / mass[self.nodes[opposite].node.index()]))
+    }
+
+    /// The part of a motion against the obstacle that the node itself does if forces between the two cause it: 1 at a
+    /// rigid obstacle, m'/(m + m') of two nodes, of which m' is the mass of the other one.
+    #[inline]
+    #[must_use]
+    pub fn own_part(&self, at: usize, mass: &[f64]) -> f64 {
+        let contact = &self.nodes[at];
+        let own = mass[contact.node.index()];
+        contact.opposite.map_or(1.0, |opposite| {
+            let other = mass[self.nodes[opposite].node.index()];
+            other / (own + other)
+        })
+    }
+
+    /// The part of a contact that is counted at a node: all of it at a rigid obstacle, half at each of two nodes.
+    #[inline]
+    #[must_use]
+    pub fn part_of_contact(&self, at: usize) -> f64 {
+        if self.nodes[at].opposite.is_some() { 0.5 } else { 1.0 }
+    }
+
+    /// The gap of a node with this displacement against its obstacle (m), eq. \[3\].
     #[inline]
     #[must_use]
     pub fn gap(&self, at: usize, displacement: &[f64; D]) -> f64 {
@@ -92,7 +144,7 @@ impl<const D: usize> ContactSurface<D> {
     /// The gaps of its nodes (m), with these displacements of all nodes of the mesh.
     #[must_use]
     pub fn gaps(&self, displacement: &[[f64; D]]) -> Vec<f64> {
-        self.nodes.iter().enumerate().map(|(at, contact)| self.gap(at, &displacement[contact.node.index()])).collect()
+        (0..self.nodes.len()).map(|at| self.gap(at, &self.against_obstacle(at, displacement))).collect()
     }
 
     /// The frame at a node with this displacement.

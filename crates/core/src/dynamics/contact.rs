@@ -51,10 +51,17 @@ impl<const D: usize> Contact<D> {
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
         solve(&self.constraints, steps, |constraint, reaction| {
-            let node = problem.surface().nodes()[constraint.at].node.index();
-            (0..D).for_each(|c| force[node][c] += reaction[c]);
-            self.reaction[constraint.at] = reaction;
-            self.touching_next[constraint.at] = true;
+            let nodes = problem.surface().nodes();
+            let mut act = |at: usize, reaction: [f64; D]| {
+                let node = nodes[at].node.index();
+                (0..D).for_each(|c| force[node][c] += reaction[c]);
+                self.reaction[at] = reaction;
+                self.touching_next[at] = true;
+            };
+            act(constraint.at, reaction);
+            if let Some(opposite) = nodes[constraint.at].opposite {
+                act(opposite, reaction.map(|r| -r));
+            }
         });
     }
 

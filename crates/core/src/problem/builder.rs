@@ -1,9 +1,9 @@
 //! From what the user states to a checked problem.
 
 use super::boundary::{self, Supports};
-use super::{Cause, InputError, Problem, candidates};
-use crate::contact::{ContactSurface, Obstacle};
-use crate::ids::{ElementId, FacetId};
+use super::{Cause, InputError, Problem, candidates, pairs};
+use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
+use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
@@ -30,11 +30,19 @@ pub struct Statement<const D: usize> {
     pub tractions: Vec<Traction<D>>,
     /// Body forces.
     pub body_forces: Vec<BodyForce<D>>,
+    /// Surfaces of different bodies that may touch.
+    pub interfaces: Vec<Interface>,
 }
 
 impl<const D: usize> Default for Statement<D> {
     fn default() -> Self {
-        Self { materials: Vec::new(), supports: Vec::new(), tractions: Vec::new(), body_forces: Vec::new() }
+        Self {
+            materials: Vec::new(),
+            supports: Vec::new(),
+            tractions: Vec::new(),
+            body_forces: Vec::new(),
+            interfaces: Vec::new(),
+        }
     }
 }
 
@@ -115,6 +123,13 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self
     }
 
+    /// Adds two surfaces of different bodies that may touch.
+    #[must_use]
+    pub fn interface(mut self, interface: Interface) -> Self {
+        self.stated.interfaces.push(interface);
+        self
+    }
+
     /// Materials and body forces are counted in 16 bits.
     fn check_counts(&self) -> Result<(), InputError> {
         let most = usize::from(u16::MAX) - 1;
@@ -160,9 +175,17 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
         let mut surface = ContactSurface::default();
         for (index, obstacle) in self.obstacles.into_iter().enumerate() {
-            in_front(mesh, &obstacle, &initial_displacement)
+            let Some(plane) = obstacle.as_plane().cloned() else { continue };
+            in_front(mesh, &plane, &initial_displacement)
                 .map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
-            candidates::add(&mut surface, mesh, obstacle, |f| held[f.index()], |node| fixed[node.index()], area)?;
+            let (held, fixed) = (|f: FacetId| held[f.index()], |node: NodeId| fixed[node.index()]);
+            candidates::add(&mut surface, mesh, (obstacle, &plane), held, fixed, area)?;
+        }
+        if !self.stated.interfaces.is_empty() {
+            let bodies = pairs::Bodies { mesh, body: mesh.part_of_nodes(), held: &held, fixed: &fixed };
+            for interface in self.stated.interfaces.iter().enumerate() {
+                pairs::add(&mut surface, &bodies, interface, area)?;
+            }
         }
 
         let mut problem = Problem {
@@ -234,10 +257,10 @@ fn waves(materials: &[Elastic]) -> Result<(), InputError> {
 /// An obstacle that has the whole body behind it has its normal reversed.
 fn in_front<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    obstacle: &Obstacle<D>,
+    plane: &Plane<D>,
     displacement: &[[f64; D]],
 ) -> Result<(), Cause> {
-    let gap = |(x, u): (&[f64; D], &[f64; D])| obstacle.gap(&std::array::from_fn(|c| x[c] + u[c]));
+    let gap = |(x, u): (&[f64; D], &[f64; D])| plane.gap(&std::array::from_fn(|c| x[c] + u[c]));
     let gaps: Vec<f64> = mesh.points().iter().zip(displacement).map(gap).collect();
     let node = (0..gaps.len()).fold(0, |deepest, i| if gaps[i] < gaps[deepest] { i } else { deepest });
     // As for contact: rounding must not put a body that rests on the obstacle behind it.
@@ -245,7 +268,7 @@ fn in_front<const D: usize, const N: usize>(
     if gaps.iter().any(|gap| *gap > tolerance) || gaps[node] >= -tolerance {
         return Ok(());
     }
-    let reversed = obstacle.shape().direction().iter().map(|n| -n).collect();
+    let reversed = plane.direction().iter().map(|n| -n).collect();
     Err(Cause::Behind { node, depth: -gaps[node], reversed })
 }
 
@@ -294,9 +317,11 @@ fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N
     let gap = |at: usize| problem.start_of_contact(at).0;
     let deeper = |a: usize, b: usize| if gap(b) < gap(a) { b } else { a };
     if let Some(at) = (0..nodes.len()).reduce(deeper).filter(|&at| gap(at) < -tolerance) {
-        let (obstacle, depth) = (nodes[at].obstacle, -gap(at));
-        let clear = problem.obstacles()[obstacle].point_behind(depth).to_vec();
-        let cause = Cause::Penetrates { node: nodes[at].node.index(), depth, clear };
+        let (obstacle, depth, node) = (nodes[at].obstacle, -gap(at), nodes[at].node.index());
+        let Some(plane) = problem.obstacles()[obstacle].as_plane() else {
+            return Err(Cause::Overlaps { node, depth }.at("contact", None, ""));
+        };
+        let cause = Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() };
         return Err(cause.at("obstacle", Some(obstacle), "point"));
     }
     for (at, contact) in nodes.iter().enumerate() {

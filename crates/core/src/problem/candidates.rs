@@ -1,7 +1,7 @@
 //! Candidates of contact: the facets that face an obstacle, and their nodes.
 
 use super::{Cause, HeldBy, InputError};
-use crate::contact::{ContactFacet, ContactNode, ContactSurface, Obstacle, dot};
+use crate::contact::{ContactFacet, ContactNode, ContactSurface, Obstacle, Plane, dot};
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 /// A facet faces an obstacle if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
 /// A prescribed component of which the normal has no more than this is tangential.
-const ALIGNED: f64 = 1e-12;
+pub(super) const ALIGNED: f64 = 1e-12;
 
 /// Adds an obstacle and the facets that may touch it to the contact surface.
 pub(super) fn add<const D: usize, const N: usize>(
     surface: &mut ContactSurface<D>,
     mesh: &Mesh<D, N>,
-    obstacle: Obstacle<D>,
+    (obstacle, plane): (Obstacle<D>, &Plane<D>),
     held: impl Fn(FacetId) -> Option<HeldBy>,
     prescribed: impl Fn(NodeId) -> [bool; D],
     area: impl Fn(FacetId) -> f64,
@@ -32,8 +32,8 @@ pub(super) fn add<const D: usize, const N: usize>(
         let frame = obstacle.frame_at(&point);
         let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
         let guided = free && held != [false; D];
-        let undeformed_gap = obstacle.gap(&point);
-        nodes.push((ContactNode { node, obstacle: index, undeformed_gap, free, guided }, point));
+        let undeformed_gap = plane.gap(&point);
+        nodes.push((ContactNode { node, obstacle: index, undeformed_gap, free, guided, opposite: None }, point));
     }
     if let Some((first, _)) = nodes.first().filter(|_| nodes.iter().all(|(contact, _)| !contact.free)) {
         return Err(Cause::HeldNodes { node: first.node.index() }.at("obstacle", Some(index), ""));
@@ -110,7 +110,7 @@ fn normal_at<const D: usize, const N: usize>(mesh: &Mesh<D, N>, obstacle: &Obsta
 
 /// Nodes of the facets, piece by piece. In 2D a piece is a chain from one end to the other: not all facets of a closed
 /// curve face the same obstacle.
-fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
+pub(super) fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
     let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
     for facet in facets {
         let nodes = &mesh.facets()[facet.index()].nodes;

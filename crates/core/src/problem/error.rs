@@ -12,7 +12,7 @@ use thiserror::Error;
 /// several, and a key in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// `mesh`, `material`, `initial`, `obstacle`, `support`, `traction`, `body_force` or `time`.
+    /// `mesh`, `material`, `initial`, `obstacle`, `contact`, `support`, `traction`, `body_force` or `time`.
     pub table: &'static str,
     /// Position among tables of that name, from 0.
     pub index: Option<usize>,
@@ -174,6 +174,44 @@ pub enum Cause {
         /// The earlier obstacle, from 1.
         first: usize,
     },
+    /// An interface of a body with itself.
+    #[error(
+        "\"{}\" and \"{}\" belong to one body, which cannot touch itself; name groups of two bodies", .groups[0], .groups[1]
+    )]
+    SameBody { groups: [String; 2] },
+    /// A side of an interface that is not on the boundary.
+    #[error("the {} is inside the body; only the boundary can touch another body", facet(.nodes))]
+    InnerFacet { nodes: Vec<usize> },
+    /// A side of an interface that lies on several bodies.
+    #[error("group \"{group}\" lies on several bodies; give an interface of its own to each of them")]
+    SeveralBodies { group: String },
+    /// A facet that does not face the other side of its interface.
+    #[error(
+        "the {} does not face the other body: the mean outward normals of the two groups are {} and {}, and each edge \
+         must be within 60° of them; take it out of the group", facet(.nodes), vector(&.outward[0]), vector(&.outward[1])
+    )]
+    TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
+    /// Nodes of an interface that do not face each other.
+    #[error(
+        "the nodes of the two groups must face each other in pairs: the groups have {} and {} nodes, and node {node} is \
+         {} m aside of the nearest one; mesh both surfaces alike", .counts[0], .counts[1], short(*.offset)
+    )]
+    NotMatching { counts: [usize; 2], node: usize, offset: f64 },
+    /// A node of an interface whose motion is prescribed.
+    #[error(
+        "a support prescribes the motion of node {node}, which may touch another body; leave it free, or prescribe the \
+         same motion along the interface, and none across it, at the node that it faces"
+    )]
+    HeldPair { node: usize },
+    /// A node of an interface that may touch something else.
+    #[error("node {node} may already touch another obstacle; a node can touch one only")]
+    TwoContacts { node: usize },
+    /// Bodies that overlap.
+    #[error(
+        "the bodies overlap: node {node} starts {} m inside the other body; move them apart by more than that along the \
+         normal", short(*.depth)
+    )]
+    Overlaps { node: usize, depth: f64 },
     /// The body on the wrong side of a plane.
     #[error(
         "the whole body lies behind the plane, node {node} by {} m; the normal must point from the plane to the body: \

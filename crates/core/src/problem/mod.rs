@@ -4,6 +4,7 @@ mod boundary;
 mod builder;
 mod candidates;
 mod error;
+mod pairs;
 mod plausibility;
 mod renumber;
 
@@ -228,10 +229,10 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Gap (m), eq. \[3\], and normal velocity (m/s) of a node of the contact surface at the start.
     #[must_use]
     pub fn start_of_contact(&self, at: usize) -> (f64, f64) {
-        let node = self.surface.nodes()[at].node.index();
-        let displacement = &self.initial_displacement[node];
-        let normal = self.surface.frame(at, displacement).split(&self.initial_velocity[node]).0;
-        (self.surface.gap(at, displacement), normal)
+        let displacement = self.surface.against_obstacle(at, &self.initial_displacement);
+        let velocity = self.surface.against_obstacle(at, &self.initial_velocity);
+        let normal = self.surface.frame(at, &displacement).split(&velocity).0;
+        (self.surface.gap(at, &displacement), normal)
     }
 
     /// The candidate node of an obstacle with the smallest gap at the start, as its position in the surface, and that

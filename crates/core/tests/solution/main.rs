@@ -15,6 +15,7 @@ mod from_rest;
 mod invariance;
 mod loads;
 mod numbering;
+mod pairs;
 mod resume;
 mod run;
 mod supports;

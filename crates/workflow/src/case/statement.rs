@@ -6,7 +6,7 @@ use super::source::{CaseError, Source};
 use super::table::Table;
 use super::text::{Writer, list, quoted, vector};
 use super::{AXES, estimate, parsed, problem};
-use percute_core::contact::Obstacle;
+use percute_core::contact::{Interface, Obstacle, Plane};
 use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
@@ -58,7 +58,12 @@ pub fn statement<const D: usize, const N: usize>(
     for (i, (group, law)) in stated.materials.iter().enumerate() {
         material::<D>(&mut text, i, group.as_deref(), law)?;
     }
-    problem.obstacles().iter().for_each(|one| obstacle(&mut text, one));
+    for one in problem.obstacles() {
+        if let Some(plane) = one.as_plane() {
+            obstacle(&mut text, one, plane);
+        }
+    }
+    stated.interfaces.iter().for_each(|one| interface(&mut text, one));
     stated.supports.iter().for_each(|one| support(&mut text, one));
     stated.tractions.iter().for_each(|one| traction(&mut text, one));
     stated.body_forces.iter().for_each(|one| body_force(&mut text, one));
@@ -130,13 +135,20 @@ fn material<const D: usize>(
     Ok(())
 }
 
-fn obstacle<const D: usize>(text: &mut Writer, obstacle: &Obstacle<D>) {
+fn obstacle<const D: usize>(text: &mut Writer, obstacle: &Obstacle<D>, plane: &Plane<D>) {
     text.table("[[obstacle]]");
-    text.key("point", vector(obstacle.shape().point()));
+    text.key("point", vector(plane.point()));
     // As it was given: a unit normal made unit again may differ in the last bit.
-    text.key("normal", vector(obstacle.shape().direction()));
+    text.key("normal", vector(plane.direction()));
     text.number("friction", obstacle.law().friction());
     text.group(obstacle.group());
+}
+
+fn interface(text: &mut Writer, interface: &Interface) {
+    text.table("[[contact]]");
+    let [first, second] = interface.groups().map(quoted);
+    text.key("groups", format!("[{first}, {second}]"));
+    text.number("friction", interface.law().friction());
 }
 
 fn support<const D: usize>(text: &mut Writer, support: &Support<D>) {

@@ -146,7 +146,7 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
     let extreme =
         |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
     let obstacle = |obstacle: &percute_core::contact::Obstacle<D>| ObstacleSummary {
-        point: obstacle.shape().point().to_vec(),
+        point: obstacle.as_plane().map(|plane| plane.point().to_vec()),
         normal: obstacle.flat_frame().normal().to_vec(),
         friction: obstacle.law().friction(),
         group: obstacle.group().map(str::to_string),

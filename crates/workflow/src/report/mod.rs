@@ -133,11 +133,11 @@ pub struct ProblemSummary {
     pub resampling_error: f64,
 }
 
-/// A plane.
+/// A plane, or the surface of another body, which has no point.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct ObstacleSummary {
-    pub point: Vec<f64>,
+    pub point: Option<Vec<f64>>,
     pub normal: Vec<f64>,
     pub friction: f64,
     pub group: Option<String>,

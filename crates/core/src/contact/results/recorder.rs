@@ -38,7 +38,8 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
 /// What is known of a node at the last instant taken.
 #[derive(Clone, Copy, Debug)]
 struct NodeState<const D: usize> {
-    displacement: [f64; D],
+    /// Displacement against the obstacle (m).
+    relative: [f64; D],
     force: [f64; D],
     status: Status,
 }
@@ -48,7 +49,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
         let nodes = points(problem);
-        let start = NodeState { displacement: [0.0; D], force: [0.0; D], status: Status::Free };
+        let start = NodeState { relative: [0.0; D], force: [0.0; D], status: Status::Free };
         let results = ContactResults {
             instants: Vec::new(),
             summary: vec![NodeSummary::new(); nodes.len()],
@@ -85,18 +86,20 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     fn node(&mut self, at: usize, step: &Step<'_, D>) -> Share<D> {
         let ContactPoint { node, area, point, .. } = self.results.nodes[at];
         let (displacement, force) = (step.displacement[node.index()], step.reaction[at]);
-        let frame = self.problem.surface().frame(at, &displacement);
+        let surface = self.problem.surface();
+        let relative = surface.against_obstacle(at, step.displacement);
+        let frame = surface.frame(at, &relative);
         let status = self.laws[at].status(&frame, &force);
         let normal_force = frame.split(&force).0;
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
-        let before = std::mem::replace(&mut self.now[at], NodeState { displacement, force, status });
+        let before = std::mem::replace(&mut self.now[at], NodeState { relative, force, status });
         if step.index > 0 {
             let dt = self.times.step(step.index - 1);
-            let path = std::array::from_fn(|c| displacement[c] - before.displacement[c]);
+            let path = std::array::from_fn(|c| relative[c] - before.relative[c]);
             let mean = std::array::from_fn(|c| 0.5 * (before.force[c] + force[c]));
-            summary.friction_energy += dissipation(&frame, &mean, &path);
+            summary.friction_energy += surface.part_of_contact(at) * dissipation(&frame, &mean, &path);
             summary.over(dt, [&before.force, &force], [before.status, status]);
             sliding = frame.split(&path).1.map(|way| way / dt);
         }
@@ -109,7 +112,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
                 steps.sliding_velocity[row] = slides(before.status);
             }
             steps.force.push(force);
-            steps.gap.push(self.problem.surface().gap(at, &displacement));
+            steps.gap.push(surface.gap(at, &relative));
             steps.sliding_velocity.push(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);

@@ -1,0 +1,39 @@
+//! Two surfaces of different bodies that may touch.
+
+use super::coulomb::Coulomb;
+use super::obstacle::{ObstacleError, coulomb};
+
+/// Two groups of facets, of different bodies, that may touch with Coulomb friction. The nodes of the two face each other
+/// in pairs: they differ by a gap along one common normal only, and each pair stays one during the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    groups: [String; 2],
+    law: Coulomb,
+}
+
+impl Interface {
+    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal points from the second group to
+    /// the first one.
+    ///
+    /// # Errors
+    /// Negative friction, or one that is not finite; friction in 1D.
+    pub fn matching<const D: usize>(
+        first: impl Into<String>,
+        second: impl Into<String>,
+        friction: f64,
+    ) -> Result<Self, ObstacleError> {
+        Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)? })
+    }
+
+    /// The names of the two groups.
+    #[must_use]
+    pub fn groups(&self) -> [&str; 2] {
+        self.groups.each_ref().map(String::as_str)
+    }
+
+    /// The law of contact between them.
+    #[must_use]
+    pub fn law(&self) -> Coulomb {
+        self.law
+    }
+}

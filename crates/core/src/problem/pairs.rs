@@ -1,0 +1,154 @@
+//! Pairs of nodes of two bodies that face each other across an interface.
+
+use super::candidates::along_the_boundary;
+use super::{Cause, HeldBy, InputError, boundary};
+use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
+use crate::ids::{FacetId, NodeId};
+use crate::mesh::Mesh;
+use std::collections::BTreeMap;
+
+/// Nodes of a pair differ by less than this part of the shortest edge, but for a gap along the normal.
+const MATCHING: f64 = 1e-9;
+/// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
+const FACES: f64 = 0.5;
+
+/// The data of a problem that pairs need.
+pub(super) struct Bodies<'m, const D: usize, const N: usize> {
+    pub(super) mesh: &'m Mesh<D, N>,
+    /// For each node the first node of its body.
+    pub(super) body: Vec<NodeId>,
+    pub(super) held: &'m [Option<HeldBy>],
+    pub(super) fixed: &'m [[bool; D]],
+}
+
+/// One side of an interface.
+struct Side<const D: usize> {
+    facets: Vec<FacetId>,
+    /// Nodes along the boundary.
+    nodes: Vec<NodeId>,
+    /// Σ of outward normals times areas (m² or 1).
+    outward: [f64; D],
+    body: NodeId,
+}
+
+/// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the
+/// second one, and the other way round.
+pub(super) fn add<const D: usize, const N: usize>(
+    surface: &mut ContactSurface<D>,
+    bodies: &Bodies<'_, D, N>,
+    (index, interface): (usize, &Interface),
+    area: impl Fn(FacetId) -> f64,
+) -> Result<(), InputError> {
+    let fail = |cause: Cause, key| cause.at("contact", Some(index), key);
+    let [first, second] = interface.groups();
+    let sides = [bodies.side(first).map_err(|c| fail(c, "first"))?, bodies.side(second).map_err(|c| fail(c, "second"))?];
+    if sides[0].body == sides[1].body {
+        return Err(fail(Cause::SameBody { groups: [first.to_string(), second.to_string()] }, "second"));
+    }
+    let [own, other] = [&sides[0].outward, &sides[1].outward].map(unit);
+    let normal = own.map(|n| -n);
+    for (side, outward, key) in [(&sides[0], own, "first"), (&sides[1], normal, "second")] {
+        let faces = |&facet: &FacetId| dot(&bodies.mesh.facet_normal(facet).0, &outward) >= FACES;
+        if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
+            let nodes = bodies.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+            let between = Box::new([own.to_vec(), other.to_vec()]);
+            return Err(fail(Cause::TurnedAway { nodes, outward: between }, key));
+        }
+    }
+    let partners = bodies.partners(&sides, &normal).map_err(|cause| fail(cause, "second"))?;
+    for node in sides.iter().flat_map(|side| &side.nodes) {
+        if surface.nodes().iter().any(|contact| contact.node == *node) {
+            return Err(fail(Cause::TwoContacts { node: node.index() }, "first"));
+        }
+    }
+    let ordered = [sides[0].nodes.clone(), partners];
+    let start = surface.nodes().len();
+    let points = bodies.mesh.points();
+    for (k, (nodes, side)) in ordered.iter().zip(&sides).enumerate() {
+        let obstacle = surface.obstacles().len();
+        let frame = if k == 0 { normal } else { own };
+        let contact = |(at, node): (usize, &NodeId)| {
+            let facing = ordered[1 - k][at];
+            let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);
+            let [free, guided] = bodies.motion_of(&frame, [*node, facing]).map_err(|cause| fail(cause, "first"))?;
+            let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
+            let undeformed_gap = dot(&apart, &frame);
+            Ok((ContactNode { node: *node, obstacle, undeformed_gap, free, guided, opposite }, points[node.index()]))
+        };
+        let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, InputError>>()?;
+        let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
+        let facets = side.facets.iter().map(|&facet| {
+            let nodes = bodies.mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
+            ContactFacet { facet, nodes, area: area(facet), obstacle }
+        });
+        let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string());
+        surface.add(facing, contacts, facets);
+    }
+    Ok(())
+}
+
+impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// The facets of a group, which are free and of one body.
+    fn side(&self, group: &str) -> Result<Side<D>, Cause> {
+        let facets = boundary::facet_group(self.mesh, group)?.to_vec();
+        let nodes_of = |facet: FacetId| self.mesh.facets()[facet.index()].nodes;
+        let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
+        if let Some(&facet) = facets.iter().find(|facet| self.mesh.facets()[facet.index()].neighbour.is_some()) {
+            return Err(Cause::InnerFacet { nodes: shown(facet) });
+        }
+        if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
+            return Err(Cause::NotFree { nodes: shown(facet), by });
+        }
+        let body_of = |facet: FacetId| self.body[nodes_of(facet)[0].index()];
+        let body = body_of(facets[0]);
+        if facets.iter().any(|&facet| body_of(facet) != body) {
+            return Err(Cause::SeveralBodies { group: group.to_string() });
+        }
+        let mut outward = [0.0; D];
+        for &facet in &facets {
+            let (normal, area) = self.mesh.facet_normal(facet);
+            (0..D).for_each(|c| outward[c] += area * normal[c]);
+        }
+        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, body })
+    }
+
+    /// The node of the second side that faces each node of the first one.
+    fn partners(&self, [first, second]: &[Side<D>; 2], normal: &[f64; D]) -> Result<Vec<NodeId>, Cause> {
+        let points = self.mesh.points();
+        let counts = [first.nodes.len(), second.nodes.len()];
+        if counts[0] != counts[1] {
+            return Err(Cause::NotMatching { counts, node: first.nodes[0].index(), offset: 0.0 });
+        }
+        let shortest = first.facets.iter().map(|&facet| self.mesh.facet_normal(facet).1).fold(f64::INFINITY, f64::min);
+        let frame = Frame::new(*normal);
+        let offset = |a: NodeId, b: NodeId| {
+            let apart = std::array::from_fn(|c| points[a.index()][c] - points[b.index()][c]);
+            let (_, aside) = frame.split(&apart);
+            dot(&aside, &aside).sqrt()
+        };
+        let partner = |&node: &NodeId| {
+            let facing = second.nodes.iter().map(|&other| (offset(node, other), other));
+            let (offset, facing) = facing.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, node));
+            let matches = offset <= MATCHING * shortest;
+            if matches { Ok(facing) } else { Err(Cause::NotMatching { counts, node: node.index(), offset }) }
+        };
+        first.nodes.iter().map(partner).collect()
+    }
+
+    /// Whether contact is solved for at a pair, and whether its tangential motion is prescribed.
+    fn motion_of(&self, normal: &[f64; D], pair: [NodeId; 2]) -> Result<[bool; 2], Cause> {
+        let held = pair.map(|node| self.fixed[node.index()]);
+        let across = (0..D).any(|c| held.iter().any(|held| held[c]) && normal[c].abs() > super::candidates::ALIGNED);
+        let node = pair[usize::from(held[0] == [false; D])].index();
+        if across || held[0] != held[1] {
+            return Err(Cause::HeldPair { node });
+        }
+        Ok([true, held[0] != [false; D]])
+    }
+}
+
+/// A vector of length 1.
+fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
+    let length = dot(vector, vector).sqrt();
+    vector.map(|x| x / length)
+}
