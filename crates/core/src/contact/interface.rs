@@ -12,8 +12,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal points from the second group to
-    /// the first one.
+    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal is the mean one of the first group
+    /// or, if the nodes do not face each other along it, of the second one.
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.

@@ -187,8 +187,8 @@ pub enum Cause {
     SeveralBodies { group: String },
     /// A facet that does not face the other side of its interface.
     #[error(
-        "the {} does not face the other body: the mean outward normals of the two groups are {} and {}, and each edge \
-         must be within 60° of them; take it out of the group", facet(.nodes), vector(&.outward[0]), vector(&.outward[1])
+        "the {} does not face the other body: outward normals of the two groups must be within 60° of {} and {}; take \
+         it out of the group", facet(.nodes), vector(&.outward[0]), vector(&.outward[1])
     )]
     TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
     /// Nodes of an interface that do not face each other.

@@ -41,21 +41,25 @@ pub(super) fn add<const D: usize, const N: usize>(
 ) -> Result<(), InputError> {
     let fail = |cause: Cause, key| cause.at("contact", Some(index), key);
     let [first, second] = interface.groups();
+    let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
     let sides = [bodies.side(first).map_err(|c| fail(c, "first"))?, bodies.side(second).map_err(|c| fail(c, "second"))?];
     if sides[0].body == sides[1].body {
-        return Err(fail(Cause::SameBody { groups: [first.to_string(), second.to_string()] }, "second"));
+        return Err(fail(of_one_body(), "second"));
     }
-    let [own, other] = [&sides[0].outward, &sides[1].outward].map(unit);
-    let normal = own.map(|n| -n);
-    for (side, outward, key) in [(&sides[0], own, "first"), (&sides[1], normal, "second")] {
+    let outward = sides.each_ref().map(|side| unit(&side.outward));
+    // The surface of either body may be the one that the normal stands on.
+    let [first, second] = [outward[0].map(|n| -n), outward[1]].map(|normal| (normal, bodies.partners(&sides, &normal)));
+    let (normal, partners) = if first.1.is_err() && second.1.is_ok() { second } else { first };
+    let away = normal.map(|n| -n);
+    for (side, outward, key) in [(&sides[0], away, "first"), (&sides[1], normal, "second")] {
         let faces = |&facet: &FacetId| dot(&bodies.mesh.facet_normal(facet).0, &outward) >= FACES;
         if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
             let nodes = bodies.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
-            let between = Box::new([own.to_vec(), other.to_vec()]);
-            return Err(fail(Cause::TurnedAway { nodes, outward: between }, key));
+            let outward = Box::new([away.to_vec(), normal.to_vec()]);
+            return Err(fail(Cause::TurnedAway { nodes, outward }, key));
         }
     }
-    let partners = bodies.partners(&sides, &normal).map_err(|cause| fail(cause, "second"))?;
+    let partners = partners.map_err(|cause| fail(cause, "second"))?;
     for node in sides.iter().flat_map(|side| &side.nodes) {
         if surface.nodes().iter().any(|contact| contact.node == *node) {
             return Err(fail(Cause::TwoContacts { node: node.index() }, "first"));
@@ -66,7 +70,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     let points = bodies.mesh.points();
     for (k, (nodes, side)) in ordered.iter().zip(&sides).enumerate() {
         let obstacle = surface.obstacles().len();
-        let frame = if k == 0 { normal } else { own };
+        let frame = if k == 0 { normal } else { away };
         let contact = |(at, node): (usize, &NodeId)| {
             let facing = ordered[1 - k][at];
             let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);

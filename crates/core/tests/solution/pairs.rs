@@ -139,7 +139,7 @@ fn a_common_velocity_changes_nothing() {
 #[test]
 fn equal_bars_exchange_their_velocities() {
     for count in [20, 80] {
-        let bar = |start: f64| BarMesh::uniform_bar(0.3, count).unwrap().moved([start]).unwrap();
+        let bar = |start: f64| BarMesh::uniform_bar(0.3, count).unwrap().mapped(|p| [p[0] + start]).unwrap();
         let (left, right) = (bar(-0.3), bar(1e-4));
         let mesh = BarMesh::joined(&[("left", &left), ("right", &right)]).unwrap();
         let velocity = (0..mesh.node_count()).map(|i| [if i <= count { 10.0 } else { 0.0 }]).collect();

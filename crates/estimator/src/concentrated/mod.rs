@@ -12,7 +12,7 @@ mod star_stress;
 
 pub(crate) use edge_traction::EdgeTraction;
 pub(crate) use hat_stress::{HatStress, StarFrame};
-pub(crate) use shape::{ShapeCosts, TractionShape};
+pub(crate) use shape::{LoadedStar, ShapeCosts, TractionShape};
 pub(crate) use star_stress::{StarElement, StarResiduals, StarStress};
 
 /// Widths of narrow hats: a half of the edge, a quarter, …

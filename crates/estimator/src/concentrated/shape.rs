@@ -1,7 +1,7 @@
 //! The shape of the traction of one node: its share and its width on each candidate edge.
 
 use super::star_stress::Symmetric;
-use super::{EdgeTraction, HATS, place};
+use super::{EdgeTraction, HATS, StarFrame, place};
 use std::ops::Deref;
 
 /// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
@@ -46,12 +46,38 @@ impl Deref for TractionShape {
 }
 
 impl TractionShape {
+    /// The same hats in another order of the edges.
+    pub(crate) fn reordered(&self, edges: [usize; 2]) -> Self {
+        if self.edges == 1 { *self } else { Self { hats: edges.map(|edge| self.hats[edge]), edges: 2 } }
+    }
+
     fn of_one(halvings: usize) -> Self {
         Self { hats: [Hat { share: 1.0, halvings }, Hat::default()], edges: 1 }
     }
 
     fn of_two(shares: [f64; 2], halvings: [usize; 2]) -> Self {
         Self { hats: [0, 1].map(|e| Hat { share: shares[e], halvings: halvings[e] }), edges: 2 }
+    }
+}
+
+/// A star under the tractions of its node: one at a rigid obstacle, two where nodes of two bodies touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoadedStar<'a> {
+    /// The form ∫τ:K⁻¹τ.
+    pub(crate) energy: &'a Symmetric,
+    /// The axes of the form.
+    pub(crate) frame: StarFrame,
+    /// The position of each edge of the node among the edges of the star.
+    pub(crate) edges: [usize; 2],
+}
+
+impl LoadedStar<'_> {
+    /// ∫τ:K⁻¹τ of two hats, edge and halvings of each, under forces along two directions.
+    fn product(&self, hats: [(usize, usize); 2], directions: [[f64; 2]; 2]) -> f64 {
+        let [(e, a), (f, b)] = hats.map(|(edge, halvings)| (self.edges[edge], halvings));
+        let [along, force] = directions.map(|direction| self.frame.own(direction));
+        let of = |c: usize, d: usize| along[c] * force[d] * self.energy.at(place(e, a, c), place(f, b, d));
+        of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1)
     }
 }
 
@@ -64,8 +90,7 @@ pub(crate) struct ShapeCosts<'a> {
     tributary: &'a [f64],
     /// The force over its normal part.
     direction: [f64; 2],
-    /// The form ∫τ:K⁻¹τ over the star.
-    energy: &'a Symmetric,
+    stars: Vec<LoadedStar<'a>>,
     /// ∫τ:K⁻¹τ under a unit normal force (m/N): products of the hats of both edges, by their halvings.
     products: [[[[f64; HATS + 1]; HATS + 1]; 2]; 2],
     /// 2 times the cost of a share that differs from the tributary one by 1, under a unit normal force.
@@ -73,28 +98,26 @@ pub(crate) struct ShapeCosts<'a> {
 }
 
 impl<'a> ShapeCosts<'a> {
-    /// `direction` is the force over its normal part, `compliance` 1 over plane modulus and thickness (m/N), `energy`
-    /// the form ∫τ:K⁻¹τ over the star.
+    /// `direction` is the force over its normal part, `compliance` 1 over plane modulus and thickness (m/N), the sum of
+    /// those of all stars.
     pub(crate) fn new(
         direction: [f64; 2],
         compliance: f64,
         gaps: &'a [f64],
         tributary: &'a [f64],
-        energy: &'a Symmetric,
+        stars: Vec<LoadedStar<'a>>,
     ) -> Self {
         let mut products = [[[[0.0; HATS + 1]; HATS + 1]; 2]; 2];
         let pairs = (0..gaps.len()).flat_map(|e| (0..gaps.len()).map(move |f| (e, f)));
         for (e, f) in pairs {
             for (a, row) in products[e][f].iter_mut().enumerate().skip(1) {
                 for (b, product) in row.iter_mut().enumerate().skip(1) {
-                    let of =
-                        |c: usize, d: usize| direction[c] * direction[d] * energy.at(place(e, a, c), place(f, b, d));
-                    *product = of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1);
+                    *product = stars.iter().map(|star| star.product([(e, a), (f, b)], [direction; 2])).sum();
                 }
             }
         }
         let square: f64 = direction.iter().map(|d| d * d).sum();
-        Self { gaps, tributary, direction, energy, products, penalty: 2.0 * TRIBUTARY * square * compliance }
+        Self { gaps, tributary, direction, stars, products, penalty: 2.0 * TRIBUTARY * square * compliance }
     }
 
     /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored
@@ -160,10 +183,8 @@ impl<'a> ShapeCosts<'a> {
     pub(crate) fn local(&self, shape: &TractionShape, along: [f64; 2], force: [f64; 2]) -> f64 {
         let narrow = || shape.iter().enumerate().filter(|(_, hat)| hat.halvings > 0);
         let pair = |(e, a): (usize, &Hat), (f, b): (usize, &Hat)| {
-            let of = |c: usize, d: usize| {
-                along[c] * force[d] * self.energy.at(place(e, a.halvings, c), place(f, b.halvings, d))
-            };
-            a.share * b.share * (of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1))
+            let hats = [(e, a.halvings), (f, b.halvings)];
+            a.share * b.share * self.stars.iter().map(|star| star.product(hats, [along, force])).sum::<f64>()
         };
         narrow().map(|a| narrow().map(|b| pair(a, b)).sum::<f64>()).sum()
     }
@@ -190,7 +211,8 @@ mod tests {
     }
 
     fn costs<'a>(energy: &'a Symmetric, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
-        ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], energy)
+        let star = LoadedStar { energy, frame: StarFrame([1.0, 0.0]), edges: [0, 1] };
+        ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], vec![star])
     }
 
     /// A flat zone keeps the tributary shares; beside an inclined side the force moves to the flat edge.

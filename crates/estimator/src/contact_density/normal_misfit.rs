@@ -257,7 +257,9 @@ impl<const D: usize> FacetPressures<D> {
             misfit.energy[2] = after;
             misfit.work[2] += 0.5 * half * (p0 + 2.0 * p1 + p2);
         }
-        misfit.work.iter_mut().for_each(|work| *work *= weight_of_work);
+        let part = problem.surface().part_of_contact(facet.nodes[0]);
+        misfit.energy.iter_mut().for_each(|energy| *energy *= part);
+        misfit.work.iter_mut().for_each(|work| *work *= part * weight_of_work);
         misfit
     }
 }

@@ -9,6 +9,7 @@
 
 mod contact_track;
 mod contact_tracks;
+mod common_motion;
 mod free_motion;
 mod normal_motions;
 mod shape;
@@ -16,6 +17,7 @@ mod window;
 
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use contact_tracks::ContactTracks;
+pub(crate) use common_motion::common;
 use free_motion::half_way;
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
@@ -26,6 +28,7 @@ use crate::simd::Registers;
 use crate::wide::Wide;
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
+use percute_core::problem::Problem;
 
 /// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]
@@ -35,13 +38,18 @@ pub(crate) struct ElementMotion<const D: usize, const N: usize, T = f64> {
 }
 
 impl<const D: usize, const N: usize> ElementMotion<D, N> {
-    /// The motion of an element of which no node may touch a plane, or before its contact nodes
-    /// are known.
+    /// The motion of an element before that of its contact nodes is known: the common motion of two that may touch.
+    /// `contact` gives the contact node at each local node.
     #[inline]
-    pub(crate) fn gather(motion: &NodalMotion<D>, nodes: &[NodeId; N]) -> Self {
+    pub(crate) fn gather(
+        problem: &Problem<D, N>,
+        motion: &NodalMotion<D>,
+        nodes: &[NodeId; N],
+        contact: &[Option<usize>; N],
+    ) -> Self {
         Self {
-            displacement: nodes.map(|n| motion.displacement()[n.index()]),
-            velocity: nodes.map(|n| motion.velocity()[n.index()]),
+            displacement: gather_common(problem, motion.displacement(), nodes, contact),
+            velocity: gather_common(problem, motion.velocity(), nodes, contact),
         }
     }
 
@@ -62,9 +70,15 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
         Self { displacement, velocity }
     }
 
-    /// Puts the solution of P_CA in the place of the normal components at local node `i`.
-    pub(crate) fn set_normal(&mut self, i: usize, frame: &Frame<D>, track: &ContactTrack, instant: usize) {
-        settle(&mut self.displacement[i], &mut self.velocity[i], frame, track, instant);
+    /// Puts the solution of P_CA in the place of the normal components at local node `i`, which is this node of the
+    /// contact surface.
+    pub(crate) fn set_normal(
+        &mut self,
+        (problem, i, at): (&Problem<D, N>, usize, usize),
+        track: &ContactTrack,
+        instant: usize,
+    ) {
+        settle((problem, at), [&mut self.displacement[i], &mut self.velocity[i]], track, instant);
     }
 }
 
@@ -172,14 +186,37 @@ impl<const D: usize, const N: usize, T: Value<Stored = Lanes>> ElementMotion<D, 
     }
 }
 
-/// Puts the solution of P_CA in the place of the normal components of one node's motion.
-pub(crate) fn settle<const D: usize>(
-    displacement: &mut [f64; D],
-    velocity: &mut [f64; D],
-    frame: &Frame<D>,
+/// Values of a nodal field at the nodes of an element, the common motion at contact nodes.
+#[inline]
+pub(crate) fn gather_common<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    field: &[[f64; D]],
+    nodes: &[NodeId; N],
+    contact: &[Option<usize>; N],
+) -> [[f64; D]; N] {
+    let at = |i: usize| contact[i].map_or_else(|| field[nodes[i].index()], |at| common(problem, at, field));
+    std::array::from_fn(at)
+}
+
+/// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
+/// velocity; it is the common motion of two nodes that may touch.
+pub(crate) fn settle<const D: usize, const N: usize>(
+    (problem, at): (&Problem<D, N>, usize),
+    [displacement, velocity]: [&mut [f64; D]; 2],
     track: &ContactTrack,
     instant: usize,
 ) {
+    let contact = &problem.surface().nodes()[at];
+    let frame: Frame<D> = problem.obstacles()[contact.obstacle].flat_frame();
+    if contact.opposite.is_some() {
+        let part = problem.surface().own_part(at, problem.mass());
+        let (speed, gap) = track.at(instant);
+        for c in 0..D {
+            displacement[c] += part * (gap - track.undeformed_gap()) * frame.normal()[c];
+            velocity[c] += part * speed * frame.normal()[c];
+        }
+        return;
+    }
     if !track.is_altered(instant) {
         // Not rebuilt from the gap, in which a distant plane would drown the displacement.
         return;

@@ -3,7 +3,7 @@
 
 use crate::blocks::BLOCK;
 use crate::element::Element;
-use crate::kinematic::{ContactTrack, settle};
+use crate::kinematic::{ContactTrack, common, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
@@ -97,9 +97,15 @@ impl<const D: usize> Maps<D> {
         let count = self.made.partition_point(|map| map.step <= last);
         for map in &mut self.made[self.settled..count] {
             let Some(fields) = &mut map.fields else { continue };
-            for (contact, track) in problem.surface().nodes().iter().zip(tracks) {
-                let (i, frame) = (contact.node.index(), problem.obstacles()[contact.obstacle].flat_frame());
-                settle(&mut fields.displacement[i], &mut fields.velocity[i], &frame, track, 2 * map.step);
+            let nodes = problem.surface().nodes();
+            let common = |field: &[[f64; D]]| -> Vec<[f64; D]> {
+                (0..nodes.len()).map(|at| common(problem, at, field)).collect()
+            };
+            let (displacement, velocity) = (common(&fields.displacement), common(&fields.velocity));
+            for (at, (mut displacement, mut velocity)) in displacement.into_iter().zip(velocity).enumerate() {
+                settle((problem, at), [&mut displacement, &mut velocity], &tracks[at], 2 * map.step);
+                let i = nodes[at].node.index();
+                (fields.displacement[i], fields.velocity[i]) = (displacement, velocity);
             }
         }
         self.settled = count;

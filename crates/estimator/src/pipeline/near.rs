@@ -144,16 +144,14 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         velocities: &Velocities<D>,
         friction: f64,
     ) -> ContactInstant<D, N> {
-        ContactInstant { velocities: sampler.velocities(velocities), friction }
+        ContactInstant { velocities: sampler.velocities(velocities, &self.contact), friction }
     }
 
     /// Replaces the normal components by those of problem P_CA.
     fn settle(&self, context: &ContactSampling<'_, '_, D, N>, at: &mut ContactInstant<D, N>, instant: usize) {
-        let problem = context.shared.problem;
         for (i, node) in self.contact.iter().enumerate() {
             if let Some(node) = *node {
-                let frame = problem.obstacles()[problem.surface().nodes()[node].obstacle].flat_frame();
-                at.velocities.motion.set_normal(i, &frame, &context.tracks[node], instant);
+                at.velocities.motion.set_normal((context.shared.problem, i, node), &context.tracks[node], instant);
             }
         }
     }
@@ -177,10 +175,11 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         if let Some(mid) = &mut waiting.mid {
             self.settle(context, &mut mid.at, stop - 1);
             let [before, after] = waiting.touching;
-            self.check_contact(context, &mid.at.velocities, &std::array::from_fn(|i| before[i] && after[i]));
+            let touching = std::array::from_fn(|i| before[i] && after[i]);
+            self.check_contact(context, &mid.at.velocities, &touching, stop - 1);
         }
         self.settle(context, &mut waiting.stop.at, stop);
-        self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1]);
+        self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1], stop);
         let [from, to] = &waiting.hats;
         let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
         let interval = ElementInterval {
@@ -250,6 +249,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         context: &ContactSampling<'_, '_, D, N>,
         velocities: &ElementVelocities<D, N>,
         touching: &[bool; N],
+        instant: usize,
     ) {
         let problem = context.shared.problem;
         let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -257,12 +257,18 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             let Some(at) = *at else { continue };
             let contact = &problem.surface().nodes()[at];
             let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
+            // The element does not have the motion of a node of another body.
+            let (normal, gap) = match contact.opposite {
+                Some(_) => context.tracks[at].at(instant),
+                None => {
+                    let frame = problem.obstacles()[contact.obstacle].flat_frame();
+                    (frame.split(velocity).0, problem.surface().gap(at, displacement))
+                }
+            };
             if touching[i] && contact.free {
-                let normal = problem.obstacles()[contact.obstacle].flat_frame().split(velocity).0.abs();
-                let residual = if normal == 0.0 { 0.0 } else { normal / speed(velocity) };
+                let residual = if normal == 0.0 { 0.0 } else { normal.abs() / speed(velocity) };
                 self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);
             }
-            let gap = problem.surface().gap(at, displacement);
             let depth = worse(0.0, -gap / problem.mesh().size());
             self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
         }

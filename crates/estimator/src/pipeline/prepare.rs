@@ -156,8 +156,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
         for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
             let node = contact.node.index();
-            let gap = problem.surface().gap(at, &step.displacement[node]);
-            let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&problem.initial_velocity()[node]).0;
+            let surface = problem.surface();
+            let gap = surface.gap(at, &surface.against_obstacle(at, step.displacement));
+            let velocity = surface.against_obstacle(at, problem.initial_velocity());
+            let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&velocity).0;
             if gap > tolerance || speed.abs() > problem.speed_tolerance() {
                 return Err(EstimateError::StartsTouching { node, gap, speed });
             }
@@ -274,16 +276,14 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         now: &NodalMotion<D>,
     ) -> Result<(), ScratchError> {
         let (problem, tolerance) = (self.problem, self.problem.contact_tolerance());
+        let surface = problem.surface();
         let normal = |at: usize, velocity: &[[f64; D]]| {
-            let contact = &problem.surface().nodes()[at];
-            problem.obstacles()[contact.obstacle].flat_frame().split(&velocity[contact.node.index()]).0
+            let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
+            frame.split(&surface.against_obstacle(at, velocity)).0
         };
         let velocity = now.velocity();
         let Some(mid) = mid_velocity else {
-            let gap = |at: usize| {
-                let node = problem.surface().nodes()[at].node.index();
-                problem.surface().gap(at, &now.displacement()[node])
-            };
+            let gap = |at: usize| surface.gap(at, &surface.against_obstacle(at, now.displacement()));
             return self.tracks.begin(problem, |at| ((gap(at), normal(at, velocity)), step.touching[at]));
         };
         let half = 0.5 * self.times.step(step.index - 1);

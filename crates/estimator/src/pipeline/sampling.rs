@@ -4,7 +4,7 @@ use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::increment::{self, Increment};
-use crate::kinematic::ElementMotion;
+use crate::kinematic::{ElementMotion, gather_common};
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy};
 use crate::numbers::Reader;
 use crate::options::Acceleration;
@@ -198,11 +198,15 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         })
     }
 
-    /// The fields of the element at a half-step instant.
+    /// The fields of the element at a half-step instant; `contact` gives the contact node at each local node.
     #[inline]
-    pub(super) fn velocities(&self, velocities: &Velocities<D>) -> ElementVelocities<D, N> {
+    pub(super) fn velocities(
+        &self,
+        velocities: &Velocities<D>,
+        contact: &[Option<usize>; N],
+    ) -> ElementVelocities<D, N> {
         ElementVelocities {
-            motion: ElementMotion::gather(&velocities.motion, &self.element.nodes),
+            motion: ElementMotion::gather(self.shared.problem, &velocities.motion, &self.element.nodes, contact),
             increment: self.measure.increment(velocities),
         }
     }
@@ -225,8 +229,10 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         let lumping = lumping.zip(end.level.lumping_difference.as_ref());
         let lumping = lumping.map(|((increment, start), end)| half_way(increment, start, &element.gather(end)));
         let increment = half_way(&now.increment, &start.acceleration, &last);
-        let mid_velocity = end.mid_velocity.as_ref().map(|field| element.gather(field));
-        let motion = ElementMotion::gather(&now.motion, &element.nodes);
+        let problem = self.shared.problem;
+        let mid_velocity = end.mid_velocity.as_ref();
+        let mid_velocity = mid_velocity.map(|field| gather_common(problem, field, &element.nodes, contact));
+        let motion = ElementMotion::gather(problem, &now.motion, &element.nodes, contact);
         ElementVelocities {
             motion: mid_velocity.map_or(motion, |velocity| motion.half_way(length, velocity)),
             increment: self.measure.increment_of(&increment, lumping.as_ref()),

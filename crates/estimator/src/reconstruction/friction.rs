@@ -32,8 +32,9 @@ fn misfit<const D: usize, const N: usize>(
     velocity: &[[f64; D]],
     densities: &[&Densities<D>],
 ) -> f64 {
-    let (facet, share) = (&problem.surface().facets()[f], 1.0 / densities.len() as f64);
-    let velocity = facet.nodes.map(|k| velocity[problem.surface().nodes()[k].node.index()]);
+    let (surface, share) = (problem.surface(), 1.0 / densities.len() as f64);
+    let facet = &surface.facets()[f];
+    let velocity = facet.nodes.map(|k| surface.against_obstacle(k, velocity));
     let mut mean = [[0.0; D]; D];
     let mut power = 0.0;
     for density in densities {
@@ -42,5 +43,5 @@ fn misfit<const D: usize, const N: usize>(
         let hats = facet.nodes.iter().flat_map(|&k| density.hats_of(k)).filter(|hat| hat.facet == f);
         power += hats.map(|hat| share * hat_misfit_power(problem, hat, &velocity)).sum::<f64>();
     }
-    power + misfit_power(problem, facet, &mean, &velocity)
+    surface.part_of_contact(facet.nodes[0]) * (power + misfit_power(problem, facet, &mean, &velocity))
 }

@@ -18,6 +18,7 @@ mod given;
 mod loads;
 mod malformed;
 mod maps;
+mod pairs;
 mod shapes;
 mod sources;
 mod symmetries;

@@ -47,7 +47,7 @@ fn checked(track: &ContactTrack) -> Residuals {
     let mut stop = near.at(&sampler, &velocities, 0.0);
     near.settle(&context, &mut stop, 2);
     let touching = near.contact.map(|at| at.is_some());
-    near.check_contact(&context, &stop.velocities, &touching);
+    near.check_contact(&context, &stop.velocities, &touching, 2);
     near.residuals
 }
 

@@ -4,7 +4,7 @@
 //! would grow without bound as steps become shorter. An exact impact at speed v exerts ρcv: it
 //! stops the mass m of the tributary depth m/(ρℓ) in a time of the order of τ = m/(ρcℓ), a wave's through that depth.
 //! So the part of a reaction that changes the motion of its node is spread, with decreasing weight, over the time τ
-//! that follows. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
+//! that follows. Of two nodes that touch, the mass is 1/(1/m + 1/m'), and 1/(ρc) the sum of both. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -42,8 +42,14 @@ impl<const D: usize> ImpulseSmoothing<D> {
             let law = problem.material(owner);
             facet.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * facet.area / D as f64);
         }
-        let time = nodes.iter().zip(&impedance).map(|(contact, z)| problem.mass()[contact.node.index()] / z);
-        Self { time: time.collect(), pending: vec![VecDeque::new(); nodes.len()] }
+        let time = |at: usize| {
+            let mass = problem.surface().moved_mass(at, problem.mass());
+            match nodes[at].opposite {
+                Some(opposite) => mass * (1.0 / impedance[at] + 1.0 / impedance[opposite]),
+                None => mass / impedance[at],
+            }
+        };
+        Self { time: (0..nodes.len()).map(time).collect(), pending: vec![VecDeque::new(); nodes.len()] }
     }
 
     /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but
@@ -60,13 +66,18 @@ impl<const D: usize> ImpulseSmoothing<D> {
         // The reaction at t_0 acts for half a step.
         let length = if n == 0 { times.velocity_step(0) } else { step };
         let mut forces = reaction.to_vec();
-        for (k, (contact, force)) in problem.surface().nodes().iter().zip(&mut forces).enumerate() {
+        let surface = problem.surface();
+        for (k, (contact, force)) in surface.nodes().iter().zip(&mut forces).enumerate() {
             let frame = problem.obstacles()[contact.obstacle].flat_frame();
             let (pending, time) = (&mut self.pending[k], self.time[k]);
             let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
-                let i = contact.node.index();
-                let inertia = problem.mass()[i] * frame.split(&acceleration(i)).0;
+                let mut towards = acceleration(contact.node.index());
+                if let Some(opposite) = contact.opposite {
+                    let other = acceleration(surface.nodes()[opposite].node.index());
+                    (0..D).for_each(|c| towards[c] -= other[c]);
+                }
+                let inertia = surface.moved_mass(k, problem.mass()) * frame.split(&towards).0;
                 let share = (inertia / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });

@@ -132,13 +132,25 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let nodes = problem.surface().nodes();
         let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
         let concentration = self.concentration.as_ref();
-        let shape = |(at, force)| concentration.and_then(|concentration| concentration.shape(problem, at, force, gap));
-        let shapes: Vec<Option<TractionShape>> = reaction.iter().enumerate().map(shape).collect();
+        let mut shapes: Vec<Option<TractionShape>> = Vec::with_capacity(nodes.len());
+        for (at, force) in reaction.iter().enumerate() {
+            // The traction on the other one of two nodes that touch is the same, reversed.
+            let facing = nodes[at].opposite.filter(|_| !problem.surface().leads(at));
+            shapes.push(concentration.and_then(|concentration| match facing {
+                Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
+                None => concentration.shape(problem, at, force, gap),
+            }));
+        }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
             let centroid =
                 |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
             correction.apply(&mut reaction, &centroid);
+            for (at, contact) in nodes.iter().enumerate() {
+                if let Some(first) = contact.opposite.filter(|&first| first < at) {
+                    reaction[at] = reaction[first].map(|f| -f);
+                }
+            }
         }
         let density = |f: usize, k: usize| match shaped(k) {
             Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),

@@ -54,7 +54,8 @@ impl<const D: usize> MomentCorrection<D> {
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);
         let mut groups: Vec<((NodeId, usize), Group<D>)> = Vec::new();
-        for (at, (contact, centroid)) in surface.nodes().iter().zip(&centroids).enumerate() {
+        let leading = surface.nodes().iter().zip(&centroids).enumerate().filter(|(at, _)| surface.leads(*at));
+        for (at, (contact, centroid)) in leading {
             let key = (part[contact.node.index()], contact.obstacle);
             let found = groups.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
                 let obstacle = &problem.obstacles()[contact.obstacle];

@@ -7,7 +7,7 @@
 mod own_forces;
 mod star;
 
-use crate::concentrated::{HatStress, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
+use crate::concentrated::{HatStress, LoadedStar, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 use crate::stress::StressResiduals;
@@ -60,6 +60,16 @@ impl<const D: usize> Concentration<D> {
         Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps)?.shape(normal))
     }
 
+    /// The shape at the other one of two nodes that touch.
+    pub(super) fn facing<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        [at, opposite]: [usize; 2],
+        shape: &TractionShape,
+    ) -> TractionShape {
+        shape.reordered(self.facing_edges(problem, opposite, at))
+    }
+
     /// Gaps at the far ends of the edges of a node less its own; none where no edge leaves the plane.
     fn gaps(&self, at: usize, gap: &[f64]) -> Option<Vec<f64>> {
         let open = |k: usize| gap[k].max(0.0);
@@ -76,12 +86,27 @@ impl<const D: usize> Concentration<D> {
         direction: &[f64; D],
         gaps: &'a [f64],
     ) -> Option<ShapeCosts<'a>> {
-        let (star, stress) = (&self.nodes[at], self.stress(problem, at));
-        if !stress.residuals.balanced() {
-            return None;
+        let (nodes, star) = (problem.surface().nodes(), &self.nodes[at]);
+        let (mut stars, mut compliance) = (Vec::with_capacity(2), 0.0);
+        for node in [Some(at), nodes[at].opposite].into_iter().flatten() {
+            let (other, stress) = (&self.nodes[node], self.stress(problem, node));
+            if !stress.residuals.balanced() {
+                return None;
+            }
+            compliance += other.compliance;
+            let edges = if node == at { [0, 1] } else { self.facing_edges(problem, at, node) };
+            stars.push(LoadedStar { energy: &stress.energy, frame: other.frame, edges });
         }
-        let direction = star.frame.own([direction[0], direction[D - 1]]);
-        Some(ShapeCosts::new(direction, star.compliance, gaps, &star.tributary, &stress.energy))
+        Some(ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars))
+    }
+
+    /// The position of the edge of another node that faces each edge of a node.
+    fn facing_edges<const N: usize>(&self, problem: &Problem<D, N>, at: usize, other: usize) -> [usize; 2] {
+        let nodes = problem.surface().nodes();
+        std::array::from_fn(|edge| {
+            let far = self.nodes[at].edges.get(edge).and_then(|edge| nodes[edge.far].opposite);
+            self.nodes[other].edges.iter().position(|edge| Some(edge.far) == far).unwrap_or(edge)
+        })
     }
 
     fn stress<const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> &StarStress {

@@ -5,7 +5,7 @@
 //! solution therefore has a contact of its own, with Coulomb friction: it touches and is released by its own gap.
 
 use super::Concentration;
-use crate::concentrated::{ShapeCosts, StarFrame, TractionShape};
+use crate::concentrated::{ShapeCosts, TractionShape};
 use crate::reconstruction::corrected::motions::Approach;
 use percute_core::contact::{Coulomb, Frame};
 use percute_core::problem::Problem;
@@ -58,7 +58,8 @@ impl<const D: usize> OwnForces<D> {
         approach: impl Fn(usize) -> Approach<D>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
-        for (at, node) in problem.surface().nodes().iter().enumerate().filter(|(_, node)| node.free) {
+        let surface = problem.surface();
+        for (at, node) in surface.nodes().iter().enumerate().filter(|&(at, node)| node.free && surface.leads(at)) {
             let obstacle = &problem.obstacles()[node.obstacle];
             let (last, approach) = (self.contacts[at].take(), approach(at));
             // Reactions of a foreign history need not be in the cone.
@@ -70,7 +71,6 @@ impl<const D: usize> OwnForces<D> {
             let Some(gaps) = concentration.gaps(at, gap) else { continue };
             let own = Own {
                 frame: obstacle.flat_frame(),
-                star: concentration.nodes[at].frame,
                 // Along a support the reaction is the support's.
                 law: (!node.guided).then(|| obstacle.law()),
                 approach,
@@ -84,6 +84,10 @@ impl<const D: usize> OwnForces<D> {
             contact[at] = self.contacts[at].map_or([0.0; D], |own| own.force);
             arresting[at] = [0.0; D];
             self.replaced[at] = true;
+            if let Some(opposite) = node.opposite {
+                (contact[opposite], arresting[opposite]) = (contact[at].map(|f| -f), [0.0; D]);
+                self.replaced[opposite] = true;
+            }
         }
     }
 }
@@ -96,16 +100,15 @@ fn alone(shape: &TractionShape) -> bool {
 /// A node that has a force of its own.
 struct Own<const D: usize> {
     frame: Frame<D>,
-    star: StarFrame,
     law: Option<Coulomb>,
     approach: Approach<D>,
 }
 
 impl<const D: usize> Own<D> {
-    /// The normal of the plane in the frame of the star.
+    /// The normal of the plane.
     fn across(&self) -> [f64; 2] {
         let normal = self.frame.normal();
-        self.star.own([normal[0], normal[D - 1]])
+        [normal[0], normal[D - 1]]
     }
 
     /// The normal force (N) under which the node comes to its plane with the local compliance of its traction;

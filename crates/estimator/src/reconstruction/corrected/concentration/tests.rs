@@ -177,8 +177,7 @@ fn own_forces_close_the_gap() {
     let size = found[0] * normal[0] + found[1] * normal[1];
     let (gaps, largest) = (concentration.gaps(at, &gap).unwrap(), 6e7);
     let costs = concentration.costs(&problem, at, &normal, &gaps).unwrap();
-    let across = concentration.nodes[at].frame.own(normal);
-    let remaining = |size: f64| -6e-5 + 1e-12 * size + costs.approach(&costs.shape(size), across, size);
+    let remaining = |size: f64| -6e-5 + 1e-12 * size + costs.approach(&costs.shape(size), normal, size);
     assert!(size > 0.0 && size < 0.1 * largest, "{size}");
     // 40 bisections of the force that stops the node.
     assert!(remaining(size - 2e-12 * largest) < 0.0 && remaining(size + 2e-12 * largest) > 0.0);

@@ -11,7 +11,7 @@ use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// The motion of a contact node over the next step.
+/// The motion of a contact node against its obstacle over the next step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
     /// Gap at the next instant without a contact force (m).
@@ -84,22 +84,30 @@ impl<const D: usize> NearElements<D> {
         }
         run_task(Sweep { laws, pairs: &self.pairs, displacement: &self.displacement, forces: &mut self.forces });
         let (step, length) = (times.step(n), times.velocity_step(n));
-        self.approaches.clear();
-        for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            let node = contact.node.index();
+        let contacts = problem.surface().nodes();
+        let moving = |at: usize| {
+            let node = contacts[at].node.index();
             let own = self.nodes.partition_point(|known| (*known as usize) < node);
             let (now, velocity) = (self.displacement[own].of::<D>(0), fields.half_step[node].of::<D>(0));
             let mut force: [f64; D] = self.forces[own].of(0);
             surface.supports_of(node as u32).for_each(|(c, needed)| force[c] = needed);
             let mobility = step * length * dynamics.inverse_mass()[node];
-            let next = std::array::from_fn(|c| now[c] + step * velocity[c] + mobility * force[c]);
-            let frame = problem.obstacles()[contact.obstacle].flat_frame();
-            self.approaches.push(Approach {
-                gap: problem.surface().gap(at, &next),
-                along: [now, next].map(|displacement| frame.split(&displacement).1),
-                mobility,
-            });
-        }
+            let next: [f64; D] = std::array::from_fn(|c| now[c] + step * velocity[c] + mobility * force[c]);
+            ([now, next], mobility)
+        };
+        let approach = |at: usize| {
+            let (mut places, mut mobility) = moving(at);
+            if let Some(opposite) = contacts[at].opposite {
+                let (others, other) = moving(opposite);
+                places.iter_mut().flatten().zip(others.as_flattened()).for_each(|(place, other)| *place -= other);
+                mobility += other;
+            }
+            let frame = problem.obstacles()[contacts[at].obstacle].flat_frame();
+            let gap = problem.surface().gap(at, &places[1]);
+            Approach { gap, along: places.map(|place| frame.split(&place).1), mobility }
+        };
+        self.approaches.clear();
+        self.approaches.extend((0..contacts.len()).map(approach));
         &self.approaches
     }
 }

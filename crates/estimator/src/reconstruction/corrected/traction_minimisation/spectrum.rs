@@ -1,13 +1,15 @@
 //! The largest eigenvalue of the matrix of the iteration, from a few Lanczos steps.
 //!
 //! The start vectors are made of lengths and directions in the mesh: they turn with the body, and their numbers do not
-//! matter. The eigenvalue, and with it the estimate, then depends neither on axes nor on numbering.
+//! matter. The eigenvalue, and with it the estimate, then depends neither on axes nor on numbering, and two equal bodies
+//! have that of one.
 
 use super::Workspace;
 use super::modes::{MOMENTS, Modes, Numbers};
 use super::operator::{Block, Operator};
 use crate::lanes::{LANES, Lanes};
 use crate::simd::dispatch;
+use percute_core::ids::NodeId;
 use percute_core::mesh::Mesh;
 
 /// Lanczos steps, with eight start vectors. On meshes of 72 to 18 432 triangles, structured and random, also stretched
@@ -76,11 +78,7 @@ fn largest_of(tridiagonal: &[[Lanes; 2]; STEPS], lane: usize) -> f64 {
 /// Slopes whose moments point from the other nodes of an element to the ends of its edges, with phases of their own.
 #[inline(always)]
 fn start<const D: usize, const N: usize>(mesh: &Mesh<D, N>, numbers: &Numbers, slopes: &mut Modes) {
-    let points = mesh.points();
-    let centre: [f64; D] = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
-    let distance = |p: &[f64; D]| p.iter().zip(&centre).map(|(x, c)| (x - c).powi(2)).sum::<f64>().sqrt();
-    let unit = PHASE / points.iter().map(distance).fold(0.0, f64::max);
-    let phases: Vec<[f64; 2]> = points.iter().map(|p| (unit * distance(p)).sin_cos().into()).collect();
+    let (points, phases) = (mesh.points(), phases(mesh));
     let mut part = slopes.part();
     for (e, cell) in mesh.cells().iter().enumerate() {
         let mut slope = [Lanes::ZERO; MOMENTS];
@@ -99,6 +97,28 @@ fn start<const D: usize, const N: usize>(mesh: &Mesh<D, N>, numbers: &Numbers, s
         }
         numbers.add_slope(mesh, e, &slope, &mut part);
     }
+}
+
+/// Sine and cosine of the phase of each node. Those of a body do not depend on the places of other bodies.
+fn phases<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<[f64; 2]> {
+    let (points, body) = (mesh.points(), mesh.part_of_nodes());
+    let mut sums = vec![([0.0; D], 0.0); points.len()];
+    for (point, body) in points.iter().zip(&body) {
+        let (sum, count) = &mut sums[body.index()];
+        (0..D).for_each(|c| sum[c] += point[c]);
+        *count += 1.0;
+    }
+    let distance = |(point, body): (&[f64; D], &NodeId)| {
+        let (sum, count) = &sums[body.index()];
+        point.iter().zip(sum).map(|(x, s)| (x - s / count).powi(2)).sum::<f64>().sqrt()
+    };
+    let distances: Vec<f64> = points.iter().zip(&body).map(distance).collect();
+    let mut farthest = vec![0.0_f64; points.len()];
+    for (distance, body) in distances.iter().zip(&body) {
+        farthest[body.index()] = farthest[body.index()].max(*distance);
+    }
+    let phase = |(distance, body): (&f64, &NodeId)| (PHASE / farthest[body.index()] * distance).sin_cos().into();
+    distances.iter().zip(&body).map(phase).collect()
 }
 
 /// Sine and cosine of once, twice, … an angle.
