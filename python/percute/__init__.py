@@ -18,6 +18,7 @@ d'erreur en relation de comportement pour les problèmes d'impact*.
 from percute import exact
 from percute._percute import Progress, __version__
 from percute.balance import Balance
+from percute.bodies import Body, Interface
 from percute.contact import Contact, ContactStatus, Resultants
 from percute.errors import (
     EstimateError,
@@ -50,6 +51,7 @@ from percute.verifying import Verification, verify
 
 __all__ = [
     "Balance",
+    "Body",
     "BodyForce",
     "Contact",
     "ContactStatus",
@@ -63,6 +65,7 @@ __all__ = [
     "History",
     "InputError",
     "InputWarning",
+    "Interface",
     "Mesh",
     "MeshWarning",
     "MissingFileError",

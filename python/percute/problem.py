@@ -1,4 +1,4 @@
-"""Problems: a body with its materials, supports, loads and obstacles."""
+"""Problems: bodies with their materials, supports, loads and obstacles."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.bodies import Body, Interface, join
 from percute.checks import instance, items, numbers, table, transposed
 from percute.errors import InputError
 from percute.immutable import Immutable
@@ -25,6 +26,15 @@ def _materials(material: Elastic | Mapping[str, Elastic]) -> list[tuple[str | No
     return [(group, instance(f"material[{group!r}]", each, Elastic)) for group, each in groups.items()]
 
 
+def _contacts(contacts: Iterable[Interface], mesh: Mesh) -> list[Interface]:
+    """Check that plane bodies have a coefficient of friction."""
+    given = items("contacts", contacts, Interface)
+    for i, contact in enumerate(given):
+        if contact.friction is None and mesh.dimension > 1:
+            raise InputError(f"`contacts[{i}].friction` is missing: give the coefficient of friction, 0 without friction")
+    return given
+
+
 def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64] | None:
     """Give one row for all nodes, or one row for each node."""
     if field is None:
@@ -37,14 +47,19 @@ def _field(name: str, field: ArrayLike | None, mesh: Mesh) -> NDArray[np.float64
 
 
 class Problem(Immutable):
-    """An elastic body that may strike rigid planes, checked at its creation.
+    """An elastic body that may strike rigid planes, or several that may strike each other, checked at its creation.
 
     Parameters
     ----------
     mesh : Mesh
-        The mesh.
+        The mesh of one body.
     material : Elastic or dict of str to Elastic
         The material of all elements, or of each group of elements.
+    bodies : sequence of Body, optional
+        Several bodies, each with its mesh, its material and its velocity, instead of ``mesh``, ``material`` and
+        ``initial_velocity``. The groups of a body are "name.group".
+    contacts : sequence of Interface, default: ()
+        Surfaces of different bodies that may touch.
     obstacles : sequence of Plane, default: ()
         Planes that the body may touch; a node may touch one only.
     supports : sequence of Support, default: ()
@@ -69,9 +84,11 @@ class Problem(Immutable):
 
     def __init__(
         self,
-        mesh: Mesh,
+        mesh: Mesh | None = None,
         *,
-        material: Elastic | Mapping[str, Elastic],
+        material: Elastic | Mapping[str, Elastic] | None = None,
+        bodies: Iterable[Body] = (),
+        contacts: Iterable[Interface] = (),
         obstacles: Iterable[Plane] = (),
         supports: Iterable[Support] = (),
         tractions: Iterable[Traction] = (),
@@ -79,11 +96,21 @@ class Problem(Immutable):
         initial_velocity: ArrayLike | None = None,
         initial_displacement: ArrayLike | None = None,
     ) -> None:
+        several = items("bodies", bodies, Body)
+        if several:
+            for name, given, instead in (("mesh", mesh, "mesh"), ("material", material, "material"), ("initial_velocity", initial_velocity, "velocity")):
+                if given is not None:
+                    raise InputError(f"`{name}` stands beside `bodies`; each Body has its own `{instead}`")
+            mesh, material, initial_velocity = join(several)
+        missing = [f"`{name}`" for name, given in (("mesh", mesh), ("material", material)) if given is None]
+        if mesh is None or material is None:
+            raise TypeError(f"Problem() needs {', '.join(missing)}")
         self._mesh = instance("mesh", mesh, Mesh)
         self._data = _percute.ProblemData(
             mesh._data,
             _materials(material),
             items("obstacles", obstacles, Plane),
+            _contacts(contacts, mesh),
             items("supports", supports, Support),
             items("tractions", tractions, Traction),
             items("body_forces", body_forces, BodyForce),
@@ -115,6 +142,11 @@ class Problem(Immutable):
     def obstacles(self) -> tuple[Plane, ...]:
         """The planes."""
         return tuple(Plane(**arguments) for arguments in self._data.obstacles())
+
+    @cached_property
+    def contacts(self) -> tuple[Interface, ...]:
+        """The surfaces of different bodies that may touch."""
+        return tuple(Interface(**arguments) for arguments in self._data.contacts())
 
     @cached_property
     def supports(self) -> tuple[Support, ...]:

@@ -21,14 +21,14 @@ Vector = tuple[float, ...]
 Rows = tuple[Vector, ...]
 
 
-def _vector(name: str, value: object) -> Vector:
+def vector(name: str, value: object) -> Vector:
     return tuple(np.atleast_1d(numbers(name, value, most=1)).tolist())
 
 
 def _table(name: str, value: object, time: object, columns: int | None) -> tuple[Vector | Rows, Vector | None]:
     """Check a value that is constant or has a row for each instant."""
     if time is None:
-        constant = _vector(name, value)
+        constant = vector(name, value)
         if columns is not None and len(constant) != columns:
             raise InputError(f"`{name}` has {len(constant)} numbers; it must have {columns}, or give `time`")
         return constant, None
@@ -37,7 +37,7 @@ def _table(name: str, value: object, time: object, columns: int | None) -> tuple
         array = array[:, None]
     if array.ndim != 2 or (columns is not None and array.shape[1] != columns):
         raise InputError(f"`{name}` has the shape {array.shape}; with `time` it must have a row for each instant")
-    return tuple(tuple(row) for row in array.tolist()), _vector("time", time)
+    return tuple(tuple(row) for row in array.tolist()), vector("time", time)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,8 +98,8 @@ class Plane:
     group: str | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", _vector("point", self.point))
-        object.__setattr__(self, "normal", _vector("normal", self.normal))
+        object.__setattr__(self, "point", vector("point", self.point))
+        object.__setattr__(self, "normal", vector("normal", self.normal))
         friction = self.friction
         if friction is None and len(cast("Vector", self.point)) > 1:
             raise InputError("`friction` is missing: give the coefficient of friction, 0 without friction")
@@ -180,7 +180,7 @@ class Traction:
                 at_origin, gradient = self.profile
             except (TypeError, ValueError):
                 raise wrong("profile", self.profile, "a value and a gradient") from None
-            object.__setattr__(self, "profile", (number("profile", at_origin), _vector("profile", gradient)))
+            object.__setattr__(self, "profile", (number("profile", at_origin), vector("profile", gradient)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ use crate::any::AnyProblem;
 use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
-use percute_core::contact::Obstacle;
+use percute_core::contact::{Interface, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
@@ -33,6 +33,7 @@ struct Stated<const D: usize> {
     groups: Vec<Option<String>>,
     materials: Vec<Elastic>,
     obstacles: Vec<Obstacle<D>>,
+    interfaces: Vec<Interface>,
     supports: Vec<Support<D>>,
     tractions: Vec<Traction<D>>,
     body_forces: Vec<BodyForce<D>>,
@@ -66,13 +67,14 @@ impl ProblemData {
         mesh: &MeshData,
         materials: Vec<(Option<String>, Bound<'_, PyAny>)>,
         obstacles: Objects<'_>,
+        contacts: Objects<'_>,
         supports: Objects<'_>,
         tractions: Objects<'_>,
         body_forces: Objects<'_>,
         velocity: Field<'_>,
         displacement: Field<'_>,
     ) -> PyResult<Self> {
-        let lists = [&obstacles, &supports, &tractions, &body_forces];
+        let lists = [&obstacles, &contacts, &supports, &tractions, &body_forces];
         let fields = [&velocity, &displacement];
         let problem = match &mesh.mesh {
             ByDimension::Bar(mesh) => ByDimension::Bar(build(py, mesh, &materials, lists, fields)?),
@@ -142,6 +144,12 @@ impl ProblemData {
         })
     }
 
+    /// Arguments of the contacts of bodies.
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let interfaces = each_dimension!(&self.problem, p => &p.statement().interfaces);
+        interfaces.iter().map(|interface| statement::contact_arguments(py, interface)).collect()
+    }
+
     /// Arguments of the supports.
     fn supports<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         each_dimension!(&self.problem, p => {
@@ -183,7 +191,7 @@ fn build<const D: usize, const N: usize>(
     py: Python<'_>,
     mesh: &Arc<Mesh<D, N>>,
     materials: &[(Option<String>, Bound<'_, PyAny>)],
-    lists: [&Objects<'_>; 4],
+    lists: [&Objects<'_>; 5],
     fields: [&Field<'_>; 2],
 ) -> PyResult<Arc<Problem<D, N>>> {
     let law = |(group, law): &(Option<String>, Bound<'_, PyAny>)| {
@@ -194,9 +202,10 @@ fn build<const D: usize, const N: usize>(
         groups: materials.iter().map(|(group, _)| group.clone()).collect(),
         materials: materials.iter().map(law).collect::<PyResult<_>>()?,
         obstacles: each(lists[0], "obstacles", statement::plane)?,
-        supports: each(lists[1], "supports", statement::support)?,
-        tractions: each(lists[2], "tractions", statement::traction)?,
-        body_forces: each(lists[3], "body_forces", statement::body_force)?,
+        interfaces: each(lists[1], "contacts", statement::contact::<D>)?,
+        supports: each(lists[2], "supports", statement::support)?,
+        tractions: each(lists[3], "tractions", statement::traction)?,
+        body_forces: each(lists[4], "body_forces", statement::body_force)?,
         velocity: field(py, "initial_velocity", fields[0])?,
         displacement: field(py, "initial_displacement", fields[1])?,
     };
@@ -215,6 +224,7 @@ fn assemble<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: Stated<D>
         };
     }
     builder = stated.obstacles.into_iter().fold(builder, |b, plane| b.obstacle(plane));
+    builder = stated.interfaces.into_iter().fold(builder, |b, interface| b.interface(interface));
     builder = stated.supports.into_iter().fold(builder, |b, support| b.support(support));
     builder = stated.tractions.into_iter().fold(builder, |b, traction| b.traction(traction));
     builder = stated.body_forces.into_iter().fold(builder, |b, force| b.body_force(force));

@@ -26,7 +26,7 @@ use percute_workflow::history::{plan, stored_case};
 use percute_workflow::info::memory;
 use percute_workflow::report::{drifted, varying_steps};
 use percute_workflow::run::{self, Analysis, Outcome, Storage, TakeStep};
-use percute_workflow::until::{NO_PLANE, Until};
+use percute_workflow::until::{Until, no_rebound};
 use pyo3::prelude::*;
 use std::any::Any;
 use std::path::{Path, PathBuf};
@@ -183,8 +183,8 @@ pub(crate) fn rebound_end(
     time::grid(py, Some(longest), courant, step, None, critical)?;
     let step = step.or_else(|| courant.map(|courant| courant * critical)).unwrap_or(critical);
     each_dimension!(&problem.problem, problem => {
-        if problem.obstacles().is_empty() {
-            return Err(errors::input(py, format!("`end`: {NO_PLANE}")));
+        if let Some(told) = no_rebound(problem.as_ref()) {
+            return Err(errors::input(py, format!("`end`: {told}")));
         }
         let (problem, until) = (problem.clone(), Until::new(problem, longest, after, step));
         let work = move |mut watch: Watch| run::rebound(&problem, &until, &mut watch);

@@ -1,7 +1,7 @@
 //! From the value classes of `percute.statement` to the statement of a problem, and back.
 
 use crate::errors;
-use percute_core::contact::{Obstacle, ObstacleError, Plane};
+use percute_core::contact::{Interface, Obstacle, ObstacleError, Plane};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
 use pyo3::prelude::*;
@@ -71,6 +71,14 @@ pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyR
     let made = Obstacle::plane(point, normal, attribute(given, "friction")?, attribute(given, "group")?);
     // The message begins with the name of the value.
     made.map_err(|error: ObstacleError| errors::input(py, format!("`{name}`: {error}")))
+}
+
+/// Two surfaces of different bodies.
+pub(crate) fn contact<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Interface> {
+    let [first, second] = attribute::<[String; 2]>(given, "groups")?;
+    let friction = attribute::<Option<f64>>(given, "friction")?.unwrap_or(0.0);
+    let made = Interface::matching::<D>(first, second, friction);
+    made.map_err(|error: ObstacleError| errors::input(given.py(), format!("`{name}`: {error}")))
 }
 
 /// One support: `velocity` has a column for each component, in their order.
@@ -177,6 +185,14 @@ pub(crate) fn plane_arguments<'py, const D: usize>(
     arguments.set_item("normal", tuple(py, plane.direction())?)?;
     arguments.set_item("friction", obstacle.law().friction())?;
     arguments.set_item("group", obstacle.group())?;
+    Ok(arguments)
+}
+
+/// What the value class of a contact takes.
+pub(crate) fn contact_arguments<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Bound<'py, PyDict>> {
+    let arguments = PyDict::new(py);
+    arguments.set_item("groups", PyTuple::new(py, interface.groups())?)?;
+    arguments.set_item("friction", interface.law().friction())?;
     Ok(arguments)
 }
 

@@ -74,8 +74,16 @@ impl Until {
     }
 }
 
-/// Why a problem without planes cannot end with a rebound.
-pub const NO_PLANE: &str = "\"rebound\" needs a plane that the body strikes: give one, or an end in s";
+/// Why a problem cannot end with a rebound, if it cannot.
+#[must_use]
+pub fn no_rebound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<&'static str> {
+    let interfaces = &problem.statement().interfaces;
+    if problem.obstacles().is_empty() {
+        return Some("\"rebound\" needs a plane that the body strikes: give one, or an end in s");
+    }
+    (!interfaces.is_empty())
+        .then_some("\"rebound\" is that of one body from a plane: for several bodies give an end in s")
+}
 
 /// A positive number, rounded up to four digits, so that a summary shows all of it.
 fn rounded_up(time: f64) -> f64 {

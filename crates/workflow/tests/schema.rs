@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// A table with an unknown key, `?`; the tables that are read before it are added. A material has two
 /// readers.
-const TABLES: [(&str, &str); 17] = [
+const TABLES: [(&str, &str); 24] = [
     ("", "?"),
     ("mesh", "mesh = { ? }"),
     ("mesh.rectangle", "mesh = { rectangle = { ? } }"),
@@ -19,6 +19,13 @@ const TABLES: [(&str, &str); 17] = [
     ("material", "material = { ? }"),
     ("material", "material = { ? }\nmesh = { disc = { radius = 1, rings = 1 } }"),
     ("initial", "initial = { ? }"),
+    ("body", "body = { ? }"),
+    ("body.rectangle", "body = { name = \"a\", rectangle = { ? } }"),
+    ("body.disc", "body = { name = \"a\", disc = { ? } }"),
+    ("body.bar", "body = { name = \"a\", bar = { ? } }"),
+    ("body.material", "body = { name = \"a\", bar = { length = 1, elements = 1 }, material = { ? } }"),
+    ("body.material", "body = { name = \"a\", disc = { radius = 1, rings = 1 }, material = { ? } }"),
+    ("contact", "contact = { ? }"),
     ("obstacle", "obstacle = { ? }"),
     ("support", "support = { ? }"),
     ("support.velocity", "support = { group = \"end\", components = [\"x\"], velocity = { ? } }"),
@@ -30,7 +37,7 @@ const TABLES: [(&str, &str); 17] = [
     ("output", "output = { ? }"),
 ];
 
-/// What is read first, unless the table has it.
+/// What is read first, unless the table has it; bodies have a mesh and a material of their own.
 const BEFORE: [(&str, &str); 3] = [
     ("mesh", "mesh = { bar = { length = 1, elements = 1 } }"),
     ("material", "material = { young = 1, density = 1, section = 1 }"),
@@ -68,7 +75,8 @@ fn keys_of(schema: &Value) -> BTreeMap<String, BTreeSet<String>> {
 /// The words in quotes of this kind after the last `before` of the message that refuses a case.
 fn refusal(table: &str, before: &str, quote: char) -> BTreeSet<String> {
     let begins = |key: &str| table.lines().any(|line| line.starts_with(&format!("{key} = ")));
-    let needed = BEFORE.iter().filter(|(key, _)| !begins(key)).map(|(_, text)| *text);
+    let own = |key: &str| begins("body") && key != "time";
+    let needed = BEFORE.iter().filter(|(key, _)| !begins(key) && !own(key)).map(|(_, text)| *text);
     let text = needed.chain([table]).collect::<Vec<_>>().join("\n");
     let message = parse(Source::new("case.toml", text)).unwrap_err().message;
     let (_, allowed) = message.rsplit_once(before).unwrap_or_else(|| panic!("{table}: {message}"));

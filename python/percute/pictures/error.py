@@ -39,7 +39,8 @@ def planes_of(estimate: Estimate) -> list[Line]:
     """Give the planes; an estimate from a file has them in its report."""
     if estimate.problem is not None:
         return [(each.point, each.normal) for each in estimate.problem.obstacles]
-    return [(each["point"], each["normal"]) for each in json.loads(estimate.to_json())["problem"]["obstacles"]]
+    obstacles = json.loads(estimate.to_json())["problem"]["obstacles"]
+    return [(each["point"], each["normal"]) for each in obstacles if each["point"] is not None]
 
 
 def _displacement(estimate: Estimate) -> tuple[Floats, float]:

@@ -67,6 +67,12 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         }
     }
 
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh<D, N> {
+        &self.mesh
+    }
+
     /// The material of all elements.
     #[must_use]
     pub fn material(mut self, material: Elastic) -> Self {

@@ -42,7 +42,8 @@ pub(super) fn add<const D: usize, const N: usize>(
     let fail = |cause: Cause, key| cause.at("contact", Some(index), key);
     let [first, second] = interface.groups();
     let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
-    let sides = [bodies.side(first).map_err(|c| fail(c, "first"))?, bodies.side(second).map_err(|c| fail(c, "second"))?];
+    let sides =
+        [bodies.side(first).map_err(|c| fail(c, "first"))?, bodies.side(second).map_err(|c| fail(c, "second"))?];
     if sides[0].body == sides[1].body {
         return Err(fail(of_one_body(), "second"));
     }

@@ -7,17 +7,17 @@
 //!
 //! Half-step instant k of a run is t_{k/2}: t_n for k = 2n, the middle of a step for odd k.
 
+mod common_motion;
 mod contact_track;
 mod contact_tracks;
-mod common_motion;
 mod free_motion;
 mod normal_motions;
 mod shape;
 mod window;
 
+pub(crate) use common_motion::common;
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use contact_tracks::ContactTracks;
-pub(crate) use common_motion::common;
 use free_motion::half_way;
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 

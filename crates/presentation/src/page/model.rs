@@ -175,7 +175,9 @@ fn written(value: &toml::Value) -> String {
 fn planes(document: &Document) -> String {
     let mut table = Table::new(&["#plane", "point (m)", "normal", "#friction", "group"]);
     for (i, plane) in document.list("problem.obstacles").iter().enumerate() {
-        let [point, normal] = ["point", "normal"].map(|key| vector(&numbers(&plane[key])));
+        let normal = vector(&numbers(&plane["normal"]));
+        let point =
+            if plane["point"].is_null() { "another body".to_string() } else { vector(&numbers(&plane["point"])) };
         let group = plane["group"].as_str().unwrap_or("all edges").to_string();
         table.row(&[i.to_string(), point, normal, number(plane["friction"].as_f64()), group]);
     }

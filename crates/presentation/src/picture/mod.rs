@@ -159,7 +159,8 @@ fn planes(document: &Document) -> Vec<Plane> {
         [0, 1].map(|c| found.get(c).copied().unwrap_or(0.0))
     };
     let plane = |plane: &serde_json::Value| Plane { point: vector(&plane["point"]), normal: vector(&plane["normal"]) };
-    document.list("problem.obstacles").iter().map(plane).collect()
+    // The surface of another body has no point: it is drawn with that body.
+    document.list("problem.obstacles").iter().filter(|plane| !plane["point"].is_null()).map(plane).collect()
 }
 
 #[cfg(test)]

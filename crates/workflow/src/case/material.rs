@@ -21,14 +21,19 @@ pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>
         ));
     }
     let one = |table: &Table<'_>| {
-        let law = match shape {
-            Shape::Bar => bar(table)?,
-            Shape::Triangle => plane(table)?,
-        };
+        let law = law(table, shape)?;
         let group = table.get("group").map(|v| v.text("the name of a group of elements")).transpose()?;
         Ok((group.map(str::to_string), law))
     };
     tables.iter().map(one).collect()
+}
+
+/// Reads the law of a material.
+pub(super) fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
+    match shape {
+        Shape::Bar => bar(table),
+        Shape::Triangle => plane(table),
+    }
 }
 
 fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {

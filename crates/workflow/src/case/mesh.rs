@@ -11,7 +11,7 @@ use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
 
-const KEYS: [&str; 9] =
+pub(super) const KEYS: [&str; 9] =
     ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "edge_groups", "element_groups"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const DISC: &str = "{ radius = 0.05, rings = 12 }";
@@ -33,10 +33,15 @@ const WAYS: [(&str, Reader); 5] = [
 /// Reads the mesh.
 pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     table.only(&KEYS)?;
+    one_way(table)
+}
+
+/// Reads the mesh of a table that may have other keys too.
+pub(super) fn one_way(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
     let ways: Vec<_> = WAYS.iter().filter_map(|(key, reader)| Some((table.get(key)?, reader))).collect();
     let [(value, reader)] = ways.as_slice() else {
         let message = "needs exactly one of `rectangle`, `disc`, `bar`, `file` and `points` (the last with `cells`)";
-        let surplus = |(second, _): &(Value<'_>, _)| second.error(format!("is one too many: [mesh] {message}"));
+        let surplus = |(second, _): &(Value<'_>, _)| second.error(format!("is one too many: a body {message}"));
         return Err(ways.get(1).map_or_else(|| table.error(message), surplus));
     };
     if table.get("points").is_none() {

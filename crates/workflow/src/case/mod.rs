@@ -8,10 +8,13 @@
 //!   per unit of length, 1 unless given); or arrays: `points` and `cells`, with
 //!   `edge_groups = { name = [[node, node], …] }` of boundary edges (a bar: `[node, …]`) and
 //!   `element_groups = { name = [element, …] }`;
+//! - or several `[[body]]` instead of `[mesh]`, `[material]` and `[initial]`: `name`, a mesh as above, `origin` (m) and
+//!   `rotation` (degrees) that place it, `material`, `velocity`; its groups are "name.group";
 //! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
 //!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
 //! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
 //! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
+//! - `[[contact]]`: `groups` of two bodies whose nodes face each other in pairs, `friction` (not for bars);
 //! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
 //!   one component, else a list in the order of `components`;
 //! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
@@ -25,6 +28,8 @@
 //! The reader goes through the parsed document itself, because every error shall name the line, the path
 //! of the key, the value, its unit and what is allowed.
 
+mod body;
+mod contact;
 mod estimate;
 mod keep;
 mod load;
@@ -55,6 +60,7 @@ use crate::effort::{Effort, Long};
 use crate::message::bytes;
 use crate::report::Subject;
 use crate::until::Until;
+use body::{AnyBodies, Bodies};
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::each_dimension;
@@ -69,8 +75,20 @@ use value::table;
 use value::table::Table;
 
 /// The tables of a case file.
-const TABLES: [&str; 10] =
-    ["mesh", "material", "initial", "obstacle", "support", "traction", "body_force", "time", "estimate", "output"];
+const TABLES: [&str; 12] = [
+    "mesh",
+    "body",
+    "material",
+    "initial",
+    "obstacle",
+    "contact",
+    "support",
+    "traction",
+    "body_force",
+    "time",
+    "estimate",
+    "output",
+];
 
 const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectangle = \
                        { width = 0.05, height = 0.04, nx = 20, ny = 16 }; `percute new block` prints a whole case to \
@@ -100,8 +118,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub options: Options,
     /// The files that a run makes.
     pub output: Output,
-    /// The file that its mesh was read from.
-    pub mesh_file: Option<PathBuf>,
+    /// The files that meshes were read from.
+    pub mesh_files: Vec<PathBuf>,
 }
 
 /// A case ready to run.
@@ -116,17 +134,22 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     let document = parsed(&source)?;
     let root = Table::root(&source, document.get_ref());
     root.only(&TABLES)?;
+    match body::read(&root)? {
+        Some(AnyBodies::Bars(bodies)) => return Ok(ByDimension::Bar(Box::new(of_bodies(&source, &root, *bodies)?))),
+        Some(AnyBodies::Plane(bodies)) => return Ok(ByDimension::Plane(Box::new(of_bodies(&source, &root, *bodies)?))),
+        None => {}
+    }
     let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
-    let file = mesh::file(&mesh);
+    let files = mesh::file(&mesh).into_iter().collect();
     if let Some(Coarsest { mesh, nodes }) = mesh::coarsest(&mesh) {
         each_dimension!(mesh, coarsest => check_tables(&root, coarsest, &nodes)?);
     }
     match mesh::read(&mesh)? {
         ByDimension::Bar(bar) => {
-            let case = read(&source, &root, bar, file).map_err(|error| mesh::of_lines_only(&mesh, error))?;
+            let case = of_mesh(&source, &root, bar, files).map_err(|error| mesh::of_lines_only(&mesh, error))?;
             Ok(ByDimension::Bar(Box::new(case)))
         }
-        ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(read(&source, &root, triangles, file)?))),
+        ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(of_mesh(&source, &root, triangles, files)?))),
     }
 }
 
@@ -158,21 +181,41 @@ fn check_tables<const D: usize, const N: usize>(
     problem::check_coarsest(root, coarsest, nodes)
 }
 
-fn read<const D: usize, const N: usize>(
+/// The case of one body.
+fn of_mesh<const D: usize, const N: usize>(
     source: &Source,
     root: &Table<'_>,
     mesh: percute_core::mesh::Mesh<D, N>,
-    mesh_file: Option<PathBuf>,
+    files: Vec<PathBuf>,
+) -> Result<CaseOf<D, N>, CaseError> {
+    read(source, root, files, || problem::read(root, mesh))
+}
+
+/// The case of several bodies.
+fn of_bodies<const D: usize, const N: usize>(
+    source: &Source,
+    root: &Table<'_>,
+    mut bodies: Bodies<D, N>,
+) -> Result<CaseOf<D, N>, CaseError> {
+    let files = std::mem::take(&mut bodies.files);
+    read(source, root, files, || problem::of_bodies(root, bodies))
+}
+
+fn read<const D: usize, const N: usize>(
+    source: &Source,
+    root: &Table<'_>,
+    mesh_files: Vec<PathBuf>,
+    problem: impl FnOnce() -> Result<Problem<D, N>, CaseError>,
 ) -> Result<CaseOf<D, N>, CaseError> {
     // Cheap tables first: a slip in the last line should not wait for the critical step.
     let options = estimate::read(root)?;
     let output = output::read(root)?;
     let wanted = time::read(root)?;
-    let problem = problem::read(root, mesh)?;
+    let problem = problem()?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
     let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
-    Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_file })
+    Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_files })
 }
 
 /// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the
@@ -221,7 +264,7 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     #[must_use]
     pub fn inputs<'a>(&'a self, case: Option<&'a Path>) -> Vec<(&'static str, &'a Path)> {
         let case = case.map(|file| ("case file", file));
-        case.into_iter().chain(self.mesh_file.as_deref().map(|file| ("mesh file", file))).collect()
+        case.into_iter().chain(self.mesh_files.iter().map(|file| ("mesh file", file.as_path()))).collect()
     }
 
     /// The place in the file of a start that the simulation refuses; `None` for other failures,

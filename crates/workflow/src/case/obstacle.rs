@@ -14,11 +14,7 @@ fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Obstacle<D>, C
     table.only(&["point", "normal", "friction", "group"])?;
     let point = table.require("point", "a point of the plane in m")?.vector("m")?;
     let normal = table.require("normal", "a vector from the plane to the body")?.vector("")?;
-    let friction = match (table.get("friction"), shape) {
-        (Some(value), _) => value.number("")?,
-        (None, Shape::Bar) => 0.0,
-        (None, Shape::Triangle) => table.require("friction", "the coefficient of friction, 0 or more")?.number("")?,
-    };
+    let friction = friction(table, shape)?;
     let group = table.get("group").map(|value| value.text("the name of a group of edges")).transpose()?;
     Obstacle::plane(point, normal, friction, group.map(str::to_string)).map_err(|error| {
         let key = match error {
@@ -28,4 +24,13 @@ fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Obstacle<D>, C
         };
         table.get(key).map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
     })
+}
+
+/// Reads a coefficient of friction, which a bar does not have.
+pub(super) fn friction(table: &Table<'_>, shape: Shape) -> Result<f64, CaseError> {
+    match (table.get("friction"), shape) {
+        (Some(value), _) => value.number(""),
+        (None, Shape::Bar) => Ok(0.0),
+        (None, Shape::Triangle) => table.require("friction", "the coefficient of friction, 0 or more")?.number(""),
+    }
 }

@@ -1,9 +1,10 @@
 //! The statement of the problem, handed to the core, which checks it as a whole.
 
+use super::body::Bodies;
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
-use super::{load, material, obstacle, place, support};
+use super::{contact, load, material, obstacle, place, support};
 use crate::message::hint;
 use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::{Builder, Cause, Initial, InputError, Place, Problem};
@@ -15,6 +16,19 @@ pub(super) fn read<const D: usize, const N: usize>(
 ) -> Result<Problem<D, N>, CaseError> {
     let import_warnings = mesh.import_warnings().to_vec();
     with_start(root, mesh)?.build().map_err(|error| located(root, &error, &import_warnings))
+}
+
+/// Reads all that makes the problem of several bodies.
+pub(super) fn of_bodies<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    bodies: Bodies<D, N>,
+) -> Result<Problem<D, N>, CaseError> {
+    let Bodies { mesh, materials, velocity, .. } = bodies;
+    let mut builder = Problem::builder(mesh).initial_velocity(Initial::Nodal(velocity));
+    for (body, law) in materials {
+        builder = builder.material_of(body, law);
+    }
+    build(root, surroundings(root, builder)?)
 }
 
 /// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups. A plane that
@@ -50,7 +64,7 @@ fn with_start<const D: usize, const N: usize>(root: &Table<'_>, mesh: Mesh<D, N>
     Ok(builder)
 }
 
-/// Reads materials, planes, supports and loads.
+/// Reads materials, planes, contacts of bodies, supports and loads.
 pub(super) fn stated<const D: usize, const N: usize>(
     root: &Table<'_>,
     mesh: Mesh<D, N>,
@@ -62,6 +76,18 @@ pub(super) fn stated<const D: usize, const N: usize>(
             Some(group) => builder.material_of(group, law),
             None => builder.material(law),
         };
+    }
+    surroundings(root, builder)
+}
+
+/// Reads planes, contacts of bodies, supports and loads.
+fn surroundings<const D: usize, const N: usize>(
+    root: &Table<'_>,
+    mut builder: Builder<D, N>,
+) -> Result<Builder<D, N>, CaseError> {
+    let shape = builder.mesh().simplex().shape();
+    for interface in contact::read::<D>(root, shape)? {
+        builder = builder.interface(interface);
     }
     for plane in obstacle::read(root, shape)? {
         builder = builder.obstacle(plane);

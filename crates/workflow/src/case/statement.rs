@@ -15,9 +15,9 @@ use percute_estimator::{Options, Sampling};
 use thiserror::Error;
 
 /// The tables of a statement.
-const TABLES: [&str; 6] = ["material", "obstacle", "support", "traction", "body_force", "estimate"];
+const TABLES: [&str; 7] = ["material", "obstacle", "contact", "support", "traction", "body_force", "estimate"];
 /// Tables of a case file that a statement does not have.
-const BESIDE: [&str; 4] = ["mesh", "initial", "time", "output"];
+const BESIDE: [&str; 5] = ["mesh", "body", "initial", "time", "output"];
 
 /// A problem that the language of the case files has no words for.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
@@ -44,7 +44,7 @@ fn law_name(hypothesis: Hypothesis) -> &'static str {
     }
 }
 
-/// Writes down a problem: the tables `[[material]]`, `[[obstacle]]`, `[[support]]`, `[[traction]]`,
+/// Writes down a problem: the tables `[[material]]`, `[[obstacle]]`, `[[contact]]`, `[[support]]`, `[[traction]]`,
 /// `[[body_force]]` and, with options, `[estimate]`. Mesh, initial fields and instants are left out.
 /// [`problem_from`] makes the same problem of it, bit by bit.
 ///

@@ -5,7 +5,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::message::trimmed;
 use crate::report::unstable_steps;
-use crate::until::{NO_PLANE, Until};
+use crate::until::{Until, no_rebound};
 use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
 
@@ -96,8 +96,8 @@ impl Wanted<'_> {
         critical: f64,
     ) -> Result<Option<Until>, CaseError> {
         let Some(Rebound { end, longest, after }) = &self.rebound else { return Ok(None) };
-        if problem.obstacles().is_empty() {
-            return Err(end.error(format!("= {NO_PLANE}")));
+        if let Some(told) = no_rebound(problem) {
+            return Err(end.error(format!("= {told}")));
         }
         let step = match self.steps {
             Steps::Courant(courant, _) => courant * critical,

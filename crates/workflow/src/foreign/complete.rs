@@ -58,8 +58,14 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// Steps that cannot be read; fewer than three instants of which the last is not known.
+    /// Several bodies that may touch; steps that cannot be read; fewer than three instants of which the last is not
+    /// known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
+        if !problem.statement().interfaces.is_empty() {
+            let told = "histories of other programs are read for a single body on planes, and this problem has several \
+                        bodies that may touch";
+            return Err(told.into());
+        }
         let (times, count) = (source.times().clone(), source.count());
         let derivation = Derivation::new(problem, source);
         let mut made = Self { derivation, source, lacks, times, count, derived: Vec::new() };

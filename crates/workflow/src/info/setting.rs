@@ -1,4 +1,4 @@
-//! What a case is about: materials, and planes with their gaps, so that a slip shows before the run.
+//! What a case is about: materials, and planes and other bodies with their gaps, so that a slip shows before the run.
 
 use crate::message::{counted, trimmed};
 use percute_core::material::Law;
@@ -15,10 +15,12 @@ pub struct MaterialInfo {
     pub wave_speed: f64,
 }
 
-/// A plane at the start.
+/// A plane at the start, or two surfaces of different bodies.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct PlaneInfo {
+    /// The groups of edges of two bodies; none for a plane.
+    pub groups: Option<[String; 2]>,
     /// Smallest gap of the nodes that may touch it (m).
     pub gap: f64,
     pub contact_nodes: usize,
@@ -38,19 +40,23 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
     told.collect()
 }
 
-/// The planes, in their order.
+/// The planes, in their order, and the surfaces of different bodies.
 pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
+    let planes = problem.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
     let told = |obstacle: usize| {
         let surface = problem.surface().nodes().iter().enumerate();
         let mine = surface.filter(|(_, node)| node.obstacle == obstacle && node.free);
         let speeds = mine.clone().map(|(at, _)| -problem.start_of_contact(at).1);
+        let interface = obstacle.checked_sub(planes).map(|after| &problem.statement().interfaces[after / 2]);
         PlaneInfo {
+            groups: interface.map(|interface| interface.groups().map(str::to_string)),
             gap: problem.initial_gap(obstacle),
             contact_nodes: mine.count(),
             approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
         }
     };
-    (0..problem.obstacles().len()).map(told).collect()
+    // The two sides of an interface have the same gaps.
+    (0..planes).chain((planes..problem.obstacles().len()).step_by(2)).map(told).collect()
 }
 
 impl MaterialInfo {
@@ -70,6 +76,12 @@ impl PlaneInfo {
         } else {
             String::new()
         };
-        ("plane", format!("gap {gap} m{when}, {} may touch", counted(self.contact_nodes, "node")))
+        match &self.groups {
+            None => ("plane", format!("gap {gap} m{when}, {} may touch", counted(self.contact_nodes, "node"))),
+            Some([first, second]) => {
+                let pairs = counted(self.contact_nodes, "pair");
+                ("contact", format!("\"{first}\" with \"{second}\": gap {gap} m{when}, {pairs} of nodes may touch"))
+            }
+        }
     }
 }

@@ -43,13 +43,17 @@ impl Rebound {
         self.no_restitution.is_none_or(|reason| reason == NOT_ENDED)
     }
 
-    /// The rebound of a run; none without contact.
+    /// The rebound of a run from rigid planes; none without contact.
     #[must_use]
     pub fn new<const D: usize, const N: usize>(
         problem: &Problem<D, N>,
         balance: &[Balance],
         contact: &ContactResults<D>,
     ) -> Option<Self> {
+        if !problem.statement().interfaces.is_empty() {
+            // Bodies that strike each other have velocities of their own.
+            return None;
+        }
         let acting = |n: &usize| contact.total[*n].in_contact > 0;
         let steps = contact.total.len().min(balance.len());
         let (first, last) = ((0..steps).find(acting)?, (0..steps).rfind(acting)?);

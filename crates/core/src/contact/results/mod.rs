@@ -25,9 +25,10 @@ pub struct ContactResults<const D: usize> {
     pub nodes: Vec<ContactPoint<D>>,
     /// One summary for each of them.
     pub summary: Vec<NodeSummary<D>>,
-    /// Resultants of all obstacles at each instant.
+    /// Resultants of all obstacles at each instant. Of two bodies that touch, they are those of the forces on the first
+    /// one.
     pub total: Vec<Resultant<D>>,
-    /// Resultants of each obstacle at each instant.
+    /// Resultants of each obstacle at each instant: each plane, and each side of each interface.
     pub obstacles: Vec<Vec<Resultant<D>>>,
     /// All nodes at all instants, if requested.
     pub steps: Option<ContactSteps<D>>,

@@ -99,7 +99,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             let dt = self.times.step(step.index - 1);
             let path = std::array::from_fn(|c| relative[c] - before.relative[c]);
             let mean = std::array::from_fn(|c| 0.5 * (before.force[c] + force[c]));
-            summary.friction_energy += surface.part_of_contact(at) * dissipation(&frame, &mean, &path);
+            summary.friction_energy += dissipation(&frame, &mean, &path);
             summary.over(dt, [&before.force, &force], [before.status, status]);
             sliding = frame.split(&path).1.map(|way| way / dt);
         }
@@ -151,7 +151,10 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
         for at in 0..self.now.len() {
             let share = self.node(at, step);
             sums[self.results.nodes[at].obstacle].add(&share);
-            total.add(&share);
+            // Two nodes that touch have one contact, that of the first one.
+            if self.problem.surface().leads(at) {
+                total.add(&share);
+            }
         }
         let dt = if step.index == 0 { 0.0 } else { self.times.step(step.index - 1) };
         for (sum, over_time) in sums.into_iter().zip(&mut self.results.obstacles) {

@@ -36,6 +36,8 @@ pub(in crate::report) struct Facts {
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
     pub(super) largest_friction: f64,
+    /// Whether bodies may touch each other.
+    pub(super) bodies: bool,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -103,6 +105,7 @@ impl Facts {
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
+            bodies: !problem.statement().interfaces.is_empty(),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

@@ -35,7 +35,7 @@ const SLENDER: f64 = 0.15;
 const UNBALANCED: f64 = 5e-4;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 16] = [
+pub(super) const RULES: [Rule; 17] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -90,6 +90,13 @@ pub(super) const RULES: [Rule; 16] = [
         range: [0.49, 1.4],
         situation: "bodies that touch at several places",
         doubt: Some("where a second place touches, a small error of its instant is a large error of the motion"),
+    },
+    // crates/estimator/tests/two_blocks.rs.
+    Rule {
+        applies: |f| f.bodies && f.dimension == 2 && f.contact.touches == Touches::Edge,
+        range: [1.05, 1.2],
+        situation: "blocks that strike each other with their sides",
+        doubt: None,
     },
     // effectivity-steps.csv, block.
     Rule {
@@ -149,6 +156,9 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     }
     if let Some(other) = facts.acceleration {
         untested.push(format!("acceleration `{other}`"));
+    }
+    if facts.bodies && (facts.dimension == 1 || facts.contact.touches != Touches::Edge) {
+        untested.push("bodies that strike each other so".to_string());
     }
     if facts.supported {
         untested.push("supports".to_string());

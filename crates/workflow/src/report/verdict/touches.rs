@@ -123,13 +123,11 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     /// Whether the edge between two nodes is parallel to the plane at the start of the run.
     fn parallel(&self, a: usize, b: usize) -> bool {
         let surface = self.problem.surface();
-        let (gap, at) = (|at: usize| surface.gap(at, &self.start_displacement(at)), |at: usize| surface.point(at));
+        let start = self.problem.initial_displacement();
+        let gap = |at: usize| surface.gap(at, &surface.against_obstacle(at, start));
+        let at = |at: usize| surface.point(at);
         let length = (0..D).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
         (gap(a) - gap(b)).abs() <= PARALLEL * length
-    }
-
-    fn start_displacement(&self, at: usize) -> [f64; D] {
-        self.problem.initial_displacement()[self.node(at).index()]
     }
 
     fn node(&self, at: usize) -> NodeId {
@@ -147,7 +145,10 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// The parts of the surface that touch, each joined by edges.
     fn zones(&self) -> usize {
-        let mut seen: Vec<bool> = self.first_touch.iter().map(Option::is_none).collect();
+        // Of two surfaces that touch, the first one counts.
+        let surface = self.problem.surface();
+        let counts = |(at, touch): (usize, &Option<f64>)| touch.is_none() || !surface.leads(at);
+        let mut seen: Vec<bool> = self.first_touch.iter().enumerate().map(counts).collect();
         let mut zones = 0;
         for at in 0..seen.len() {
             let mut next = vec![at];

@@ -1,0 +1,123 @@
+"""Several bodies that may touch each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percute.checks import instance, number, text
+from percute.errors import InputError
+from percute.mesh import Mesh
+from percute.statement import Elastic, Vector, vector
+
+__all__ = ["Body", "Interface"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """One of several bodies: a mesh in its place, with its material and its initial velocity.
+
+    Parameters
+    ----------
+    name : str
+        Its name, without a dot: its groups become "name.group", its elements the group "name".
+    mesh : Mesh
+        Its mesh.
+    material : Elastic
+        The material of all its elements.
+    origin : (dimension,) floats, optional
+        Where the origin of the mesh lies (m); zero unless given.
+    rotation : float, default: 0
+        Angle by which the mesh is turned about its origin, counterclockwise (degrees); not for a bar.
+    velocity : (dimension,) floats, optional
+        v₀ of all its nodes (m/s), eq. [7]; zero unless given.
+    """
+
+    name: str
+    mesh: Mesh
+    material: Elastic
+    origin: Vector | ArrayLike | None = None
+    rotation: float = 0.0
+    velocity: Vector | ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        if not text("name", self.name) or "." in self.name:
+            raise InputError(f"`name` is {self.name!r}; it must be a name without a dot, which joins it to the names of its groups")
+        instance("mesh", self.mesh, Mesh)
+        instance("material", self.material, Elastic)
+        object.__setattr__(self, "rotation", number("rotation", self.rotation, unit="degrees"))
+        dimension = self.mesh.dimension
+        if dimension == 1 and self.rotation != 0.0:
+            raise InputError(f"`rotation` is {self.rotation}; it does not apply to a bar")
+        for name, unit in (("origin", "m"), ("velocity", "m/s")):
+            given = getattr(self, name)
+            made = (0.0,) * dimension if given is None else vector(name, given)
+            if len(made) != dimension:
+                needed = "one number for a bar" if dimension == 1 else "two numbers, x and y"
+                raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
+            object.__setattr__(self, name, made)
+
+    def _points(self) -> NDArray[np.float64]:
+        """Give the points of the mesh in their place (m)."""
+        points = np.asarray(self.mesh.points, dtype=float)
+        if self.mesh.dimension == 2:
+            angle = np.radians(self.rotation)
+            cos, sin = np.cos(angle), np.sin(angle)
+            x, y = points.T
+            points = np.column_stack((cos * x - sin * y, sin * x + cos * y))
+        return np.asarray(self.origin, dtype=float) + points
+
+
+@dataclass(frozen=True, kw_only=True)
+class Interface:
+    """Two groups of edges of different bodies that may touch, with Coulomb friction, eq. [1] to [3].
+
+    Parameters
+    ----------
+    groups : (str, str)
+        The two groups, as in ``("anvil.top", "hammer.bottom")``. Their nodes face each other in pairs: the two of a pair
+        differ by a gap along one common normal only, and stay a pair during the run. A pair that slips by more than a
+        small part of an edge leaves the range of the method.
+    friction : float
+        Coefficient of friction μ, 0 without friction. Required but for bars, which have none.
+    """
+
+    groups: tuple[str, str] | Sequence[str]
+    friction: float | None = None
+
+    def __post_init__(self) -> None:
+        groups = (self.groups,) if isinstance(self.groups, str) else tuple(self.groups)
+        if len(groups) != 2:
+            raise InputError(f"`groups` is {self.groups!r}; it must be two groups of edges, as in ('anvil.top', 'hammer.bottom')")
+        object.__setattr__(self, "groups", tuple(text("groups", group) for group in groups))
+        if self.friction is not None:
+            object.__setattr__(self, "friction", number("friction", self.friction))
+
+
+def join(bodies: Sequence[Body]) -> tuple[Mesh, dict[str, Elastic], NDArray[np.float64]]:
+    """Give the mesh of all bodies, the material of each by its name, and the initial velocity of each node (m/s)."""
+    names = [body.name for body in bodies]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"`bodies` has the name {name!r} twice; give each body its own")
+    if len({body.mesh.dimension for body in bodies}) > 1:
+        raise InputError("`bodies` are bars and plane bodies; they must be all bars or all plane")
+    points, cells, velocity = [], [], []
+    edges: dict[str, NDArray[np.int64]] = {}
+    elements: dict[str, NDArray[np.int64]] = {}
+    nodes = count = 0
+    for body in bodies:
+        mesh = body.mesh
+        points.append(body._points())
+        cells.append(np.asarray(mesh.cells, dtype=np.int64) + nodes)
+        velocity.append(np.tile(np.asarray(cast("Vector", body.velocity), dtype=float), (len(mesh.points), 1)))
+        edges |= {f"{body.name}.{group}": np.asarray(each) + nodes for group, each in mesh.edge_groups.items()}
+        elements |= {f"{body.name}.{group}": np.asarray(each) + count for group, each in mesh.element_groups.items()}
+        elements[body.name] = np.arange(count, count + len(mesh.cells))
+        nodes, count = nodes + len(mesh.points), count + len(mesh.cells)
+    made = Mesh(np.concatenate(points), np.concatenate(cells), edges, elements)
+    return made, {body.name: body.material for body in bodies}, np.concatenate(velocity)
