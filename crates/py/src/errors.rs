@@ -62,6 +62,7 @@ pub(crate) fn argument(place: Place, groups: &[Option<String>]) -> String {
         (table, key) => {
             let list = match table {
                 "obstacle" => "obstacles",
+                "contact" => "contacts",
                 "support" => "supports",
                 "traction" => "tractions",
                 "body_force" => "body_forces",

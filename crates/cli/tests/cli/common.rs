@@ -14,6 +14,9 @@ pub(crate) const BAR: &str = include_str!("../../../../tests/bases/bar.toml");
 /// A good case with a mesh as arrays: two triangles, one of them clockwise, of two materials.
 pub(crate) const ARRAYS: &str = include_str!("../../../../tests/bases/arrays.toml");
 
+/// A good case of two blocks.
+pub(crate) const BODIES: &str = include_str!("../../../../tests/bases/bodies.toml");
+
 /// A folder with a case in it.
 pub(crate) struct Bench {
     folder: TempDir,

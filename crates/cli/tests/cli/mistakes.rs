@@ -1,6 +1,6 @@
 //! Every mistake of `tests/mistakes.toml` that the command can be given is named, and nothing is made.
 
-use crate::common::{ARRAYS, BAR, BLOCK, Bench, stderr};
+use crate::common::{ARRAYS, BAR, BLOCK, BODIES, Bench, stderr};
 use percute_workflow::case::{Source, parse};
 use serde::Deserialize;
 use std::process::Output;
@@ -47,6 +47,7 @@ enum Base {
     Block,
     Bar,
     Arrays,
+    Bodies,
 }
 
 fn two() -> i32 {
@@ -63,6 +64,7 @@ impl Base {
             Self::Block => BLOCK,
             Self::Bar => BAR,
             Self::Arrays => ARRAYS,
+            Self::Bodies => BODIES,
         }
     }
 }

@@ -324,17 +324,17 @@ fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N
     let deeper = |a: usize, b: usize| if gap(b) < gap(a) { b } else { a };
     if let Some(at) = (0..nodes.len()).reduce(deeper).filter(|&at| gap(at) < -tolerance) {
         let (obstacle, depth, node) = (nodes[at].obstacle, -gap(at), nodes[at].node.index());
-        let Some(plane) = problem.obstacles()[obstacle].as_plane() else {
-            return Err(Cause::Overlaps { node, depth }.at("contact", None, ""));
+        let cause = match problem.obstacles()[obstacle].as_plane() {
+            Some(plane) => Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() },
+            None => Cause::Overlaps { node, depth },
         };
-        let cause = Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() };
-        return Err(cause.at("obstacle", Some(obstacle), "point"));
+        return Err(InputError { place: problem.place_of_obstacle(obstacle), cause });
     }
     for (at, contact) in nodes.iter().enumerate() {
         let (gap, normal) = problem.start_of_contact(at);
         if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
             let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
-            return Err(cause.at("obstacle", Some(contact.obstacle), "point"));
+            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
         }
     }
     Ok(())

@@ -220,6 +220,17 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.surface.obstacles()
     }
 
+    /// Where an obstacle is stated: a plane, or two surfaces of different bodies.
+    #[must_use]
+    pub fn place_of_obstacle(&self, obstacle: usize) -> Place {
+        let planes = self.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
+        match obstacle.checked_sub(planes) {
+            None => Place { table: "obstacle", index: Some(obstacle), key: "point" },
+            // Each of the two is an obstacle of the other.
+            Some(after) => Place { table: "contact", index: Some(after / 2), key: "groups" },
+        }
+    }
+
     /// The part of the boundary that may touch an obstacle.
     #[must_use]
     pub fn surface(&self) -> &ContactSurface<D> {

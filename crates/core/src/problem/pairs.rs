@@ -39,31 +39,30 @@ pub(super) fn add<const D: usize, const N: usize>(
     (index, interface): (usize, &Interface),
     area: impl Fn(FacetId) -> f64,
 ) -> Result<(), InputError> {
-    let fail = |cause: Cause, key| cause.at("contact", Some(index), key);
+    let fail = |cause: Cause| cause.at("contact", Some(index), "groups");
     let [first, second] = interface.groups();
     let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
-    let sides =
-        [bodies.side(first).map_err(|c| fail(c, "first"))?, bodies.side(second).map_err(|c| fail(c, "second"))?];
+    let sides = [bodies.side(first).map_err(fail)?, bodies.side(second).map_err(fail)?];
     if sides[0].body == sides[1].body {
-        return Err(fail(of_one_body(), "second"));
+        return Err(fail(of_one_body()));
     }
     let outward = sides.each_ref().map(|side| unit(&side.outward));
     // The surface of either body may be the one that the normal stands on.
     let [first, second] = [outward[0].map(|n| -n), outward[1]].map(|normal| (normal, bodies.partners(&sides, &normal)));
     let (normal, partners) = if first.1.is_err() && second.1.is_ok() { second } else { first };
     let away = normal.map(|n| -n);
-    for (side, outward, key) in [(&sides[0], away, "first"), (&sides[1], normal, "second")] {
+    for (side, outward) in [(&sides[0], away), (&sides[1], normal)] {
         let faces = |&facet: &FacetId| dot(&bodies.mesh.facet_normal(facet).0, &outward) >= FACES;
         if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
             let nodes = bodies.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
             let outward = Box::new([away.to_vec(), normal.to_vec()]);
-            return Err(fail(Cause::TurnedAway { nodes, outward }, key));
+            return Err(fail(Cause::TurnedAway { nodes, outward }));
         }
     }
-    let partners = partners.map_err(|cause| fail(cause, "second"))?;
+    let partners = partners.map_err(fail)?;
     for node in sides.iter().flat_map(|side| &side.nodes) {
         if surface.nodes().iter().any(|contact| contact.node == *node) {
-            return Err(fail(Cause::TwoContacts { node: node.index() }, "first"));
+            return Err(fail(Cause::TwoContacts { node: node.index() }));
         }
     }
     let ordered = [sides[0].nodes.clone(), partners];
@@ -75,7 +74,7 @@ pub(super) fn add<const D: usize, const N: usize>(
         let contact = |(at, node): (usize, &NodeId)| {
             let facing = ordered[1 - k][at];
             let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);
-            let [free, guided] = bodies.motion_of(&frame, [*node, facing]).map_err(|cause| fail(cause, "first"))?;
+            let [free, guided] = bodies.motion_of(&frame, [*node, facing]).map_err(fail)?;
             let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
             let undeformed_gap = dot(&apart, &frame);
             Ok((ContactNode { node: *node, obstacle, undeformed_gap, free, guided, opposite }, points[node.index()]))

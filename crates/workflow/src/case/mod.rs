@@ -229,7 +229,7 @@ pub fn refused_start<const D: usize, const N: usize>(
 ) -> (Place, String) {
     match cause_of_refused_start(problem, times) {
         Some(cause) => (cause.place, format!("{}. As it is, {error}", cause.message)),
-        None => (Place { table: "obstacle", index: Some(obstacle), key: "point" }, error.to_string()),
+        None => (problem.place_of_obstacle(obstacle), error.to_string()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
-use crate::contact::frame::Frame;
+use crate::contact::frame::{Frame, dot};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -32,6 +32,8 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     laws: Vec<TangentialLaw>,
     now: Vec<NodeState<D>>,
+    /// The shortest edge of each node of a pair (m); infinite at rigid obstacles, and on a bar.
+    shortest: Vec<f64>,
     results: ContactResults<D>,
 }
 
@@ -55,11 +57,12 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             summary: vec![NodeSummary::new(); nodes.len()],
             total: Vec::new(),
             obstacles: vec![Vec::new(); problem.obstacles().len()],
+            slip: Some(0.0),
             steps: None,
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
-        Self { problem, times, laws, now, results }
+        Self { problem, times, laws, now, shortest: shortest_edges(problem), results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -91,6 +94,11 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         let frame = surface.frame(at, &relative);
         let status = self.laws[at].status(&frame, &force);
         let normal_force = frame.split(&force).0;
+        if status != Status::Free && self.shortest[at] < f64::INFINITY {
+            let (_, aside) = frame.split(&relative);
+            let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
+            self.results.slip = self.results.slip.map(|largest| largest.max(slip));
+        }
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
@@ -174,6 +182,18 @@ fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Contac
         ContactPoint { node, obstacle, point, normal, area }
     };
     surface.tributary_areas().into_iter().enumerate().map(point).collect()
+}
+
+/// The shortest edge of each node that may touch another body (m), infinite at others.
+fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<f64> {
+    let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
+    for facet in surface.facets().iter().filter(|_| D > 1) {
+        let (_, length) = problem.mesh().facet_normal(facet.facet);
+        for &at in facet.nodes.iter().filter(|&&at| surface.nodes()[at].opposite.is_some()) {
+            shortest[at] = shortest[at].min(length);
+        }
+    }
+    shortest
 }
 
 /// The law of the tangential motion of one node.

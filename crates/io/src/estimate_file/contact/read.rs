@@ -53,6 +53,7 @@ impl Reader<'_, '_> {
         }
         let steps = self.steps(instants.len(), count)?;
         Ok(ContactResults {
+            slip: None,
             nodes: self.places(&node, of_obstacles.len())?,
             summary: self.summary(count, &steps)?,
             total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,

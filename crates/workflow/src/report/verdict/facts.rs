@@ -38,6 +38,8 @@ pub(in crate::report) struct Facts {
     pub(super) largest_friction: f64,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
+    /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
+    pub(super) slip: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -106,6 +108,7 @@ impl Facts {
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             bodies: !problem.statement().interfaces.is_empty(),
+            slip: results.slip.unwrap_or(0.0),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

@@ -34,6 +34,9 @@ const SLENDER: f64 = 0.15;
 /// steps of 0.02 Δt_c 2e-3.
 const UNBALANCED: f64 = 5e-4;
 
+/// Pairs of nodes do not see how far they are apart along the interface. From one edge on, the true error is 5 % larger.
+const SLIP: f64 = 0.1;
+
 /// The rules in their order.
 pub(super) const RULES: [Rule; 17] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
@@ -159,6 +162,9 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     }
     if facts.bodies && (facts.dimension == 1 || facts.contact.touches != Touches::Edge) {
         untested.push("bodies that strike each other so".to_string());
+    }
+    if facts.slip > SLIP {
+        untested.push(format!("pairs of nodes that slip by {} edges", crate::message::short(facts.slip, 2)));
     }
     if facts.supported {
         untested.push("supports".to_string());

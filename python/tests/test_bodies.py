@@ -1,0 +1,96 @@
+"""Several bodies that strike each other: the same from Python and from a case, in memory and from a file."""
+
+from pathlib import Path
+
+import numpy as np
+import percute as pc
+import pytest
+
+BASE = Path(__file__).parents[2] / "tests" / "bases" / "bodies.toml"
+
+
+def steel() -> pc.Elastic:
+    return pc.Elastic(young=210e9, poisson=0.3, density=7800, plane="stress")
+
+
+def aluminium() -> pc.Elastic:
+    return pc.Elastic(young=70e9, poisson=0.3, density=2700, plane="stress")
+
+
+def blocks(friction: float = 0.2) -> pc.Problem:
+    """Give the problem of the case ``bodies.toml``."""
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=4, ny=3)
+    hammer = pc.Body(name="hammer", mesh=mesh, material=aluminium(), origin=(0, 0.02505), velocity=(2, -20))
+    return pc.Problem(
+        bodies=[pc.Body(name="anvil", mesh=mesh, material=steel()), hammer],
+        contacts=[pc.Interface(groups=("anvil.top", "hammer.bottom"), friction=friction)],
+    )
+
+
+def test_python_and_case_are_one() -> None:
+    run, problem = pc.run(BASE), blocks()
+    estimate = pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9))
+    assert estimate.sup == run.sup
+    assert np.array_equal(estimate.by_element, run.by_element)
+    assert problem.contacts == (pc.Interface(groups=("anvil.top", "hammer.bottom"), friction=0.2),)
+    assert problem.obstacles == ()
+    assert set(problem.mesh.element_groups) == {"anvil", "hammer"}
+
+
+def test_a_stored_history_gives_the_same(tmp_path: Path) -> None:
+    problem = blocks()
+    stored = pc.simulate(problem, end=10e-6, courant=0.9, store=tmp_path / "blocks.vtkhdf")
+    expected = pc.estimate(stored)
+    with pc.open(tmp_path / "blocks.vtkhdf") as history:
+        assert pc.estimate(history).sup == expected.sup
+        assert history.problem.contacts == problem.contacts
+        # Forces on pairs are opposite.
+        reaction = history.reaction
+        half = reaction.shape[1] // 2
+        assert np.abs(reaction).max() > 0
+        assert np.array_equal(reaction[:, :half], -reaction[:, half:])
+
+
+def test_contact_of_a_pair_is_counted_once() -> None:
+    estimate = pc.estimate(pc.simulate(blocks(), end=10e-6, courant=0.9))
+    contact = estimate.contact
+    assert contact is not None
+    first, second = contact.obstacles
+    assert np.array_equal(contact.total.force, first.force)
+    assert np.array_equal(first.force, -second.force)
+    assert np.array_equal(contact.total.normal_force, first.normal_force)
+
+
+def test_bodies_that_slip_are_told_of() -> None:
+    problem = blocks(0.0)
+    velocity = np.array(problem.initial_velocity)
+    velocity[velocity[:, 0] > 0, 0] = 150.0
+    fast = pc.Problem(problem.mesh, material=problem.material, contacts=problem.contacts, initial_velocity=velocity)
+    slipping = pc.estimate(pc.simulate(fast, end=20e-6, courant=0.9)).verdict
+    # 150 m/s for 20 µs are 0.3 edges of 10 mm, less the time of the flight.
+    assert any("slip" in told for told in slipping.untested)
+    assert slipping.trust == "limited"
+    assert pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9)).verdict.trust == "high"
+
+
+def test_histories_of_other_programs_are_refused() -> None:
+    problem = blocks()
+    history = pc.simulate(problem, end=10e-6, courant=0.9)
+    with pytest.raises(pc.PercuteError, match="single body"):
+        pc.History.from_arrays(problem, history.time, history.displacement, history.reaction)
+
+
+def test_bars_and_places() -> None:
+    law = pc.Elastic(young=70e9, density=2700, section=1e-4)
+    bar = pc.Mesh.bar(0.3, elements=30)
+    problem = pc.Problem(
+        bodies=[pc.Body(name="left", mesh=bar, material=law, velocity=10.0), pc.Body(name="right", mesh=bar, material=law, origin=0.3001)],
+        contacts=[pc.Interface(groups=("left.end", "right.start"))],
+    )
+    assert problem.mesh.points[31, 0] == 0.3001
+    estimate = pc.estimate(pc.simulate(problem, end=2e-4, courant=0.9))
+    assert estimate.residuals.largest < 1e-10
+    square = pc.Mesh.rectangle(1.0, 1.0, nx=1, ny=1)
+    turned = pc.Problem(bodies=[pc.Body(name="a", mesh=square, material=steel(), rotation=90, origin=(2, 0))])
+    # Rounding of the sine.
+    assert np.allclose(turned.mesh.points, np.asarray([(2 - y, x) for x, y in square.points]), atol=1e-15)
