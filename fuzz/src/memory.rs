@@ -1,5 +1,5 @@
-//! Memory of one execution, of Rust and of HDF5, counted by the address sanitizer. Large blocks count with the pages that
-//! were touched: HDF5 asks for the size that a damaged file states, and then finds that the file is shorter.
+//! Memory of one execution, of Rust and of HDF5, counted by the address sanitizer. Large blocks count with the pages
+//! that were touched: HDF5 asks for the size that a damaged file states, and then finds that the file is shorter.
 
 use std::ffi::{c_int, c_uchar, c_void};
 use std::sync::Once;

@@ -124,8 +124,8 @@ fn effectivity_indices_of_two_blocks() {
     }
 }
 
-/// The same on two meshes with the reference of the prototype. The tractions of the prototype have more energy than those
-/// here, which are nearer to the minimum: its indices are larger by up to 0.06 (measured 0.019 to 0.055).
+/// The same on two meshes with the reference of the prototype. The tractions of the prototype have more energy than
+/// those here, which are nearer to the minimum: its indices are larger by up to 0.06 (measured 0.019 to 0.055).
 #[test]
 #[ignore = "takes half a minute"]
 fn effectivity_indices_against_a_finer_reference() {

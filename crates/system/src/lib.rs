@@ -1,6 +1,6 @@
 //! What percute asks of the operating system beyond the standard library: numbers at a place of a file, room on a disk,
-//! whether two names are one file, locks, processes. What a system cannot do is left out here, and nowhere else: without
-//! reserved room, a full disk is noticed when it is full.
+//! whether two names are one file, locks, processes. What a system cannot do is left out here, and nowhere else:
+//! without reserved room, a full disk is noticed when it is full.
 
 #[cfg(unix)]
 mod unix;

@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// An example, the last line that it prints, and how many times the true error its estimate is (the largest over time).
 ///
-/// This ratio is the reason for the printed value. The true error is taken from the exact solution of a bar that strikes
-/// a wall, and else from the same case on the mesh that is refined twice, by the measure of [`Comparison`].
+/// This ratio is the reason for the printed value. The true error is taken from the exact solution of a bar that
+/// strikes a wall, and else from the same case on the mesh that is refined twice, by the measure of [`Comparison`].
 struct Example(&'static str, &'static str, f64);
 
 const EXAMPLES: [Example; 7] = [
@@ -104,7 +104,8 @@ where
 {
     let mesh = case.problem.mesh().refined().unwrap().refined().unwrap();
     let stated = Source::new("the example", statement(&case.problem, None).unwrap());
-    // Each body of the examples starts with one velocity; the nodes of the case have the same numbers in the finer mesh.
+    // Each body of the examples starts with one velocity; the nodes of the case have the same numbers in the finer
+    // mesh.
     let velocity = mesh.part_of_nodes().iter().map(|first| case.problem.initial_velocity()[first.index()]).collect();
     let rest = vec![[0.0; D]; mesh.node_count()];
     let (fine, _): (Problem<D, N>, _) = problem_from(&stated, mesh, rest, velocity).unwrap();

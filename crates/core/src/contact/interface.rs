@@ -3,8 +3,8 @@
 use super::coulomb::Coulomb;
 use super::obstacle::{ObstacleError, coulomb};
 
-/// Two groups of facets, of different bodies, that may touch with Coulomb friction. The nodes of the two face each other
-/// in pairs: they differ by a gap along one common normal only, and each pair stays one during the run.
+/// Two groups of facets, of different bodies, that may touch with Coulomb friction. The nodes of the two face each
+/// other in pairs: they differ by a gap along one common normal only, and each pair stays one during the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
     groups: [String; 2],
@@ -12,8 +12,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal is the mean one of the first group
-    /// or, if the nodes do not face each other along it, of the second one.
+    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal is the mean one of the first
+    /// group or, if the nodes do not face each other along it, of the second one.
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.

@@ -103,8 +103,8 @@ impl<const D: usize> Obstacle<D> {
         self.group.as_deref()
     }
 
-    /// The gap (m) after a displacement against the obstacle (m) from a place with this gap. A distant obstacle leaves no
-    /// rounding in it.
+    /// The gap (m) after a displacement against the obstacle (m) from a place with this gap. A distant obstacle leaves
+    /// no rounding in it.
     #[inline]
     pub(super) fn gap_after(&self, gap: f64, displacement: &[f64; D]) -> f64 {
         gap + dot(displacement, self.flat_frame().normal())

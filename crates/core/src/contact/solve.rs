@@ -5,8 +5,8 @@ use super::frame::dot;
 
 /// Hands the reaction R_n (N) of each constraint to `reaction`, for a step of these Δt_n and h_n (s).
 ///
-/// The mass is lumped and each node has one constraint, so that no reaction moves a node of another constraint: each has
-/// a closed form, and the fixed point of Tresca problems is reached in one pass.
+/// The mass is lumped and each node has one constraint, so that no reaction moves a node of another constraint: each
+/// has a closed form, and the fixed point of Tresca problems is reached in one pass.
 pub(crate) fn solve<const D: usize>(
     constraints: &[Constraint<D>],
     [dt, h]: [f64; 2],

@@ -8,8 +8,8 @@ impl<const D: usize, const N: usize> Mesh<D, N>
 where
     Element<D, N>: Simplex<D, N>,
 {
-    /// The mesh of some bodies with their names: nodes and elements one body after the other. The elements of a body are
-    /// the group of its name; the groups of its mesh become "body.group".
+    /// The mesh of some bodies with their names: nodes and elements one body after the other. The elements of a body
+    /// are the group of its name; the groups of its mesh become "body.group".
     ///
     /// # Errors
     /// Bodies that touch or overlap, or too many elements.

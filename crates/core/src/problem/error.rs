@@ -176,7 +176,8 @@ pub enum Cause {
     },
     /// An interface of a body with itself.
     #[error(
-        "\"{}\" and \"{}\" belong to one body, which cannot touch itself; name groups of two bodies", .groups[0], .groups[1]
+        "\"{}\" and \"{}\" belong to one body, which cannot touch itself; name groups of two bodies",
+        .groups[0], .groups[1]
     )]
     SameBody { groups: [String; 2] },
     /// A side of an interface that is not on the boundary.
@@ -193,8 +194,8 @@ pub enum Cause {
     TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
     /// Nodes of an interface that do not face each other.
     #[error(
-        "the nodes of the two groups must face each other in pairs: the groups have {} and {} nodes, and node {node} is \
-         {} m aside of the nearest one; mesh both surfaces alike", .counts[0], .counts[1], short(*.offset)
+        "the nodes of the two groups must face each other in pairs: the groups have {} and {} nodes, and node {node} \
+         is {} m aside of the nearest one; mesh both surfaces alike", .counts[0], .counts[1], short(*.offset)
     )]
     NotMatching { counts: [usize; 2], node: usize, offset: f64 },
     /// A node of an interface whose motion is prescribed.
@@ -208,8 +209,8 @@ pub enum Cause {
     TwoContacts { node: usize },
     /// Bodies that overlap.
     #[error(
-        "the bodies overlap: node {node} starts {} m inside the other body; move them apart by more than that along the \
-         normal", short(*.depth)
+        "the bodies overlap: node {node} starts {} m inside the other body; move them apart by more than that along \
+         the normal", short(*.depth)
     )]
     Overlaps { node: usize, depth: f64 },
     /// The body on the wrong side of a plane.

@@ -1,7 +1,7 @@
-//! Attributes that are texts of variable length. The library takes memory for the length that an attribute states before
-//! it looks for the text, and does not tell where the length is in the file. The records of attributes are therefore
-//! looked for by their names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from version 3 on the
-//! encoding of the name (1); name, type, shape and value.
+//! Attributes that are texts of variable length. The library takes memory for the length that an attribute states
+//! before it looks for the text, and does not tell where the length is in the file. The records of attributes are
+//! therefore looked for by their names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from
+//! version 3 on the encoding of the name (1); name, type, shape and value.
 
 use super::heap::{is_too_long, places};
 use percute_system::read_exact_at;

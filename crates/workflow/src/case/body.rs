@@ -150,8 +150,8 @@ fn apart<const D: usize, const N: usize>(
         MeshError::PartsTouch { elements } => {
             let [first, second] = elements.map(body_of);
             let message = format!(
-                "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative speed \
-                 times the first step",
+                "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative \
+                 speed times the first step",
                 bodies[first].0
             );
             tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))

@@ -74,7 +74,8 @@ mod tests {
 
     #[test]
     fn the_first_difference_has_its_key_and_both_values() {
-        let one = "[[material]]\nyoung = 70e9\nplane = \"stress\"\n[[traction]]\ngroup = \"top\"\nvalue = [[0.0, 1.0]]\n\
+        let one = "[[material]]\nyoung = 70e9\nplane = \"stress\"\n\
+                   [[traction]]\ngroup = \"top\"\nvalue = [[0.0, 1.0]]\n\
                    profile = { value = 1.0, gradient = [0.0, 0.0] }\n[estimate]\nevery = 1\n";
         let told = |from: &str, to: &str| {
             assert!(one.contains(from), "{from}");

@@ -4,7 +4,8 @@
 //! would grow without bound as steps become shorter. An exact impact at speed v exerts ρcv: it
 //! stops the mass m of the tributary depth m/(ρℓ) in a time of the order of τ = m/(ρcℓ), a wave's through that depth.
 //! So the part of a reaction that changes the motion of its node is spread, with decreasing weight, over the time τ
-//! that follows. Of two nodes that touch, the mass is 1/(1/m + 1/m'), and 1/(ρc) the sum of both. Steps as long as τ change nothing; on a uniform bar these are steps from half the critical one on.
+//! that follows. Of two nodes that touch, the mass is 1/(1/m + 1/m'), and 1/(ρc) the sum of both. Steps as long as τ
+//! change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::ids::ElementId;
 use percute_core::material::Law;

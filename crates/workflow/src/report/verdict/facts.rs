@@ -146,8 +146,8 @@ fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
     Some(Expected { surface, half_size, half_step: change(sources.mean_with_half_step())? })
 }
 
-/// Number of contact phases; contacts that begin within `apart` (s) are one, and so are those between which is a release
-/// of less than `shortest` (s).
+/// Number of contact phases; contacts that begin within `apart` (s) are one, and so are those between which is a
+/// release of less than `shortest` (s).
 fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64) -> usize {
     let (mut count, mut begun, mut released) = (0, f64::NEG_INFINITY, Some(f64::NEG_INFINITY));
     for (resultant, &time) in results.total.iter().zip(&results.instants) {

@@ -34,7 +34,8 @@ const SLENDER: f64 = 0.15;
 /// steps of 0.02 Δt_c 2e-3.
 const UNBALANCED: f64 = 5e-4;
 
-/// Pairs of nodes do not see how far they are apart along the interface. From one edge on, the true error is 5 % larger.
+/// Pairs of nodes do not see how far they are apart along the interface. From one edge on, the true error is 5 %
+/// larger.
 const SLIP: f64 = 0.1;
 
 /// The rules in their order.

@@ -1,8 +1,8 @@
 //! The largest eigenvalue of the matrix of the iteration, from a few Lanczos steps.
 //!
 //! The start vectors are made of lengths and directions in the mesh: they turn with the body, and their numbers do not
-//! matter. The eigenvalue, and with it the estimate, then depends neither on axes nor on numbering, and two equal bodies
-//! have that of one.
+//! matter. The eigenvalue, and with it the estimate, then depends neither on axes nor on numbering, and two equal
+//! bodies have that of one.
 
 use super::Workspace;
 use super::modes::{MOMENTS, Modes, Numbers};
