@@ -73,7 +73,7 @@ class Contact:
     nodes: NDArray[np.int64]
     """Nodes of the contact surface, along the boundary, shape (contact nodes,)."""
     obstacle: NDArray[np.int64]
-    """The plane that each of them may touch, shape (contact nodes,)."""
+    """The plane that each of them may touch, shape (contact nodes,); after the planes, the two sides of each interface of bodies."""
     points: NDArray[np.float64]
     """Their undeformed positions (m), shape (contact nodes, dimension)."""
     normals: NDArray[np.float64]
@@ -104,9 +104,9 @@ class Contact:
     impulse: NDArray[np.float64]
     """Impulse of each node (N s), shape (contact nodes, dimension)."""
     resultants: Resultants
-    """Resultants of all planes over time."""
+    """Resultants of all planes over time, and of the first side of each interface of bodies."""
     obstacles: tuple[Resultants, ...]
-    """Resultants of each plane."""
+    """Resultants of each plane, then of both sides of each interface of bodies."""
     mesh: Mesh = field()
     """The mesh."""
 

@@ -41,14 +41,14 @@ def test_a_stored_history_gives_the_same(tmp_path: Path) -> None:
     problem = blocks()
     stored = pc.simulate(problem, end=10e-6, courant=0.9, store=tmp_path / "blocks.vtkhdf")
     expected = pc.estimate(stored)
-    with pc.open(tmp_path / "blocks.vtkhdf") as history:
-        assert pc.estimate(history).sup == expected.sup
-        assert history.problem.contacts == problem.contacts
-        # Forces on pairs are opposite.
-        reaction = history.reaction
-        half = reaction.shape[1] // 2
-        assert np.abs(reaction).max() > 0
-        assert np.array_equal(reaction[:, :half], -reaction[:, half:])
+    history = pc.open(tmp_path / "blocks.vtkhdf")
+    assert pc.estimate(history).sup == expected.sup
+    assert history.problem.contacts == problem.contacts
+    # Forces on pairs are opposite.
+    reaction = history.reaction
+    half = reaction.shape[1] // 2
+    assert np.abs(reaction).max() > 0
+    assert np.array_equal(reaction[:, :half], -reaction[:, half:])
 
 
 def test_contact_of_a_pair_is_counted_once() -> None:
@@ -56,9 +56,9 @@ def test_contact_of_a_pair_is_counted_once() -> None:
     contact = estimate.contact
     assert contact is not None
     first, second = contact.obstacles
-    assert np.array_equal(contact.total.force, first.force)
+    assert np.array_equal(contact.resultants.force, first.force)
     assert np.array_equal(first.force, -second.force)
-    assert np.array_equal(contact.total.normal_force, first.normal_force)
+    assert np.array_equal(contact.resultants.normal_force, first.normal_force)
 
 
 def test_bodies_that_slip_are_told_of() -> None:
@@ -66,11 +66,11 @@ def test_bodies_that_slip_are_told_of() -> None:
     velocity = np.array(problem.initial_velocity)
     velocity[velocity[:, 0] > 0, 0] = 150.0
     fast = pc.Problem(problem.mesh, material=problem.material, contacts=problem.contacts, initial_velocity=velocity)
-    slipping = pc.estimate(pc.simulate(fast, end=20e-6, courant=0.9)).verdict
+    slipping = pc.estimate(pc.simulate(fast, end=20e-6, courant=0.9))
     # 150 m/s for 20 µs are 0.3 edges of 10 mm, less the time of the flight.
-    assert any("slip" in told for told in slipping.untested)
+    assert "pairs of nodes that slip by 0.3" in str(slipping.verdict)
     assert slipping.trust == "limited"
-    assert pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9)).verdict.trust == "high"
+    assert pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9)).trust == "high"
 
 
 def test_histories_of_other_programs_are_refused() -> None:
@@ -89,7 +89,7 @@ def test_bars_and_places() -> None:
     )
     assert problem.mesh.points[31, 0] == 0.3001
     estimate = pc.estimate(pc.simulate(problem, end=2e-4, courant=0.9))
-    assert estimate.residuals.largest < 1e-10
+    assert max(estimate.residuals.values()) < 1e-10
     square = pc.Mesh.rectangle(1.0, 1.0, nx=1, ny=1)
     turned = pc.Problem(bodies=[pc.Body(name="a", mesh=square, material=steel(), rotation=90, origin=(2, 0))])
     # Rounding of the sine.
