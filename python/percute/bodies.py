@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -49,13 +49,15 @@ class Body:
             raise InputError(f"`name` is {self.name!r}; it must be a name without a dot, which joins it to the names of its groups")
         instance("mesh", self.mesh, Mesh)
         instance("material", self.material, Elastic)
-        object.__setattr__(self, "rotation", number("rotation", self.rotation, unit="degrees"))
+        object.__setattr__(self, "rotation", number("rotation", self.rotation, finite=True, unit="degrees"))
         dimension = self.mesh.dimension
         if dimension == 1 and self.rotation != 0.0:
             raise InputError(f"`rotation` is {self.rotation}; it does not apply to a bar")
         for name, unit in (("origin", "m"), ("velocity", "m/s")):
             given = getattr(self, name)
             made = (0.0,) * dimension if given is None else vector(name, given)
+            if not np.isfinite(made).all():
+                raise InputError(f"`{name}` is {made}; it must be finite ({unit})")
             if len(made) != dimension:
                 needed = "one number for a bar" if dimension == 1 else "two numbers, x and y"
                 raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
@@ -90,7 +92,7 @@ class Interface:
     friction: float | None = None
 
     def __post_init__(self) -> None:
-        groups = (self.groups,) if isinstance(self.groups, str) else tuple(self.groups)
+        groups = tuple(self.groups) if isinstance(self.groups, Iterable) and not isinstance(self.groups, str) else (self.groups,)
         if len(groups) != 2:
             raise InputError(f"`groups` is {self.groups!r}; it must be two groups of edges, as in ('anvil.top', 'hammer.bottom')")
         object.__setattr__(self, "groups", tuple(text("groups", group) for group in groups))

@@ -208,6 +208,6 @@ class Problem(Immutable):
         return f"<percute.Problem: {', '.join(parts)}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        values = {name: getattr(self, name) for name in ("material", "obstacles", "supports", "tractions", "body_forces")}
+        values = {name: getattr(self, name) for name in ("material", "contacts", "obstacles", "supports", "tractions", "body_forces")}
         fields = {name: getattr(self, name).copy() for name in ("initial_velocity", "initial_displacement")}
         return partial(Problem, self.mesh, **values, **fields), ()

@@ -1,5 +1,7 @@
 """Several bodies that strike each other: the same from Python and from a case, in memory and from a file."""
 
+import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -70,7 +72,10 @@ def test_bodies_that_slip_are_told_of() -> None:
     # 150 m/s until contact ends after 12 µs are 0.18 edges of 10 mm.
     assert "pairs of nodes that slip by 0.18" in str(slipping.verdict)
     assert slipping.trust == "limited"
-    assert pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9)).trust == "high"
+    assert "slip" not in str(pc.estimate(pc.simulate(problem, end=10e-6, courant=0.9)).verdict)
+    velocity[velocity[:, 0] > 0, 0] = 1500.0
+    far = pc.Problem(problem.mesh, material=problem.material, contacts=problem.contacts, initial_velocity=velocity)
+    assert pc.estimate(pc.simulate(far, end=20e-6, courant=0.9)).trust == "low"
 
 
 def test_histories_of_other_programs_are_refused() -> None:
@@ -94,3 +99,37 @@ def test_bars_and_places() -> None:
     turned = pc.Problem(bodies=[pc.Body(name="a", mesh=square, material=steel(), rotation=90, origin=(2, 0))])
     # Rounding of the sine.
     assert np.allclose(turned.mesh.points, np.asarray([(2 - y, x) for x, y in square.points]), atol=1e-15)
+
+
+def test_contacts_are_pickled() -> None:
+    problem = blocks()
+    copied = pickle.loads(pickle.dumps(problem))
+    assert copied.contacts == problem.contacts
+    assert np.array_equal(copied.contact_nodes, problem.contact_nodes)
+
+
+def test_a_body_without_contact_is_told_of() -> None:
+    problem = blocks()
+    free = pc.Problem(problem.mesh, material=problem.material, initial_velocity=problem.initial_velocity)
+    with pytest.warns(pc.InputWarning, match="moves through them"):
+        pc.simulate(free, end=10e-6, courant=0.9)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pc.simulate(problem, end=10e-6, courant=0.9)
+
+
+def test_surfaces_must_have_the_same_edges() -> None:
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=4, ny=3)
+    groups = {name: np.asarray(edges) for name, edges in mesh.edge_groups.items()}
+    # All nodes of the top, but not its second edge.
+    groups["top"] = np.delete(groups["top"], 1, axis=0)
+    holed = pc.Mesh(mesh.points, mesh.cells, groups)
+    anvil = pc.Body(name="anvil", mesh=holed, material=steel())
+    hammer = pc.Body(name="hammer", mesh=mesh, material=aluminium(), origin=(0, 0.02505), velocity=(0, -20))
+    for groups_of in (("anvil.top", "hammer.bottom"), ("hammer.bottom", "anvil.top")):
+        with pytest.raises(pc.InputError, match="no edge of the other group faces"):
+            pc.Problem(bodies=[anvil, hammer], contacts=[pc.Interface(groups=groups_of, friction=0.0)])
+    strain = pc.Elastic(young=70e9, poisson=0.3, density=2700, plane="strain")
+    both = [pc.Body(name="anvil", mesh=mesh, material=steel()), pc.Body(name="hammer", mesh=mesh, material=strain, origin=(0, 0.02505))]
+    with pytest.raises(pc.InputError, match="plane stress"):
+        pc.Problem(bodies=both, contacts=[pc.Interface(groups=("anvil.top", "hammer.bottom"), friction=0.0)])

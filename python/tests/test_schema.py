@@ -64,6 +64,8 @@ BEYOND = {
     "a table in time that runs backwards": "the order of numbers",
     "a start that disagrees with a support": "values of two tables",
     "bodies that overlap": "the geometry of the bodies",
+    "bodies that touch at the start": "the geometry of the bodies",
+    "bodies in plane stress and plane strain": "values of two tables",
     "two bodies of one name": "values of two tables",
     "a bar and a plane body": "values of two tables",
     "a contact with a body that is not there": "the groups of the mesh",

@@ -55,6 +55,17 @@ impl Document {
         self.at(path).as_array().map_or(&[], Vec::as_slice)
     }
 
+    /// Whether each obstacle counts in the sums: of two bodies that touch, each is an obstacle of the other, and the first
+    /// counts.
+    pub(crate) fn counted_obstacles(&self) -> Vec<bool> {
+        let mut first = false;
+        let counts = |obstacle: &Value| {
+            first = obstacle["point"].is_null() && !first;
+            !obstacle["point"].is_null() || first
+        };
+        self.list("problem.obstacles").iter().map(counts).collect()
+    }
+
     /// A list of numbers; null, which stands for a number that is not finite, is NaN.
     pub(crate) fn column(&self, path: &str) -> Vec<f64> {
         numbers(self.at(path))

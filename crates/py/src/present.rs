@@ -153,13 +153,14 @@ fn shown<const D: usize, const N: usize>(
     contact: Option<&ContactResults<D>>,
 ) -> Result<Shown, Failure> {
     let json = made.stored_report(name).map_err(Failure::Argument)?;
+    let document = Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?;
     Ok(Shown {
         body: Body::new(made.problem.mesh()),
-        document: Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?,
         // A problem that the language of the case files cannot say has a page without it.
         statement: statement(&made.problem, Some(&made.options)).unwrap_or_default(),
         case: made.case.clone(),
-        surface: contact.and_then(Surface::new),
+        surface: contact.and_then(|contact| Surface::new(contact, &document)),
+        document,
     })
 }
 
@@ -177,13 +178,11 @@ pub(crate) fn present_file(
     let work = move |_| {
         let found = estimate_file::open(&estimate)?;
         let contact = if form.is_page() { estimate_file::contact(&estimate)? } else { None };
-        let shown = Shown {
-            body: Body::of(&found.mesh),
-            document: Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?,
-            statement: found.statement,
-            case: found.case,
-            surface: contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results))),
-        };
+        let document = Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?;
+        let surface = |contact| each_dimension!(&contact, results => Surface::new(results, &document));
+        let surface = contact.and_then(surface);
+        let (body, statement, case) = (Body::of(&found.mesh), found.statement, found.case);
+        let shown = Shown { body, document, statement, case, surface };
         form.write(&shown, &path, overwrite)
     };
     bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))

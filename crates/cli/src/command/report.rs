@@ -38,13 +38,9 @@ fn stored(file: &Path, print: &PrintArguments, work: &WorkArguments, console: &m
     let unusable = |error| Failure::Argument(format!("{}: {error}", file.display()));
     let document = Document::parse(&found.report).map_err(unusable)?;
     print.about.fits(&document).map_err(Failure::Argument)?;
-    let shown = Shown {
-        body: Body::of(&found.mesh),
-        document,
-        statement: found.statement,
-        case: found.case.as_ref(),
-        surface: contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results))),
-    };
+    let surface = contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results, &document)));
+    let (body, statement) = (Body::of(&found.mesh), found.statement);
+    let shown = Shown { body, document, statement, case: found.case.as_ref(), surface };
     present(&shown, print, work, console)?;
     Ok(DONE)
 }

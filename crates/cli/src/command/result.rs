@@ -66,12 +66,13 @@ fn show<const D: usize, const N: usize>(
         return Ok(());
     }
     let Finished { subject, options, case, results, .. } = finished;
+    let document = Document::parse(json).map_err(|error| Failure::Argument(error.to_string()))?;
     let shown = Shown {
         body: Body::new(subject.problem.mesh()),
-        document: Document::parse(json).map_err(|error| Failure::Argument(error.to_string()))?,
         statement: statement(subject.problem, Some(&options.filled(D)))?,
         case: case.as_ref(),
-        surface: Surface::new(&results.contact),
+        surface: Surface::new(&results.contact, &document),
+        document,
     };
     present(&shown, print, work, console)
 }

@@ -188,7 +188,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             candidates::add(&mut surface, mesh, (obstacle, &plane), held, fixed, area)?;
         }
         if !self.stated.interfaces.is_empty() {
-            let bodies = pairs::Bodies { mesh, body: mesh.part_of_nodes(), held: &held, fixed: &fixed };
+            let owner = |facet: FacetId| mesh.facets()[facet.index()].owner.index();
+            let law = |facet: FacetId| &materials[usize::from(element_material[owner(facet)])];
+            let bodies = pairs::Bodies { mesh, body: mesh.part_of_nodes(), held: &held, fixed: &fixed, law: &law };
             for interface in self.stated.interfaces.iter().enumerate() {
                 pairs::add(&mut surface, &bodies, interface, area)?;
             }

@@ -194,10 +194,20 @@ pub enum Cause {
     TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
     /// Nodes of an interface that do not face each other.
     #[error(
-        "the nodes of the two groups must face each other in pairs: the groups have {} and {} nodes, and node {node} \
-         is {} m aside of the nearest one; mesh both surfaces alike", .counts[0], .counts[1], short(*.offset)
+        "the nodes of the two groups must face each other in pairs, {}; mesh both surfaces alike, and place them to 1e-9 \
+         of an edge",
+        if counts[0] == counts[1] { format!("but node {node} is {} m aside of the nearest one", short(*.offset)) }
+        else { format!("but the groups have {} and {} nodes", .counts[0], .counts[1]) }
     )]
     NotMatching { counts: [usize; 2], node: usize, offset: f64 },
+    /// Edges of an interface that do not face each other.
+    #[error(
+        "no edge of the other group faces the {}; give both groups the same edges, each once", facet(.nodes)
+    )]
+    EdgesDiffer { nodes: Vec<usize> },
+    /// An interface of plane stress with plane strain.
+    #[error("one of the bodies is in plane stress and the other one in plane strain; give both the same `plane`")]
+    PlanesDiffer,
     /// A node of an interface whose motion is prescribed.
     #[error(
         "a support prescribes the motion of node {node}, which may touch another body; leave it free, or prescribe the \
@@ -205,7 +215,10 @@ pub enum Cause {
     )]
     HeldPair { node: usize },
     /// A node of an interface that may touch something else.
-    #[error("node {node} may already touch another obstacle; a node can touch one only")]
+    #[error(
+        "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by its \
+         `group` the edges that may touch it"
+    )]
     TwoContacts { node: usize },
     /// Bodies that overlap.
     #[error(

@@ -220,6 +220,14 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.surface.obstacles()
     }
 
+    /// Whether an obstacle is a plane or the first side of two surfaces that may touch.
+    #[must_use]
+    pub fn leads_interface(&self, obstacle: usize) -> bool {
+        let nodes = self.surface.nodes();
+        let first = nodes.iter().position(|contact| contact.obstacle == obstacle);
+        first.is_none_or(|at| self.surface.leads(at))
+    }
+
     /// Where an obstacle is stated: a plane, or two surfaces of different bodies.
     #[must_use]
     pub fn place_of_obstacle(&self, obstacle: usize) -> Place {

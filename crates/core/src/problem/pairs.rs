@@ -4,6 +4,7 @@ use super::candidates::along_the_boundary;
 use super::{Cause, HeldBy, InputError, boundary};
 use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FacetId, NodeId};
+use crate::material::Elastic;
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
@@ -19,6 +20,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: &'m [Option<HeldBy>],
     pub(super) fixed: &'m [[bool; D]],
+    /// The law of the element that a facet belongs to.
+    pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
 }
 
 /// One side of an interface.
@@ -45,6 +48,10 @@ pub(super) fn add<const D: usize, const N: usize>(
     let sides = [bodies.side(first).map_err(fail)?, bodies.side(second).map_err(fail)?];
     if sides[0].body == sides[1].body {
         return Err(fail(of_one_body()));
+    }
+    let [first, second] = sides.each_ref().map(|side| (bodies.law)(side.facets[0]).hypothesis());
+    if first != second {
+        return Err(fail(Cause::PlanesDiffer));
     }
     let outward = sides.each_ref().map(|side| unit(&side.outward));
     // The surface of either body may be the one that the normal stands on.
@@ -136,7 +143,24 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
             let matches = offset <= MATCHING * shortest;
             if matches { Ok(facing) } else { Err(Cause::NotMatching { counts, node: node.index(), offset }) }
         };
-        first.nodes.iter().map(partner).collect()
+        let partners = first.nodes.iter().map(partner).collect::<Result<Vec<_>, _>>()?;
+        let of: BTreeMap<NodeId, NodeId> = first.nodes.iter().copied().zip(partners.iter().copied()).collect();
+        let edges = |facets: &[FacetId], image: &dyn Fn(NodeId) -> NodeId| -> BTreeMap<Vec<NodeId>, FacetId> {
+            let sorted = |facet: &FacetId| {
+                let mut nodes = self.mesh.facets()[facet.index()].nodes.map(image).to_vec();
+                nodes.sort_unstable();
+                (nodes, *facet)
+            };
+            facets.iter().map(sorted).collect()
+        };
+        let (ours, theirs) = (edges(&first.facets, &|node| of[&node]), edges(&second.facets, &|node| node));
+        let alone = ours.iter().find(|(nodes, _)| !theirs.contains_key(*nodes));
+        match alone.or_else(|| theirs.iter().find(|(nodes, _)| !ours.contains_key(*nodes))) {
+            Some((_, facet)) => {
+                Err(Cause::EdgesDiffer { nodes: self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec() })
+            }
+            None => Ok(partners),
+        }
     }
 
     /// Whether contact is solved for at a pair, and whether its tangential motion is prescribed.

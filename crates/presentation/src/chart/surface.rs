@@ -1,5 +1,6 @@
 //! The contact surface over time, ready to draw.
 
+use crate::document::Document;
 use percute_core::contact::{ContactPoint, ContactResults};
 
 /// Most instants of a picture; of more, each piece gives its largest pressure.
@@ -19,13 +20,16 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The part of the surface that comes into contact, with the results of all nodes at all instants. None without
-    /// these, without contact, and where a single node may touch.
+    /// The part of the surface that comes into contact, with the results of all nodes at all instants; of two bodies that
+    /// touch, that of the first one. None without these, without contact, and where a single node may touch.
     #[must_use]
-    pub fn new<const D: usize>(results: &ContactResults<D>) -> Option<Self> {
+    pub fn new<const D: usize>(results: &ContactResults<D>, document: &Document) -> Option<Self> {
         let (steps, count) = (results.steps.as_ref()?, results.nodes.len());
         let time = [*results.instants.first()?, *results.instants.last()?];
-        if count < 2 || time[0] >= time[1] {
+        let counted = document.counted_obstacles();
+        let shown = |node: &usize| counted.get(results.nodes[*node].obstacle).is_none_or(|counted| *counted);
+        let nodes: Vec<usize> = (0..count).filter(shown).collect();
+        if nodes.len() < 2 || time[0] >= time[1] {
             return None;
         }
         let force = |node: usize, row: &[[f64; D]]| -> f64 {
@@ -36,7 +40,9 @@ impl Surface {
         let pieces = rows.chunks(rows.len().div_ceil(INSTANTS).max(1));
         let largest = |node: usize, piece: &[&[[f64; D]]]| piece.iter().map(|row| force(node, row)).fold(0.0, f64::max);
         let history = |node: usize| pieces.clone().map(|piece| largest(node, piece)).collect();
-        let order = order(&results.nodes, |node| results.summary.get(node).is_some_and(|s| s.peak_pressure > 0.0))?;
+        let points: Vec<_> = nodes.iter().map(|&node| results.nodes[node]).collect();
+        let pressed = |k: usize| results.summary.get(nodes[k]).is_some_and(|s| s.peak_pressure > 0.0);
+        let order: Vec<usize> = order(&points, pressed)?.into_iter().map(|k| nodes[k]).collect();
         let mut places = vec![0.0];
         for pair in order.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|node| results.nodes[node].point);

@@ -8,7 +8,8 @@ use crate::chart::{Line, OverTime, space_time};
 use crate::document::Document;
 use crate::scale::vector_quantity;
 
-/// Chart names of the first planes; more are left out of the chart.
+/// Chart names of the first contacts or planes; more are left out of the chart.
+const CONTACTS: [&str; 5] = ["contact 0", "contact 1", "contact 2", "contact 3", "contact 4"];
 const PLANES: [&str; 5] = ["plane 0", "plane 1", "plane 2", "plane 3", "plane 4"];
 
 pub(super) fn section_of(contents: &Contents<'_>) -> String {
@@ -42,11 +43,14 @@ fn facts(document: &Document) -> String {
 }
 
 fn force(document: &Document) -> String {
-    let planes = document.list("contact.obstacles");
-    let mut lines = vec![Line { name: "all planes", values: document.column("contact.total.normal_force") }];
+    let counted = document.list("contact.obstacles").iter().zip(document.counted_obstacles());
+    let planes: Vec<_> = counted.filter(|(_, counted)| *counted).map(|(plane, _)| plane).collect();
+    let bodies = document.list("problem.obstacles").iter().any(|obstacle| obstacle["point"].is_null());
+    let (all, names) = if bodies { ("all contacts", CONTACTS) } else { ("all planes", PLANES) };
+    let mut lines = vec![Line { name: all, values: document.column("contact.total.normal_force") }];
     if planes.len() > 1 {
-        let normal = |plane| crate::document::numbers(&serde_json::Value::clone(plane)["normal_force"]);
-        lines.extend(planes.iter().zip(PLANES).map(|(plane, name)| Line { name, values: normal(plane) }));
+        let normal = |plane: &serde_json::Value| crate::document::numbers(&plane["normal_force"]);
+        lines.extend(planes.into_iter().zip(names).map(|(plane, name)| Line { name, values: normal(plane) }));
     }
     let mark = document.number("contact.time_of_peak").map(|time| (time, "peak"));
     let time = document.column("contact.time");

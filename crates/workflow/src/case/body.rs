@@ -145,10 +145,24 @@ fn apart<const D: usize, const N: usize>(
         });
         found.unwrap_or(0)
     };
+    let body_of_node = |mut node: usize| {
+        let found = bodies.iter().position(|(_, mesh)| {
+            let here = node < mesh.node_count();
+            if !here {
+                node -= mesh.node_count();
+            }
+            here
+        });
+        found.unwrap_or(0)
+    };
     let tables = root.tables("body").unwrap_or_default();
     match error {
-        MeshError::PartsTouch { elements } => {
-            let [first, second] = elements.map(body_of);
+        MeshError::PartsTouch { .. } | MeshError::DuplicateNodes { .. } => {
+            let [first, second] = match *error {
+                MeshError::PartsTouch { elements } => elements.map(body_of),
+                MeshError::DuplicateNodes { first, second, .. } => [first, second].map(body_of_node),
+                _ => [0, 0],
+            };
             let message = format!(
                 "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative \
                  speed times the first step",

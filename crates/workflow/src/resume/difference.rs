@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 /// The order of the tables in a statement.
-const TABLES: [&str; 6] = ["material", "obstacle", "support", "traction", "body_force", "estimate"];
+const TABLES: [&str; 7] = ["material", "obstacle", "contact", "support", "traction", "body_force", "estimate"];
 
 /// The first difference between the statement of a case and that of a history; without `estimated`, options of the
 /// estimate do not matter.
@@ -75,6 +75,7 @@ mod tests {
     #[test]
     fn the_first_difference_has_its_key_and_both_values() {
         let one = "[[material]]\nyoung = 70e9\nplane = \"stress\"\n\
+                   [[contact]]\ngroups = [\"a.b\", \"c.d\"]\nfriction = 0.2\n\
                    [[traction]]\ngroup = \"top\"\nvalue = [[0.0, 1.0]]\n\
                    profile = { value = 1.0, gradient = [0.0, 0.0] }\n[estimate]\nevery = 1\n";
         let told = |from: &str, to: &str| {
@@ -102,6 +103,7 @@ mod tests {
                 "[[traction]] 1, value is a list of 2 in this case and a list of 1",
             ),
             ("gradient = [0.0", "gradient = [-0.0", "[[traction]] 1, profile.gradient[0] is -0.0 in this case and 0.0"),
+            ("friction = 0.2", "friction = 0.3", "[[contact]] 1, friction is 0.3 in this case and 0.2 in the history"),
             ("every = 1", "every = 2", "[estimate], every is 2 in this case and 1 in the history"),
         ] {
             assert!(told(from, to).is_some_and(|told| told.starts_with(words)), "{:?}", told(from, to));

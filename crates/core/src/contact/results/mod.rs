@@ -31,8 +31,8 @@ pub struct ContactResults<const D: usize> {
     /// Resultants of each obstacle at each instant: each plane, and each side of each interface.
     pub obstacles: Vec<Vec<Resultant<D>>>,
     /// The farthest that two nodes of different bodies in contact were moved along their interface, over the length of
-    /// their shortest edge; 0 without such nodes, none if it was not kept.
-    pub slip: Option<f64>,
+    /// their shortest edge; 0 without such nodes.
+    pub slip: f64,
     /// All nodes at all instants, if requested.
     pub steps: Option<ContactSteps<D>>,
 }

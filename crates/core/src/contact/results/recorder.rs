@@ -57,7 +57,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             summary: vec![NodeSummary::new(); nodes.len()],
             total: Vec::new(),
             obstacles: vec![Vec::new(); problem.obstacles().len()],
-            slip: Some(0.0),
+            slip: 0.0,
             steps: None,
             nodes,
         };
@@ -97,7 +97,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         if status != Status::Free && self.shortest[at] < f64::INFINITY {
             let (_, aside) = frame.split(&relative);
             let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
-            self.results.slip = self.results.slip.map(|largest| largest.max(slip));
+            self.results.slip = self.results.slip.max(slip);
         }
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);

@@ -18,6 +18,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
 ) -> Vec<PlausibilityWarning> {
     let mut all: Vec<PlausibilityWarning> = [initial_speed(problem), at_rest(problem)].into_iter().flatten().collect();
     all.extend(support_speed(problem));
+    all.extend(no_contact(problem));
     if all.iter().all(|plausibility_warning| plausibility_warning.name != "at_rest") {
         all.extend(no_touch(problem, times));
     }
@@ -44,6 +45,32 @@ fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Opt
     let largest = problem.initial_velocity().iter().map(speed).fold(0.0, f64::max);
     let (brief, message) = too_fast(largest, wave_speed(problem))?;
     Some(plausibility_warning(at("initial", None, "velocity"), "supersonic", brief, message))
+}
+
+/// A body that moves against others, and for which no contact with any of them is stated.
+fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
+    if problem.mesh().parts() < 2 {
+        return None;
+    }
+    let part = problem.mesh().part_of_nodes();
+    let mut touches = vec![false; part.len()];
+    for contact in problem.surface().nodes().iter().filter(|contact| contact.opposite.is_some()) {
+        touches[part[contact.node.index()].index()] = true;
+    }
+    let velocity = problem.initial_velocity();
+    let bodies = || part.iter().enumerate().filter(|(node, first)| *node == first.index()).map(|(node, _)| node);
+    let moves = |a: usize, b: usize| velocity[a] != velocity[b];
+    let alone = bodies().find(|&a| !touches[a] && bodies().any(|b| moves(a, b)))?;
+    let message = format!(
+        "the body of node {alone} moves against others, but no contact with them is stated: it moves through them; give \
+         the groups of edges that may touch"
+    );
+    Some(plausibility_warning(
+        at("contact", None, ""),
+        "no_contact_stated",
+        "a body without contact with others",
+        message,
+    ))
 }
 
 fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {

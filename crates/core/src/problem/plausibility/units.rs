@@ -1,6 +1,6 @@
 //! Numbers that look like those of other units.
 
-use super::{PlausibilityWarning, at, plausibility_warning};
+use super::{Place, PlausibilityWarning, at, plausibility_warning};
 use crate::load::BodyForce;
 use crate::material::{Elastic, Hypothesis, Law};
 use crate::message::short;
@@ -48,13 +48,12 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let lightest = problem.materials().iter().map(|material| material.density()).fold(f64::INFINITY, f64::min);
     let forces = problem.statement().body_forces.iter().enumerate();
     all.extend(forces.filter_map(|(index, force)| weight(force, lightest, index)));
-    all.extend(
-        problem
-            .obstacles()
-            .iter()
-            .enumerate()
-            .filter_map(|(index, obstacle)| friction(obstacle.law().friction(), index)),
-    );
+    all.extend(problem.obstacles().iter().enumerate().filter(|(index, _)| problem.leads_interface(*index)).filter_map(
+        |(index, obstacle)| {
+            let Place { table, index, .. } = problem.place_of_obstacle(index);
+            friction(obstacle.law().friction(), at(table, index, "friction"))
+        },
+    ));
     all
 }
 
@@ -195,7 +194,7 @@ fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> O
     units("body_force", Some(index), "value", message)
 }
 
-fn friction(friction: f64, index: usize) -> Option<PlausibilityWarning> {
+fn friction(friction: f64, place: Place) -> Option<PlausibilityWarning> {
     if friction <= ROUGH {
         return None;
     }
@@ -204,10 +203,5 @@ fn friction(friction: f64, index: usize) -> Option<PlausibilityWarning> {
         short(friction),
         short(0.01 * friction)
     );
-    Some(plausibility_warning(
-        at("obstacle", Some(index), "friction"),
-        "friction",
-        "friction above 2: in percent?",
-        message,
-    ))
+    Some(plausibility_warning(place, "friction", "friction above 2: in percent?", message))
 }

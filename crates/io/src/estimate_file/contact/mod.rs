@@ -45,6 +45,9 @@ pub(super) fn write<const D: usize>(
     write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
     write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
+    if results.slip > 0.0 {
+        write("slip", "", &[1], &[results.slip])?;
+    }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;
     write("gap", "m", &[instants, nodes], &steps.gap)?;
     write("sliding_velocity", "m/s", &[instants, nodes, D], steps.sliding_velocity.as_flattened())?;

@@ -53,7 +53,7 @@ impl Reader<'_, '_> {
         }
         let steps = self.steps(instants.len(), count)?;
         Ok(ContactResults {
-            slip: None,
+            slip: self.slip()?,
             nodes: self.places(&node, of_obstacles.len())?,
             summary: self.summary(count, &steps)?,
             total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,
@@ -61,6 +61,13 @@ impl Reader<'_, '_> {
             steps: Some(steps),
             instants,
         })
+    }
+
+    /// 0 unless bodies touch each other.
+    fn slip(&self) -> Result<f64, FileCause> {
+        let Some(slip) = self.part.optional("slip")? else { return Ok(0.0) };
+        slip.expect(&[1], "one number")?;
+        Ok(slip.floats()?[0])
     }
 
     fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<ContactPoint<D>>, FileCause> {

@@ -91,10 +91,12 @@ impl Facts {
         let figures = beside.checked.map(|checked| &checked.consistency);
         let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
-        let (size, slenderness) = (problem.mesh().size(), slenderness(problem.mesh()));
+        let (size, slenderness) = (size_of_bodies(problem.mesh()), slenderness(problem.mesh()));
         // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
-        let speed = beside.rebound.map(|rebound| -rebound.normal_before / wave_speed);
+        let bodies = !problem.statement().interfaces.is_empty();
+        let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
+        let speed = speed.map(|speed| speed / wave_speed);
         Self {
             dimension: D,
             reconstruction: beside.options.reconstruction,
@@ -107,8 +109,8 @@ impl Facts {
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
-            bodies: !problem.statement().interfaces.is_empty(),
-            slip: results.slip.unwrap_or(0.0),
+            bodies,
+            slip: results.slip,
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,
@@ -164,6 +166,28 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
         }
     }
     count
+}
+
+/// The largest speed at which two nodes of different bodies approach each other at the start (m/s).
+fn approach<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<f64> {
+    let nodes = problem.surface().nodes().iter().enumerate().filter(|(_, contact)| contact.opposite.is_some());
+    nodes.map(|(at, _)| -problem.start_of_contact(at).1).reduce(f64::max)
+}
+
+/// Diagonal of the bounding box of the largest body (m).
+fn size_of_bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {
+    if mesh.parts() < 2 {
+        return mesh.size();
+    }
+    let mut boxes = vec![[[f64::INFINITY; D], [f64::NEG_INFINITY; D]]; mesh.node_count()];
+    for (point, first) in mesh.points().iter().zip(mesh.part_of_nodes()) {
+        let [low, high] = &mut boxes[first.index()];
+        for c in 0..D {
+            (low[c], high[c]) = (low[c].min(point[c]), high[c].max(point[c]));
+        }
+    }
+    let size = |[low, high]: &[[f64; D]; 2]| (0..D).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt();
+    boxes.iter().filter(|[low, _]| low[0].is_finite()).map(size).fold(0.0, f64::max)
 }
 
 fn slenderness<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {

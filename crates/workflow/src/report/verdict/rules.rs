@@ -64,13 +64,26 @@ pub(super) const RULES: [Rule; 17] = [
         doubt: None,
     },
     // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`).
-    Rule { applies: |f| f.slenderness < SLENDER, range: [0.74, 1.1], situation: "thin parts that bend", doubt: None },
+    Rule {
+        applies: |f| !f.bodies && f.slenderness < SLENDER,
+        range: [0.74, 1.1],
+        situation: "thin parts that bend",
+        doubt: None,
+    },
     // bounces-runs.csv: after 3, 5 and 10 phases.
     Rule {
         applies: |f| f.phases > 1,
         range: [0.49, 2.8],
         situation: "several contact phases",
         doubt: Some("after several contacts, simulation and solution are no longer in step"),
+    },
+    // crates/estimator/tests/two_blocks.rs has 1.07 to 1.15 for blocks of metals. `percute verify` gave up to 1.8 for a soft
+    // body on a stiff one and for skewed bodies.
+    Rule {
+        applies: |f| f.bodies && f.dimension == 2,
+        range: [0.98, 1.8],
+        situation: "bodies that strike each other",
+        doubt: None,
     },
     // bar-maps.csv at Δt = Δt_c: after release the shortest wave grows.
     Rule {
@@ -94,13 +107,6 @@ pub(super) const RULES: [Rule; 17] = [
         range: [0.49, 1.4],
         situation: "bodies that touch at several places",
         doubt: Some("where a second place touches, a small error of its instant is a large error of the motion"),
-    },
-    // crates/estimator/tests/two_blocks.rs.
-    Rule {
-        applies: |f| f.bodies && f.dimension == 2 && f.contact.touches == Touches::Edge,
-        range: [1.05, 1.2],
-        situation: "blocks that strike each other with their sides",
-        doubt: None,
     },
     // effectivity-steps.csv, block.
     Rule {

@@ -36,6 +36,9 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     if !(KEPT[0]..=KEPT[1]).contains(&kept) {
         doubts.push(format!("the admissible force has {} of the contact impulse", whole_percent(kept)));
     }
+    if facts.slip > 1.0 {
+        doubts.push(format!("nodes that touch in pairs are up to {} edges aside of each other", short(facts.slip, 2)));
+    }
     doubts.extend(rule.doubt.map(str::to_string));
     doubts
 }
