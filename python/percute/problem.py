@@ -19,7 +19,7 @@ from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
 __all__ = ["Problem"]
 
-def _materials(material: Elastic | Mapping[str, Elastic]) -> list[tuple[str | None, Elastic]]:
+def _materials(material: Elastic | Mapping[str, Elastic] | None) -> list[tuple[str | None, Elastic]]:
     if isinstance(material, Elastic):
         return [(None, material)]
     groups = table("material", material, "Elastic, or one Elastic")
@@ -102,10 +102,8 @@ class Problem(Immutable):
                 if given is not None:
                     raise InputError(f"`{name}` stands beside `bodies`; each Body has its own `{instead}`")
             mesh, material, initial_velocity = join(several)
-        missing = [f"`{name}`" for name, given in (("mesh", mesh), ("material", material)) if given is None]
-        if mesh is None or material is None:
-            raise TypeError(f"Problem() needs {', '.join(missing)}")
-        self._mesh = instance("mesh", mesh, Mesh)
+        mesh = instance("mesh", mesh, Mesh)
+        self._mesh = mesh
         self._data = _percute.ProblemData(
             mesh._data,
             _materials(material),

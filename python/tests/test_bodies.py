@@ -1,8 +1,10 @@
 """Several bodies that strike each other: the same from Python and from a case, in memory and from a file."""
 
 import pickle
+import re
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -133,3 +135,15 @@ def test_surfaces_must_have_the_same_edges() -> None:
     both = [pc.Body(name="anvil", mesh=mesh, material=steel()), pc.Body(name="hammer", mesh=mesh, material=strain, origin=(0, 0.02505))]
     with pytest.raises(pc.InputError, match="plane stress"):
         pc.Problem(bodies=both, contacts=[pc.Interface(groups=("anvil.top", "hammer.bottom"), friction=0.0)])
+
+
+def test_the_page_runs(tmp_path: Path) -> None:
+    page = (BASE.parents[2] / "docs" / "bodies.md").read_text(encoding="utf-8")
+    [case] = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    [program] = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(program, names)
+    file = tmp_path / "case.toml"
+    file.write_text(case + "[time]\nend = 20e-6\ncourant = 0.9\n", encoding="utf-8")
+    run = pc.run(file)
+    assert names["estimate"].sup == run.sup

@@ -10,9 +10,8 @@ use std::io;
 /// Messages of an object header: where it goes on, and the names of a group.
 const CONTINUATION: u16 = 0x10;
 const SYMBOLS: u16 = 0x11;
-/// Bytes of an entry for a name, and of a free block without its room.
+/// Bytes of an entry for a name.
 const ENTRY: u64 = 40;
-const FREE: u64 = 16;
 /// The end of the chain of free blocks.
 const LAST: u64 = 1;
 
@@ -34,18 +33,20 @@ struct Groups<'f> {
 pub(super) fn check(file: &File) -> io::Result<Result<(), &'static str>> {
     let mut groups = Groups { file, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
     let Some(first) = groups.bytes::<16>(0)? else { return Ok(Ok(())) };
-    let start = match first[8] {
-        0 => 24,
-        1 => 28,
-        // Newer files have newer groups.
+    // Where the lengths of addresses are, the address from which others count, and that of the first object. Files of
+    // versions 2 and 3 may have old groups, too.
+    let (lengths, base, object) = match first[8] {
+        // Behind four addresses and a place in a heap.
+        0 => (13, 24, 24 + 40),
+        1 => (13, 28, 28 + 40),
+        2 | 3 => (9, 12, 12 + 24),
         _ => return Ok(Ok(())),
     };
-    if first[13..15] != [8, 8] {
+    if first[lengths..lengths + 2] != [8, 8] {
         return Ok(Err("its addresses have a length that percute does not read"));
     }
-    // Behind four addresses and a place in a heap.
-    groups.headers.extend(groups.number(start + 40)?);
-    groups.base = groups.number(start)?.unwrap_or(0);
+    groups.headers.extend(groups.number(object)?);
+    groups.base = groups.number(base)?.unwrap_or(0);
     groups.follow()
 }
 
@@ -89,10 +90,13 @@ impl Groups<'_> {
             return Ok(true);
         }
         let length = u64::from(u32::from_le_bytes([first[8], first[9], first[10], first[11]]));
+        // A damaged length does not make more messages than the header counts.
+        let mut left = u16::from_le_bytes([first[2], first[3]]);
         let mut parts = vec![(header.saturating_add(16), length)];
         while let Some((mut at, length)) = parts.pop() {
             let end = at.saturating_add(length);
-            while at.saturating_add(8) <= end {
+            while at.saturating_add(8) <= end && left > 0 {
+                left -= 1;
                 let Some(head) = self.bytes::<4>(at)? else { break };
                 let [kind, size] = [[head[0], head[1]], [head[2], head[3]]].map(u16::from_le_bytes);
                 if let (CONTINUATION | SYMBOLS, Some(pair)) = (kind, self.pair(at + 8)?) {
@@ -142,16 +146,21 @@ impl Groups<'_> {
         let Some(head) = self.bytes::<32>(heap)? else { return Ok(true) };
         let number = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| head[at + k]));
         let (size, mut free, data) = (number(8), number(16), number(24));
-        for _ in 0..=size / FREE {
-            if free == LAST || free >= size {
-                return Ok(true);
+        // The library refuses a heap that is not in the file.
+        if self.base.saturating_add(data).saturating_add(size) > self.file.metadata()?.len() {
+            return Ok(true);
+        }
+        let mut passed = HashSet::new();
+        while free != LAST && free < size {
+            if !passed.insert(free) {
+                return Ok(false);
             }
             match self.number(data.saturating_add(free))? {
                 Some(next) => free = next,
                 None => return Ok(true),
             }
         }
-        Ok(false)
+        Ok(true)
     }
 }
 

@@ -200,7 +200,7 @@ fn residual(report: &Report) -> String {
 /// The figures of a history of another program that say most.
 fn consistency(found: &Consistency) -> String {
     let [balance, start, energy] = [found.balance, found.initial_velocity, found.energy].map(percent);
-    format!("of another program: balance off by {balance}, start {start}, energy {energy}; without checksums")
+    format!("of another program: balance off by {balance}, start {start}, energy {energy}")
 }
 
 /// Nothing where all is kept.
