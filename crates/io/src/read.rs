@@ -112,7 +112,7 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     if superblock::names_driver(held.file(), found.len()).map_err(refused)? {
         return Err(FileCause::Damaged { detail: "its first bytes name a file in several parts".to_string() });
     }
-    if let Err(detail) = groups::check(held.file()).map_err(refused)? {
+    if let Err(detail) = groups::check(held.file(), found.len()).map_err(refused)? {
         return Err(FileCause::Damaged { detail: detail.to_string() });
     }
     Ok((held, found.len()))

@@ -1,6 +1,7 @@
 //! Groups in the oldest format of HDF5, whose names are in local heaps, checked before the library reads them: the free
-//! blocks of a heap form a chain, and one without an end keeps the library in an endless loop that takes all memory.
-//! Other damage is left to the library.
+//! blocks of a heap form a chain, and one without an end keeps the library in an endless loop that takes all memory. Nor
+//! does it compare the sizes in the headers of objects with each other: it reads behind a part that is too short for its
+//! messages, and takes memory for a part that is longer than the file. Other damage is left to the library.
 
 use percute_system::read_exact_at;
 use std::collections::HashSet;
@@ -18,6 +19,7 @@ const LAST: u64 = 1;
 /// A file, and the place from which addresses count.
 struct Groups<'f> {
     file: &'f File,
+    length: u64,
     base: u64,
     /// Places that were looked at: a damaged file may have circles.
     seen: HashSet<u64>,
@@ -30,8 +32,8 @@ struct Groups<'f> {
 ///
 /// # Errors
 /// What is wrong with them; a file that cannot be read.
-pub(super) fn check(file: &File) -> io::Result<Result<(), &'static str>> {
-    let mut groups = Groups { file, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
+pub(super) fn check(file: &File, length: u64) -> io::Result<Result<(), &'static str>> {
+    let mut groups = Groups { file, length, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
     let Some(first) = groups.bytes::<16>(0)? else { return Ok(Ok(())) };
     // Where the lengths of addresses are, the address from which others count, and that of the first object. Files of
     // versions 2 and 3 may have old groups, too.
@@ -58,8 +60,10 @@ impl Groups<'_> {
                     self.node(node)?;
                 }
             } else if let Some(header) = self.headers.pop() {
-                if self.seen.insert(header) && !self.header(header)? {
-                    return Ok(Err("the names of a group"));
+                if self.seen.insert(header)
+                    && let Err(wrong) = self.header(header)?
+                {
+                    return Ok(Err(wrong));
                 }
             } else {
                 return Ok(Ok(()));
@@ -83,11 +87,11 @@ impl Groups<'_> {
         Ok(self.bytes(address)?.map(u64::from_le_bytes))
     }
 
-    /// Looks at the messages of an object header; whether its heap, if it has one, is sound.
-    fn header(&mut self, header: u64) -> io::Result<bool> {
-        let Some(first) = self.bytes::<16>(header)? else { return Ok(true) };
+    /// Looks at the messages of an object header, and at its heap, if it has one.
+    fn header(&mut self, header: u64) -> io::Result<Result<(), &'static str>> {
+        let Some(first) = self.bytes::<16>(header)? else { return Ok(Ok(())) };
         if first[0] != 1 {
-            return Ok(true);
+            return Ok(Ok(()));
         }
         let length = u64::from(u32::from_le_bytes([first[8], first[9], first[10], first[11]]));
         // A damaged length does not make more messages than the header counts.
@@ -99,18 +103,24 @@ impl Groups<'_> {
                 left -= 1;
                 let Some(head) = self.bytes::<4>(at)? else { break };
                 let [kind, size] = [[head[0], head[1]], [head[2], head[3]]].map(u16::from_le_bytes);
-                if let (CONTINUATION | SYMBOLS, Some(pair)) = (kind, self.pair(at + 8)?) {
+                if at + 8 + u64::from(size) > end {
+                    return Ok(Err("an object header"));
+                }
+                if let (CONTINUATION | SYMBOLS, Some([place, other])) = (kind, self.pair(at + 8)?) {
                     match kind {
-                        CONTINUATION if self.seen.insert(pair[0]) => parts.push((pair[0], pair[1])),
-                        SYMBOLS if !self.is_sound(pair[1])? => return Ok(false),
-                        SYMBOLS => self.nodes.push(pair[0]),
+                        CONTINUATION if place.saturating_add(other) > self.length => {
+                            return Ok(Err("an object header"));
+                        }
+                        CONTINUATION if self.seen.insert(place) => parts.push((place, other)),
+                        SYMBOLS if !self.is_sound(other)? => return Ok(Err("the names of a group")),
+                        SYMBOLS => self.nodes.push(place),
                         _ => (),
                     }
                 }
-                at = at.saturating_add(8 + u64::from(size));
+                at += 8 + u64::from(size);
             }
         }
-        Ok(true)
+        Ok(Ok(()))
     }
 
     fn pair(&self, address: u64) -> io::Result<Option<[u64; 2]>> {
@@ -189,7 +199,7 @@ mod tests {
         drop(group);
         let mut bytes = std::fs::read(&path).unwrap();
         let file = File::options().read(true).write(true).open(&path).unwrap();
-        assert_eq!(check(&file).unwrap(), Ok(()));
+        assert_eq!(check(&file, bytes.len() as u64).unwrap(), Ok(()));
         let heaps: Vec<usize> = memchr::memmem::find_iter(&bytes, b"HEAP\0\0\0\0").collect();
         assert_eq!(heaps.len(), 1 + 3 * 21);
         for heap in heaps {
@@ -200,16 +210,28 @@ mod tests {
             }
             // The first free block is followed by itself.
             write_all_at(&file, &free.to_le_bytes(), data + free).unwrap();
-            assert_eq!(check(&file).unwrap(), Err("the names of a group"), "the heap at {heap}");
+            assert_eq!(check(&file, bytes.len() as u64).unwrap(), Err("the names of a group"), "the heap at {heap}");
             write_all_at(&file, &bytes[(data + free) as usize..][..8], data + free).unwrap();
         }
+        // A header that is too short for its message, and one that goes on behind the end.
+        let header =
+            bytes.windows(16).position(|found| found[..4] == [1, 0, 1, 0] && found[8..] == [24, 0, 0, 0, 0, 0, 0, 0]);
+        let header = header.unwrap();
+        write_all_at(&file, &[23], header as u64 + 8).unwrap();
+        assert_eq!(check(&file, bytes.len() as u64).unwrap(), Err("an object header"));
+        write_all_at(&file, &[24], header as u64 + 8).unwrap();
+        let [kind, place] = [header as u64 + 16, header as u64 + 24];
+        write_all_at(&file, &[0x10], kind).unwrap();
+        write_all_at(&file, &(bytes.len() as u64).to_le_bytes(), place).unwrap();
+        assert_eq!(check(&file, bytes.len() as u64).unwrap(), Err("an object header"));
+        write_all_at(&file, &bytes, 0).unwrap();
         // Circles of other kinds end, and so does each part of a file.
         for end in (0..bytes.len()).step_by(37).rev() {
             file.set_len(end as u64).unwrap();
-            assert_eq!(check(&file).unwrap(), Ok(()), "{end} bytes");
+            assert_eq!(check(&file, bytes.len() as u64).unwrap(), Ok(()), "{end} bytes");
         }
         bytes[13] = 4;
         std::fs::write(&path, &bytes).unwrap();
-        assert!(check(&file).unwrap().is_err());
+        assert!(check(&file, bytes.len() as u64).unwrap().is_err());
     }
 }
