@@ -55,8 +55,8 @@ impl Document {
         self.at(path).as_array().map_or(&[], Vec::as_slice)
     }
 
-    /// Whether each obstacle counts in the sums: of two bodies that touch, each is an obstacle of the other, and the first
-    /// counts.
+    /// Whether each obstacle counts in the sums: of two bodies that touch, each is an obstacle of the other, and the
+    /// first counts.
     pub(crate) fn counted_obstacles(&self) -> Vec<bool> {
         let mut first = false;
         let counts = |obstacle: &Value| {

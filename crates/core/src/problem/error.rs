@@ -194,8 +194,8 @@ pub enum Cause {
     TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
     /// Nodes of an interface that do not face each other.
     #[error(
-        "the nodes of the two groups must face each other in pairs, {}; mesh both surfaces alike, and place them to 1e-9 \
-         of an edge",
+        "the nodes of the two groups must face each other in pairs, {}; mesh both surfaces alike, and place them to \
+         1e-9 of an edge",
         if counts[0] == counts[1] { format!("but node {node} is {} m aside of the nearest one", short(*.offset)) }
         else { format!("but the groups have {} and {} nodes", .counts[0], .counts[1]) }
     )]
@@ -216,8 +216,8 @@ pub enum Cause {
     HeldPair { node: usize },
     /// A node of an interface that may touch something else.
     #[error(
-        "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by its \
-         `group` the edges that may touch it"
+        "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by \
+         its `group` the edges that may touch it"
     )]
     TwoContacts { node: usize },
     /// Bodies that overlap.

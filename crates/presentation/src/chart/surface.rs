@@ -20,8 +20,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The part of the surface that comes into contact, with the results of all nodes at all instants; of two bodies that
-    /// touch, that of the first one. None without these, without contact, and where a single node may touch.
+    /// The part of the surface that comes into contact, with the results of all nodes at all instants; of two bodies
+    /// that touch, that of the first one. None without these, without contact, and where a single node may touch.
     #[must_use]
     pub fn new<const D: usize>(results: &ContactResults<D>, document: &Document) -> Option<Self> {
         let (steps, count) = (results.steps.as_ref()?, results.nodes.len());

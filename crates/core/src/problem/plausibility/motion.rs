@@ -62,8 +62,8 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     let moves = |a: usize, b: usize| velocity[a] != velocity[b];
     let alone = bodies().find(|&a| !touches[a] && bodies().any(|b| moves(a, b)))?;
     let message = format!(
-        "the body of node {alone} moves against others, but no contact with them is stated: it moves through them; give \
-         the groups of edges that may touch"
+        "the body of node {alone} moves against others, but no contact with them is stated: it moves through them; \
+         give the groups of edges that may touch"
     );
     Some(plausibility_warning(
         at("contact", None, ""),

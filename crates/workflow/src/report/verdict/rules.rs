@@ -77,8 +77,8 @@ pub(super) const RULES: [Rule; 17] = [
         situation: "several contact phases",
         doubt: Some("after several contacts, simulation and solution are no longer in step"),
     },
-    // crates/estimator/tests/two_blocks.rs has 1.07 to 1.15 for blocks of metals. `percute verify` gave up to 1.8 for a soft
-    // body on a stiff one and for skewed bodies.
+    // crates/estimator/tests/two_blocks.rs has 1.07 to 1.15 for blocks of metals. `percute verify` gave up to 1.8 for a
+    // soft body on a stiff one and for skewed bodies.
     Rule {
         applies: |f| f.bodies && f.dimension == 2,
         range: [0.98, 1.8],
