@@ -1,7 +1,8 @@
 //! From what the user states to a checked problem.
 
 use super::boundary::{self, Supports};
-use super::{Cause, InputError, Problem, candidates, pairs};
+use super::pairs::Bodies;
+use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -159,7 +160,6 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         waves(&materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
         let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
-        let area = |f: FacetId| mesh.facet_normal(f).1 * extent(mesh.facets()[f.index()].owner);
 
         let mut mass = vec![0.0; mesh.node_count()];
         for e in (0..mesh.element_count()).map(ElementId::new) {
@@ -176,25 +176,14 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
-        let held = boundary::held(mesh, &self.stated);
-        let mut fixed = vec![[false; D]; mesh.node_count()];
-        prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
-        let mut surface = ContactSurface::default();
-        for (index, obstacle) in self.obstacles.into_iter().enumerate() {
-            let Some(plane) = obstacle.as_plane().cloned() else { continue };
-            in_front(mesh, &plane, &initial_displacement)
-                .map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
-            let (held, fixed) = (|f: FacetId| held[f.index()], |node: NodeId| fixed[node.index()]);
-            candidates::add(&mut surface, mesh, (obstacle, &plane), held, fixed, area)?;
-        }
-        if !self.stated.interfaces.is_empty() {
-            let owner = |facet: FacetId| mesh.facets()[facet.index()].owner.index();
-            let law = |facet: FacetId| &materials[usize::from(element_material[owner(facet)])];
-            let bodies = pairs::Bodies { mesh, body: mesh.part_of_nodes(), held: &held, fixed: &fixed, law: &law };
-            for interface in self.stated.interfaces.iter().enumerate() {
-                pairs::add(&mut surface, &bodies, interface, area)?;
-            }
-        }
+        let bodies = Bodies {
+            mesh,
+            body: mesh.part_of_nodes(),
+            held: boundary::held(mesh, &self.stated),
+            fixed: fixed(mesh.node_count(), &prescribed),
+            law: &|f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])],
+        };
+        let surface = contact_surface(&bodies, self.obstacles, &self.stated.interfaces, &initial_displacement)?;
 
         let mut problem = Problem {
             materials,
@@ -217,6 +206,33 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         check_start_of_contact(&problem)?;
         Ok(problem)
     }
+}
+
+/// Which components of each node are prescribed.
+fn fixed<const D: usize>(nodes: usize, prescribed: &[PrescribedComponent]) -> Vec<[bool; D]> {
+    let mut fixed = vec![[false; D]; nodes];
+    prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
+    fixed
+}
+
+/// The planes with the facets that face them, then the surfaces of different bodies that may touch.
+fn contact_surface<const D: usize, const N: usize>(
+    bodies: &Bodies<'_, D, N>,
+    obstacles: Vec<Obstacle<D>>,
+    interfaces: &[Interface],
+    displacement: &[[f64; D]],
+) -> Result<ContactSurface<D>, InputError> {
+    let mut surface = ContactSurface::default();
+    for (index, obstacle) in obstacles.into_iter().enumerate() {
+        let Some(plane) = obstacle.as_plane().cloned() else { continue };
+        in_front(bodies.mesh, &plane, displacement).map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
+        let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
+        candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
+    }
+    for interface in interfaces.iter().enumerate() {
+        pairs::add(&mut surface, bodies, interface)?;
+    }
+    Ok(surface)
 }
 
 /// One material for each element.

@@ -4,7 +4,7 @@ use super::candidates::along_the_boundary;
 use super::{Cause, HeldBy, InputError, boundary};
 use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FacetId, NodeId};
-use crate::material::Elastic;
+use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) mesh: &'m Mesh<D, N>,
     /// For each node the first node of its body.
     pub(super) body: Vec<NodeId>,
-    pub(super) held: &'m [Option<HeldBy>],
-    pub(super) fixed: &'m [[bool; D]],
+    pub(super) held: Vec<Option<HeldBy>>,
+    pub(super) fixed: Vec<[bool; D]>,
     /// The law of the element that a facet belongs to.
     pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
 }
@@ -34,44 +34,20 @@ struct Side<const D: usize> {
     body: NodeId,
 }
 
+/// The two sides of an interface, the common normal from the second one to the first, and the node of the second side that
+/// faces each node of the first one.
+type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
+
 /// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the
 /// second one, and the other way round.
 pub(super) fn add<const D: usize, const N: usize>(
     surface: &mut ContactSurface<D>,
     bodies: &Bodies<'_, D, N>,
     (index, interface): (usize, &Interface),
-    area: impl Fn(FacetId) -> f64,
 ) -> Result<(), InputError> {
     let fail = |cause: Cause| cause.at("contact", Some(index), "groups");
-    let [first, second] = interface.groups();
-    let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
-    let sides = [bodies.side(first).map_err(fail)?, bodies.side(second).map_err(fail)?];
-    if sides[0].body == sides[1].body {
-        return Err(fail(of_one_body()));
-    }
-    let [first, second] = sides.each_ref().map(|side| (bodies.law)(side.facets[0]).hypothesis());
-    if first != second {
-        return Err(fail(Cause::PlanesDiffer));
-    }
-    let outward = sides.each_ref().map(|side| unit(&side.outward));
-    // The surface of either body may be the one that the normal stands on.
-    let [first, second] = [outward[0].map(|n| -n), outward[1]].map(|normal| (normal, bodies.partners(&sides, &normal)));
-    let (normal, partners) = if first.1.is_err() && second.1.is_ok() { second } else { first };
+    let (sides, normal, partners) = bodies.facing(surface, interface).map_err(fail)?;
     let away = normal.map(|n| -n);
-    for (side, outward) in [(&sides[0], away), (&sides[1], normal)] {
-        let faces = |&facet: &FacetId| dot(&bodies.mesh.facet_normal(facet).0, &outward) >= FACES;
-        if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
-            let nodes = bodies.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
-            let outward = Box::new([away.to_vec(), normal.to_vec()]);
-            return Err(fail(Cause::TurnedAway { nodes, outward }));
-        }
-    }
-    let partners = partners.map_err(fail)?;
-    for node in sides.iter().flat_map(|side| &side.nodes) {
-        if surface.nodes().iter().any(|contact| contact.node == *node) {
-            return Err(fail(Cause::TwoContacts { node: node.index() }));
-        }
-    }
     let ordered = [sides[0].nodes.clone(), partners];
     let start = surface.nodes().len();
     let points = bodies.mesh.points();
@@ -90,7 +66,7 @@ pub(super) fn add<const D: usize, const N: usize>(
         let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
         let facets = side.facets.iter().map(|&facet| {
             let nodes = bodies.mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
-            ContactFacet { facet, nodes, area: area(facet), obstacle }
+            ContactFacet { facet, nodes, area: bodies.area(facet), obstacle }
         });
         let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string());
         surface.add(facing, contacts, facets);
@@ -99,6 +75,46 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// Area of a facet with section or thickness (m²).
+    pub(super) fn area(&self, facet: FacetId) -> f64 {
+        self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
+    }
+
+    /// Both sides of an interface, which are of different bodies and face each other in pairs.
+    fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<Facing<D>, Cause> {
+        let [first, second] = interface.groups();
+        let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
+        let sides = [self.side(first)?, self.side(second)?];
+        if sides[0].body == sides[1].body {
+            return Err(of_one_body());
+        }
+        let [first, second] = sides.each_ref().map(|side| (self.law)(side.facets[0]).hypothesis());
+        if first != second {
+            return Err(Cause::PlanesDiffer);
+        }
+        let outward = sides.each_ref().map(|side| unit(&side.outward));
+        // The surface of either body may be the one that the normal stands on.
+        let [first, second] =
+            [outward[0].map(|n| -n), outward[1]].map(|normal| (normal, self.partners(&sides, &normal)));
+        let (normal, partners) = if first.1.is_err() && second.1.is_ok() { second } else { first };
+        let away = normal.map(|n| -n);
+        for (side, outward) in [(&sides[0], away), (&sides[1], normal)] {
+            let faces = |&facet: &FacetId| dot(&self.mesh.facet_normal(facet).0, &outward) >= FACES;
+            if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
+                let nodes = self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+                let outward = Box::new([away.to_vec(), normal.to_vec()]);
+                return Err(Cause::TurnedAway { nodes, outward });
+            }
+        }
+        let partners = partners?;
+        for node in sides.iter().flat_map(|side| &side.nodes) {
+            if surface.nodes().iter().any(|contact| contact.node == *node) {
+                return Err(Cause::TwoContacts { node: node.index() });
+            }
+        }
+        Ok((sides, normal, partners))
+    }
+
     /// The facets of a group, which are free and of one body.
     fn side(&self, group: &str) -> Result<Side<D>, Cause> {
         let facets = boundary::facet_group(self.mesh, group)?.to_vec();
