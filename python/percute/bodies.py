@@ -71,7 +71,8 @@ class Body:
             cos, sin = np.cos(angle), np.sin(angle)
             x, y = points.T
             points = np.column_stack((cos * x - sin * y, sin * x + cos * y))
-        return np.asarray(self.origin, dtype=float) + points
+        placed: NDArray[np.float64] = np.asarray(self.origin, dtype=float) + points
+        return placed
 
 
 @dataclass(frozen=True, kw_only=True)
