@@ -34,8 +34,8 @@ struct Side<const D: usize> {
     body: NodeId,
 }
 
-/// The two sides of an interface, the common normal from the second one to the first, and the node of the second side that
-/// faces each node of the first one.
+/// The two sides of an interface, the common normal from the second one to the first, and the node of the second side
+/// that faces each node of the first one.
 type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
 
 /// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the

@@ -1,7 +1,7 @@
 //! Groups in the oldest format of HDF5, whose names are in local heaps, checked before the library reads them: the free
-//! blocks of a heap form a chain, and one without an end keeps the library in an endless loop that takes all memory. Nor
-//! does it compare the sizes in the headers of objects with each other: it reads behind a part that is too short for its
-//! messages, and takes memory for a part that is longer than the file. Other damage is left to the library.
+//! blocks of a heap form a chain, and one without an end keeps the library in an endless loop that takes all memory.
+//! Nor does it compare the sizes in the headers of objects with each other: it reads behind a part that is too short
+//! for its messages, and takes memory for a part that is longer than the file. Other damage is left to the library.
 
 use percute_system::read_exact_at;
 use std::collections::HashSet;
