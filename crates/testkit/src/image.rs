@@ -43,9 +43,7 @@ impl<const D: usize, const N: usize> Parts<D, N> {
 /// None beyond those of the mesh.
 pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshError> {
     let (sin, cos) = angle.sin_cos();
-    let mut parts = Parts::of(mesh);
-    parts.points.iter_mut().for_each(|p| *p = [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]]);
-    parts.mesh()
+    mesh.mapped(|p| [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]])
 }
 
 /// The mesh seen in a mirror, x → −x; numbers and groups are kept.
@@ -80,9 +78,7 @@ pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D
 where
     Element<D, N>: Simplex<D, N>,
 {
-    let mut parts = Parts::of(mesh);
-    parts.points.iter_mut().for_each(|p| (0..D).for_each(|c| p[c] += by[c]));
-    parts.mesh()
+    mesh.mapped(|p| std::array::from_fn(|c| p[c] + by[c]))
 }
 
 /// New numbers of nodes and elements.

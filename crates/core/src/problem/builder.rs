@@ -178,7 +178,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let bodies = Bodies {
             mesh,
-            body: mesh.part_of_nodes(),
+            // A search over all elements, which planes alone do not need.
+            body: if self.stated.interfaces.is_empty() { Vec::new() } else { mesh.part_of_nodes() },
             held: boundary::held(mesh, &self.stated),
             fixed: fixed(mesh.node_count(), &prescribed),
             law: &|f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])],

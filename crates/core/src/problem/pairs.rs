@@ -16,7 +16,7 @@ const FACES: f64 = 0.5;
 /// The data of a problem that pairs need.
 pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) mesh: &'m Mesh<D, N>,
-    /// For each node the first node of its body.
+    /// For each node the first node of its body; empty without interfaces.
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
@@ -57,10 +57,11 @@ pub(super) fn add<const D: usize, const N: usize>(
         let contact = |(at, node): (usize, &NodeId)| {
             let facing = ordered[1 - k][at];
             let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);
-            let [free, guided] = bodies.motion_of(&frame, [*node, facing]).map_err(fail)?;
+            let guided = bodies.guided(&frame, [*node, facing]).map_err(fail)?;
             let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
             let undeformed_gap = dot(&apart, &frame);
-            Ok((ContactNode { node: *node, obstacle, undeformed_gap, free, guided, opposite }, points[node.index()]))
+            let contact = ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, opposite };
+            Ok((contact, points[node.index()]))
         };
         let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, InputError>>()?;
         let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
@@ -94,9 +95,13 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         }
         let outward = sides.each_ref().map(|side| unit(&side.outward));
         // The surface of either body may be the one that the normal stands on.
-        let [first, second] =
-            [outward[0].map(|n| -n), outward[1]].map(|normal| (normal, self.partners(&sides, &normal)));
-        let (normal, partners) = if first.1.is_err() && second.1.is_ok() { second } else { first };
+        let mut normal = outward[0].map(|n| -n);
+        let mut partners = self.partners(&sides, &normal);
+        if partners.is_err()
+            && let Ok(found) = self.partners(&sides, &outward[1])
+        {
+            (normal, partners) = (outward[1], Ok(found));
+        }
         let away = normal.map(|n| -n);
         for (side, outward) in [(&sides[0], away), (&sides[1], normal)] {
             let faces = |&facet: &FacetId| dot(&self.mesh.facet_normal(facet).0, &outward) >= FACES;
@@ -179,15 +184,15 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         }
     }
 
-    /// Whether contact is solved for at a pair, and whether its tangential motion is prescribed.
-    fn motion_of(&self, normal: &[f64; D], pair: [NodeId; 2]) -> Result<[bool; 2], Cause> {
+    /// Whether the tangential motion of a pair is prescribed; across the interface both nodes are free.
+    fn guided(&self, normal: &[f64; D], pair: [NodeId; 2]) -> Result<bool, Cause> {
         let held = pair.map(|node| self.fixed[node.index()]);
         let across = (0..D).any(|c| held.iter().any(|held| held[c]) && normal[c].abs() > super::candidates::ALIGNED);
         let node = pair[usize::from(held[0] == [false; D])].index();
         if across || held[0] != held[1] {
             return Err(Cause::HeldPair { node });
         }
-        Ok([true, held[0] != [false; D]])
+        Ok(held[0] != [false; D])
     }
 }
 

@@ -135,32 +135,22 @@ fn apart<const D: usize, const N: usize>(
     bodies: &[(&str, &Mesh<D, N>)],
     error: &MeshError,
 ) -> CaseError {
-    let body_of = |mut element: usize| {
-        let found = bodies.iter().position(|(_, mesh)| {
-            let here = element < mesh.element_count();
-            if !here {
-                element -= mesh.element_count();
-            }
-            here
-        });
-        found.unwrap_or(0)
-    };
-    let body_of_node = |mut node: usize| {
-        let found = bodies.iter().position(|(_, mesh)| {
-            let here = node < mesh.node_count();
-            if !here {
-                node -= mesh.node_count();
-            }
-            here
-        });
-        found.unwrap_or(0)
+    let body_of = |mut at: usize, count: fn(&Mesh<D, N>) -> usize| {
+        let here = |(_, mesh): &(&str, &Mesh<D, N>)| {
+            let before = at;
+            at = at.wrapping_sub(count(mesh));
+            before < count(mesh)
+        };
+        bodies.iter().position(here).unwrap_or(0)
     };
     let tables = root.tables("body").unwrap_or_default();
     match error {
         MeshError::PartsTouch { .. } | MeshError::DuplicateNodes { .. } => {
             let [first, second] = match *error {
-                MeshError::PartsTouch { elements } => elements.map(body_of),
-                MeshError::DuplicateNodes { first, second, .. } => [first, second].map(body_of_node),
+                MeshError::PartsTouch { elements } => elements.map(|element| body_of(element, Mesh::element_count)),
+                MeshError::DuplicateNodes { first, second, .. } => {
+                    [first, second].map(|node| body_of(node, Mesh::node_count))
+                }
                 _ => [0, 0],
             };
             let message = format!(

@@ -42,12 +42,12 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
 
 /// The planes, in their order, and the surfaces of different bodies.
 pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
-    let planes = problem.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
     let told = |obstacle: usize| {
         let surface = problem.surface().nodes().iter().enumerate();
         let mine = surface.filter(|(_, node)| node.obstacle == obstacle && node.free);
         let speeds = mine.clone().map(|(at, _)| -problem.start_of_contact(at).1);
-        let interface = obstacle.checked_sub(planes).map(|after| &problem.statement().interfaces[after / 2]);
+        let place = problem.place_of_obstacle(obstacle);
+        let interface = place.index.filter(|_| place.table == "contact").map(|at| &problem.statement().interfaces[at]);
         PlaneInfo {
             groups: interface.map(|interface| interface.groups().map(str::to_string)),
             gap: problem.initial_gap(obstacle),
@@ -56,7 +56,7 @@ pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) ->
         }
     };
     // The two sides of an interface have the same gaps.
-    (0..planes).chain((planes..problem.obstacles().len()).step_by(2)).map(told).collect()
+    (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle)).map(told).collect()
 }
 
 impl MaterialInfo {

@@ -58,9 +58,9 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
         touches[part[contact.node.index()].index()] = true;
     }
     let velocity = problem.initial_velocity();
-    let bodies = || part.iter().enumerate().filter(|(node, first)| *node == first.index()).map(|(node, _)| node);
-    let moves = |a: usize, b: usize| velocity[a] != velocity[b];
-    let alone = bodies().find(|&a| !touches[a] && bodies().any(|b| moves(a, b)))?;
+    let bodies: Vec<usize> = (0..part.len()).filter(|&node| node == part[node].index()).collect();
+    let moves = |a: usize| bodies.iter().any(|&b| velocity[a] != velocity[b]);
+    let alone = *bodies.iter().find(|&&a| !touches[a] && moves(a))?;
     let message = format!(
         "the body of node {alone} moves against others, but no contact with them is stated: it moves through them; \
          give the groups of edges that may touch"
