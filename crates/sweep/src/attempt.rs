@@ -3,6 +3,7 @@
 
 use crate::plan::Planned;
 use percute_system::try_lock;
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -18,8 +19,10 @@ fn prefix() -> String {
     format!(".attempt-{}-", percute_system::machine())
 }
 
-/// Locked as long as its process lives.
-const LOCK: &str = ".lock";
+/// Start of the names of the files that are locked as long as the processes of attempts live.
+fn lock_prefix() -> String {
+    format!(".lock-{}-", percute_system::machine())
+}
 
 /// What is known of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,22 +67,49 @@ pub(crate) fn state(folder: &Path, case: &Planned) -> State {
 pub(crate) struct Attempt {
     folder: PathBuf,
     place: PathBuf,
-    /// Held open for its lock.
-    lock: File,
+    lock: Lock,
+}
+
+/// A lock file, held open for its lock. It is there before the folder and after it: a folder without one is of a
+/// process that has ended.
+#[derive(Debug)]
+struct Lock {
+    path: PathBuf,
+    file: File,
+}
+
+impl Lock {
+    /// Locks a file. File systems without locks go without: the folder of a killed run stays.
+    fn at(path: PathBuf) -> io::Result<Self> {
+        loop {
+            let file = File::create(&path)?;
+            let _ = try_lock(&file);
+            // Another sweep may have taken it for one that was left, before it was locked.
+            if path.exists() {
+                return Ok(Self { path, file });
+            }
+        }
+    }
+
+    fn remove(self) {
+        let Self { path, file } = self;
+        // Not every system removes an open file. One that cannot be removed is removed by the next sweep.
+        drop(file);
+        let _ = fs::remove_file(path);
+    }
 }
 
 impl Attempt {
     /// Makes the folder of an attempt, with the case in it.
     pub(crate) fn begin(all: &Path, case: &Planned) -> io::Result<Self> {
         fs::create_dir_all(all)?;
-        let folder = all.join(format!("{}{}-{}", prefix(), std::process::id(), case.name));
+        let name = format!("{}-{}", std::process::id(), case.name);
+        let folder = all.join(prefix() + &name);
+        let lock = Lock::at(all.join(lock_prefix() + &name))?;
         if folder.exists() {
             fs::remove_dir_all(&folder)?;
         }
         fs::create_dir(&folder)?;
-        let lock = File::create(folder.join(LOCK))?;
-        // File systems without locks go without: the folder of a killed run stays.
-        let _ = try_lock(&lock);
         fs::write(folder.join(CASE), &case.text)?;
         Ok(Self { folder, place: all.join(&case.name), lock })
     }
@@ -104,13 +134,12 @@ impl Attempt {
         } else if warnings.metadata()?.len() == 0 {
             fs::remove_file(warnings)?;
         }
-        fs::remove_file(folder.join(LOCK))?;
-        // A folder with an open file cannot be renamed on every system.
-        drop(lock);
         match fs::remove_dir_all(&place) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-            _ => fs::rename(folder, place),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => fs::rename(folder, place)?,
         }
+        lock.remove();
+        Ok(())
     }
 
     /// The text on standard error.
@@ -124,18 +153,54 @@ impl Attempt {
     pub(crate) fn give_up(self) {
         // One that cannot be removed stays, under a name that no case has.
         let _ = fs::remove_dir_all(&self.folder);
+        self.lock.remove();
     }
 }
 
 /// Removes attempts on this machine whose process has ended.
 pub(crate) fn clean(folder: &Path) {
-    let prefix = prefix();
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if entry.file_name().to_string_lossy().starts_with(&prefix) {
-            let ended = File::open(entry.path().join(LOCK)).is_ok_and(|lock| try_lock(&lock).is_ok());
-            if ended {
-                let _ = fs::remove_dir_all(entry.path());
+    let [attempt, locked] = [prefix(), lock_prefix()];
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let name = |entry: fs::DirEntry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        name.strip_prefix(&attempt).or(name.strip_prefix(&locked)).map(str::to_string)
+    };
+    for name in entries.filter_map(name).collect::<BTreeSet<_>>() {
+        let (attempt, path) = (folder.join(attempt.clone() + &name), folder.join(locked.clone() + &name));
+        match File::open(&path) {
+            Ok(file) if try_lock(&file).is_ok() => {
+                let _ = fs::remove_dir_all(attempt);
+                Lock { path, file }.remove();
             }
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let _ = fs::remove_dir_all(attempt);
+            }
+            // Its process runs.
+            _ => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A process may end between any two of its steps: lock, folder, name of the case, end of the lock.
+    #[test]
+    fn attempts_of_ended_processes_are_removed_and_running_ones_stay() {
+        let all = tempfile::tempdir().unwrap();
+        let case = |name: &str| Planned { name: name.to_string(), text: String::new() };
+        let running = Attempt::begin(all.path(), &case("runs")).unwrap();
+        let ended = [prefix() + "1-no lock", prefix() + "1-both"].map(|name| all.path().join(name));
+        ended.iter().for_each(|folder| fs::create_dir(folder).unwrap());
+        for name in ["1-both", "1-no folder"] {
+            fs::write(all.path().join(lock_prefix() + name), "").unwrap();
+        }
+        clean(all.path());
+        let left = || fs::read_dir(all.path()).unwrap().count();
+        assert!(running.folder().join(CASE).exists());
+        assert_eq!(left(), 2, "its folder and its lock");
+        running.give_up();
+        assert_eq!(left(), 0);
     }
 }

@@ -94,6 +94,8 @@ pub fn run<'c>(
         count.left = total - done;
         let mut stops = || observer.observe(Progress { stage: "running cases", done, total }).is_break();
         if stops() || count.left == 0 {
+            // A process that was being started when its sweep was killed keeps the lock for some moments.
+            clean(folder);
             return Ok(count);
         }
         while pool.0.len() < launch.jobs.max(1) {
