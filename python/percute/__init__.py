@@ -36,7 +36,6 @@ from percute.errors import (
 from percute.estimating import estimate
 from percute.estimation import Estimate
 from percute.evidence import reproduce
-from percute.exact import Effectivity, TrueError
 from percute.files import open, resume, run
 from percute.history import History
 from percute.mesh import Mesh
@@ -47,6 +46,7 @@ from percute.records import ElementMap, OverTime, Parts, Separation, Sources, So
 from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 from percute.sweeping import Sweep, sweep
+from percute.true_error import Effectivity, TrueError
 from percute.verifying import Verification, verify
 
 __all__ = [

@@ -7,7 +7,7 @@ import os
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +24,8 @@ from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.stored import StoredEstimate
+from percute.true_error import Effectivity, TrueError
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.exact import Effectivity, TrueError
 
 __all__ = ["Estimate"]
 
@@ -219,8 +217,6 @@ class Estimate(EstimateViews):
         error : percute.TrueError
             The true error of the same history, as `History.error` and ``percute.exact`` give it.
         """
-        from percute.exact import Effectivity, TrueError
-
         true = instance("error", error, TrueError)
         return Effectivity(sup=self.sup / true.sup, mean=self.mean / true.mean)
 

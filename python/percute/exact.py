@@ -11,17 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.bar_row import BarRow
 from percute.checks import instance, number, numbers, text, whole, wrong
 from percute.errors import InputError
-from percute.estimation import Estimate
 from percute.history import History
 from percute.statement import Elastic
-from percute.words import counted
+from percute.true_error import Compared, Effectivity, TrueError
 
 __all__ = [
     "BarImpact",
     "BarMode",
     "BarRamp",
+    "BarRow",
     "BlockMode",
     "BouncingBar",
     "ClampedRod",
@@ -37,37 +38,6 @@ UNITS = {
 """Arguments that must be positive."""
 POINTS = 8
 """Points of an element at which an error is measured. A jump inside an element is placed to 1/16 of it."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class TrueError:
-    """The true error of a simulation, eq. [60]: the energy norm of the difference from exact fields or from a finer simulation."""
-
-    sup: float
-    """Largest over the t_n (J^½)."""
-    mean: float
-    """√((1/T)∫e² dt) (J^½)."""
-    time: NDArray[np.float64]
-    """t_n (s), shape (instants,)."""
-    kinetic: NDArray[np.float64]
-    """Kinetic part of e² (J), shape (instants,)."""
-    elastic: NDArray[np.float64]
-    """Elastic part of e² (J), shape (instants,)."""
-    total: NDArray[np.float64]
-    """e² (J), shape (instants,)."""
-
-    def __repr__(self) -> str:
-        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}>"
-
-
-@dataclass(frozen=True)
-class Effectivity:
-    """Effectivity index: estimated over true error."""
-
-    sup: float
-    """Of the largest error."""
-    mean: float
-    """Of the mean error."""
 
 
 class _Exact:
@@ -111,7 +81,7 @@ class _Exact:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Bar(_Exact):
+class _Bar(_Exact, Compared):
     """An exact solution of a uniform bar on [0, L]. On a wave front, fields have their values behind it."""
 
     length: float
@@ -158,26 +128,7 @@ class _Bar(_Exact):
             force = stiffness * np.diff(u) / size[:, None]
             kinetic[n] = np.sum(part * inertia * (v[:, :1] + s * np.diff(v) - self.velocity(x, t)) ** 2)
             elastic[n] = np.sum(part * (force - self.normal_force(x, t)) ** 2) / stiffness
-        total = kinetic + elastic
-        mean = np.sum(np.diff(history.time) * (total[1:] + total[:-1])) / (2 * history.time[-1])
-        sup, mean = float(np.sqrt(total.max())), float(np.sqrt(mean))
-        return TrueError(sup=sup, mean=mean, time=history.time, kinetic=kinetic, elastic=elastic, total=total)
-
-    def effectivity(self, estimate: Estimate, history: History | None = None) -> Effectivity:
-        """Give the estimated over the true error, for the largest and the mean one.
-
-        Parameters
-        ----------
-        estimate : Estimate
-            The estimate.
-        history : History, optional
-            What it is the estimate of; needed only if the estimate comes from a file.
-        """
-        instance("estimate", estimate, Estimate)
-        measured = history if history is not None else estimate.history
-        if measured is None:
-            raise InputError("`history` is missing: an estimate from a file does not hold it")
-        return estimate.effectivity(self.error(measured))
+        return TrueError.over(history.time, kinetic, elastic)
 
     def _at(self, name: str, x: ArrayLike, t: ArrayLike) -> NDArray[np.float64]:
         places = numbers("x", x, most=32, finite=True)

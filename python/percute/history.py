@@ -7,7 +7,7 @@ import os
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,12 +20,10 @@ from percute.errors import FileFormatError, InputError, MissingFileError, Percut
 from percute.foreign import ForeignArrays
 from percute.problem import Problem
 from percute.rebound import Rebound
+from percute.true_error import TrueError
 from percute.termination import file_closed_at_signals
 from percute.views import HistoryViews
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.exact import TrueError
 
 __all__ = ["History"]
 
@@ -390,6 +388,4 @@ def _rebuild(problem: Problem, *contents: Any) -> History:
 
 def true_errors_of(found: list[Any]) -> list[TrueError]:
     """Make records of true errors and their values over time."""
-    from percute.exact import TrueError
-
     return [TrueError(sup=sup, mean=mean, **over_time) for sup, mean, over_time in found]

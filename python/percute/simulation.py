@@ -22,7 +22,7 @@ from percute.progress import ProgressOption, shown
 from percute.termination import file_closed_at_signals
 
 if TYPE_CHECKING:
-    from percute.exact import TrueError
+    from percute.true_error import TrueError
 
 __all__ = ["simulate", "true_errors"]
 

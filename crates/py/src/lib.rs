@@ -2,6 +2,7 @@
 //! `python/percute`.
 
 mod any;
+mod bar_row;
 mod bridge;
 mod case;
 mod contact;
@@ -33,6 +34,8 @@ mod _percute {
     use pyo3::prelude::*;
     use std::ffi::OsString;
 
+    #[pymodule_export]
+    use super::bar_row::BarRowData;
     #[pymodule_export]
     use super::bridge::{ProgressNow, close_files};
     #[pymodule_export]

@@ -47,6 +47,7 @@ STUDIES: tuple[Study, ...] = (
     Study("stress-maps", "The paper's figures 8 and 9: stresses and their error", "stress_maps"),
     Study("time-steps", "The paper's figure 10: the error and the time step", "time_steps"),
     Study("benchmarks", "Exact and published cases, and how the simulation converges to them", "benchmarks"),
+    Study("bar-rows", "Bars that strike each other, against the exact solution", "bar_rows"),
 )
 
 

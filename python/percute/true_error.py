@@ -1,0 +1,84 @@
+"""The true error of a simulation, and how an exact solution measures it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percute.checks import instance
+from percute.errors import InputError
+from percute.words import counted
+
+if TYPE_CHECKING:
+    from percute.estimation import Estimate
+    from percute.history import History
+
+__all__ = ["Compared", "Effectivity", "TrueError"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class TrueError:
+    """The true error of a simulation, eq. [60]: the energy norm of the difference from exact fields or from a finer simulation."""
+
+    sup: float
+    """Largest over the t_n (J^½)."""
+    mean: float
+    """√((1/T)∫e² dt) (J^½)."""
+    time: NDArray[np.float64]
+    """t_n (s), shape (instants,)."""
+    kinetic: NDArray[np.float64]
+    """Kinetic part of e² (J), shape (instants,)."""
+    elastic: NDArray[np.float64]
+    """Elastic part of e² (J), shape (instants,)."""
+    total: NDArray[np.float64]
+    """e² (J), shape (instants,)."""
+
+    @classmethod
+    def over(cls, time: NDArray[np.float64], kinetic: NDArray[np.float64], elastic: NDArray[np.float64]) -> TrueError:
+        """Give the error with these parts of e² at the t_n; the mean is by the trapezoidal rule."""
+        total = kinetic + elastic
+        mean = np.sum(np.diff(time) * (total[1:] + total[:-1])) / (2 * time[-1])
+        return cls(sup=float(np.sqrt(total.max())), mean=float(np.sqrt(mean)), time=time, kinetic=kinetic, elastic=elastic, total=total)
+
+    def __repr__(self) -> str:
+        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}>"
+
+
+@dataclass(frozen=True)
+class Effectivity:
+    """Effectivity index: estimated over true error."""
+
+    sup: float
+    """Of the largest error."""
+    mean: float
+    """Of the mean error."""
+
+
+class Compared(ABC):
+    """An exact solution that gives the true error of its simulations."""
+
+    @abstractmethod
+    def error(self, history: History) -> TrueError:
+        """Give the true error of a simulation, eq. [60]."""
+
+    def effectivity(self, estimate: Estimate, history: History | None = None) -> Effectivity:
+        """Give the estimated over the true error, for the largest and the mean one.
+
+        Parameters
+        ----------
+        estimate : Estimate
+            The estimate.
+        history : History, optional
+            What it is the estimate of; needed only if the estimate comes from a file.
+        """
+        from percute.estimation import Estimate
+
+        instance("estimate", estimate, Estimate)
+        measured = history if history is not None else estimate.history
+        if measured is None:
+            raise InputError("`history` is missing: an estimate from a file does not hold it")
+        return estimate.effectivity(self.error(measured))
