@@ -33,6 +33,7 @@ impl Overwrite {
 }
 
 /// A file without its final name.
+#[derive(Debug)]
 pub(crate) struct Unnamed {
     temporary: NamedTempFile,
     /// Removed if the process ends early.
@@ -77,6 +78,11 @@ impl Unnamed {
     /// Its final path.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Its path until then.
+    pub(crate) fn temporary(&self) -> &Path {
+        self.temporary.path()
     }
 
     /// Gives the file its name. It is locked against writers from then on.

@@ -4,7 +4,7 @@ use crate::case::{Keep, Source};
 use crate::failure::Failure;
 use crate::foreign::Origin;
 use crate::history::plan;
-use percute_core::history::{SinkError, StepSource};
+use percute_core::history::StepSource;
 use percute_core::problem::Problem;
 use percute_estimator::{Options, RunError};
 use percute_io::Overwrite;
@@ -30,7 +30,8 @@ pub struct Whole<'a, const D: usize, const N: usize> {
 
 impl<const D: usize, const N: usize> Whole<'_, D, N> {
     /// Writes the file: that of a run that was stored from its start, byte by byte, or that of another program's
-    /// simulation, from which `percute estimate` gives the same estimate. A file that cannot be completed is removed.
+    /// simulation, from which `percute estimate` gives the same estimate. It has its name, and replaces another file,
+    /// once it is complete.
     ///
     /// # Errors
     /// A problem that the language of the case files cannot say; a file that exists and may not be replaced, or that
@@ -44,17 +45,63 @@ impl<const D: usize, const N: usize> Whole<'_, D, N> {
         });
         let plan = plan(problem, steps.times(), options, case, &Keep::default())?;
         let plan = plan.with_given(velocity, acceleration).simulated_elsewhere(elsewhere);
-        let mut writer = plan.create(path, overwrite)?;
+        let mut writer = plan.create_whole(path, overwrite)?;
         let written = steps.replay(&mut |step| writer.push(step));
-        let written = written.map_err(unread).and_then(|()| Ok(writer.finish()?));
-        if written.is_err() {
-            // It was made here, and holds a part of the history.
-            let _ = std::fs::remove_file(path);
-        }
-        written
+        written.map_err(|error| Failure::from_sink(error, RunError::Source))?;
+        Ok(writer.finish()?)
     }
 }
 
-fn unread(error: SinkError) -> Failure {
-    Failure::from_sink(error, RunError::Source)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::parse;
+    use percute_core::dynamics::simulate;
+    use percute_core::history::{History, SinkError, Step};
+    use percute_core::observer::Unobserved;
+    use percute_core::simplex::ByDimension;
+    use percute_core::time::TimeGrid;
+    use percute_io::history::open;
+
+    /// A history that breaks off behind some steps.
+    struct Broken<'h>(&'h History<1>, usize);
+
+    impl StepSource<1> for Broken<'_> {
+        fn times(&self) -> &TimeGrid {
+            self.0.times()
+        }
+
+        fn count(&self) -> usize {
+            self.0.count()
+        }
+
+        fn replay(&self, take: &mut dyn FnMut(&Step<'_, 1>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+            self.0.replay(&mut |step| if step.index < self.1 { take(step) } else { Err("stopped".into()) })
+        }
+    }
+
+    #[test]
+    fn a_file_is_replaced_by_a_whole_history_only() {
+        let text = include_str!("../../../examples/bar.toml");
+        let ByDimension::Bar(case) = parse(Source::new("bar.toml", text)).unwrap() else { panic!("triangles") };
+        let mut history = History::new(&case.times);
+        simulate(&case.problem, &case.times, &mut history, &mut Unobserved).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.vtkhdf");
+        let write = |steps: &dyn StepSource<1>| {
+            let (problem, options) = (&case.problem, &case.options);
+            Whole { problem, steps, given: [false; 2], options, case: None, origin: None }
+                .write(&path, Overwrite::Replace)
+        };
+        let files = || std::fs::read_dir(folder.path()).unwrap().count();
+        assert!(write(&Broken(&history, 3)).is_err() && files() == 0);
+        std::fs::write(&path, "dear").unwrap();
+        for count in [0, 1, history.count() - 1] {
+            assert!(write(&Broken(&history, count)).is_err());
+            assert!(std::fs::read(&path).unwrap() == b"dear" && files() == 1, "{count} steps");
+        }
+        write(&history).unwrap();
+        let ByDimension::Bar(stored) = open(&path).unwrap() else { panic!("triangles") };
+        assert!(stored.has_ended() && stored.count() == history.count() && files() == 1);
+    }
 }

@@ -8,6 +8,7 @@ mod native;
 mod nodal;
 mod open;
 mod plan;
+mod queue;
 mod recover;
 mod resume;
 mod rows;

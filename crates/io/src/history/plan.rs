@@ -6,7 +6,7 @@ use super::kept::Kept;
 use super::native::write_vectors;
 use super::rows::{FIELDS, Places};
 use super::sums::fixed_part;
-use super::writer::{Begun, Writer};
+use super::writer::{Begun, Target, Writer};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -129,18 +129,36 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// a disk without enough space. No file is left then.
     pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
         let path = path.as_ref();
-        self.make(path, overwrite).map_err(|cause| cause.at(path))
+        let named = self.unnamed(path, overwrite).and_then(|(unnamed, places)| {
+            let path = unnamed.path().to_path_buf();
+            self.writer(Target::Named(unnamed.put()?, path), places)
+        });
+        named.map_err(|cause| cause.at(path))
     }
 
-    fn make(&self, path: &Path, overwrite: Overwrite) -> Result<Writer<D>, FileCause> {
-        let create = |source| FileCause::Create { source };
+    /// The same for a history that is there already: the file has its name, and replaces another one, once it is
+    /// complete. Without [`Writer::finish`], nothing is left of it.
+    ///
+    /// # Errors
+    /// As for [`Plan::create`].
+    pub fn create_whole(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
+        let path = path.as_ref();
+        let unnamed = self.unnamed(path, overwrite);
+        let writer = unnamed.and_then(|(unnamed, places)| self.writer(Target::Unnamed(unnamed), places));
+        writer.map_err(|cause| cause.at(path))
+    }
+
+    fn unnamed(&self, path: &Path, overwrite: Overwrite) -> Result<(Unnamed, Places), FileCause> {
         let (unnamed, places) = Unnamed::new(path, overwrite, self.bytes(), |file, texts| self.fill(file, texts))?;
-        write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement()).map_err(create)?;
-        let path = unnamed.path().to_path_buf();
-        let held = unnamed.put()?;
+        let start = write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement());
+        start.map_err(|source| FileCause::Create { source })?;
+        Ok((unnamed, places))
+    }
+
+    fn writer(&self, target: Target, places: Places) -> Result<Writer<D>, FileCause> {
         let begun =
             Begun { last: self.times.step_count(), next: 0, stored: 0, given: self.given, kept: self.kept.clone() };
-        Writer::new(&path, held, places, begun).map_err(create)
+        Writer::new(target, places, begun).map_err(|source| FileCause::Create { source })
     }
 
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<Places, FileCause> {

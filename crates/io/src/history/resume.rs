@@ -5,7 +5,7 @@ use super::file::{HistoryFile, Identity};
 use super::kept::Kept;
 use super::open::contents;
 use super::rows::Places;
-use super::writer::{Begun, Writer};
+use super::writer::{Begun, Target, Writer};
 use crate::create::reserve;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
@@ -107,7 +107,10 @@ where
         write_all_at(held.file(), &[0], places.complete).map_err(create)?;
         let (kept, given) = (now.keeps(), now.stored());
         let begun = Begun { last: now.run_times().step_count(), next, stored, given, kept };
-        Ok(Unended { checkpoint, writer: Writer::new(path, held, places, begun).map_err(create)? })
+        Ok(Unended {
+            checkpoint,
+            writer: Writer::new(Target::Named(held, path.to_path_buf()), places, begun).map_err(create)?,
+        })
     }
 
     /// Compares the first instants with their checksums: damage there would stay.

@@ -2,8 +2,10 @@
 
 use super::checkpoints::is_due;
 use super::kept::Kept;
+use super::queue::Queue;
 use super::recover::{give_back_room, set_steps};
-use super::rows::{Places, Row};
+use super::rows::Places;
+use crate::create::Unnamed;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::unfinished::Unfinished;
@@ -12,18 +14,14 @@ use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::thread::JoinHandle;
-
-/// Number of steps that may wait for the disk during the run.
-const WAITING: usize = 2;
 
 /// Writes steps into a history file in a separate thread. Written steps survive if the process is killed
-/// later. Such a file has all complete steps and is not marked complete.
+/// later, unless the file is given its name at the end. Such a file has all complete steps and is not marked complete.
 #[derive(Debug)]
 pub struct Writer<const D: usize> {
-    path: PathBuf,
-    held: Held,
+    // Dropped first: the file is written until then.
+    queue: Queue<D>,
+    target: Target,
     places: Places,
     last: usize,
     next: usize,
@@ -33,16 +31,57 @@ pub struct Writer<const D: usize> {
     kept: Option<Kept>,
     /// Until there is a step, the file is of no use.
     unfinished: Option<Unfinished>,
-    rows: Option<SyncSender<Entry<D>>>,
-    used: Receiver<Row<D>>,
-    thread: Option<JoinHandle<Result<(), Failure>>>,
-    failed: Option<Failure>,
 }
 
-/// A copy of what is to be written.
-enum Entry<const D: usize> {
-    Row(Row<D>),
-    Checkpoint(Checkpoint<D>),
+/// The file that is written.
+#[derive(Debug)]
+pub(super) enum Target {
+    /// It has its name.
+    Named(Held, PathBuf),
+    /// It is given its name once it is complete.
+    Unnamed(Unnamed),
+}
+
+impl Target {
+    fn file(&self) -> &File {
+        match self {
+            Self::Named(held, _) => held.file(),
+            Self::Unnamed(unnamed) => unnamed.file(),
+        }
+    }
+
+    /// Its name, now or in the end.
+    fn path(&self) -> &Path {
+        match self {
+            Self::Named(_, path) => path,
+            Self::Unnamed(unnamed) => unnamed.path(),
+        }
+    }
+
+    /// Where it is now.
+    fn place(&self) -> Option<PathBuf> {
+        match self {
+            Self::Named(held, path) => held.place(path),
+            Self::Unnamed(unnamed) => Some(unnamed.temporary().to_path_buf()),
+        }
+    }
+
+    /// What is removed if the process ends before the file has a step.
+    fn unfinished(&self) -> Option<Unfinished> {
+        match self {
+            Self::Named(_, path) => Some(Unfinished::new(path)),
+            Self::Unnamed(_) => None,
+        }
+    }
+
+    /// Gives the complete file its name; `now` is its place.
+    fn put(self, now: PathBuf) -> Result<(), FileCause> {
+        match self {
+            Self::Named(_, path) if path == now => Ok(()),
+            Self::Named(..) => Err(FileCause::Lost { now: Some(now) }),
+            Self::Unnamed(unnamed) => unnamed.put().map(drop),
+        }
+    }
 }
 
 /// The part of a run that its file is to hold, and that is there already.
@@ -60,39 +99,18 @@ pub(super) struct Begun {
     pub(super) kept: Option<Kept>,
 }
 
-/// The step that could not be written.
-#[derive(Debug)]
-struct Failure {
-    step: usize,
-    kind: io::ErrorKind,
-    code: Option<i32>,
-}
-
-impl Failure {
-    fn cause(&self) -> FileCause {
-        let source = self.code.map_or_else(|| self.kind.into(), io::Error::from_raw_os_error);
-        FileCause::Write { step: self.step, source }
-    }
-}
-
 impl<const D: usize> Writer<D> {
-    pub(super) fn new(path: &Path, held: Held, places: Places, begun: Begun) -> io::Result<Self> {
+    pub(super) fn new(target: Target, places: Places, begun: Begun) -> io::Result<Self> {
         let Begun { last, next, stored, given, kept } = begun;
-        let (rows, taken) = sync_channel(WAITING);
-        let (back, used) = channel();
-        let own = held.file().try_clone()?;
-        let work = move || write_all(&own, &places, &taken, &back);
-        let thread = std::thread::Builder::new().name("percute-history".to_string()).spawn(work)?;
-        let (rows, thread) = (Some(rows), Some(thread));
-        let unfinished = (places.had == 0).then(|| Unfinished::new(path));
-        let (path, failed) = (path.to_path_buf(), None);
-        Ok(Self { path, held, places, last, next, stored, given, kept, unfinished, rows, used, thread, failed })
+        let queue = Queue::new(target.file().try_clone()?, places)?;
+        let unfinished = if places.had == 0 { target.unfinished() } else { None };
+        Ok(Self { queue, target, places, last, next, stored, given, kept, unfinished })
     }
 
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.path
+        self.target.path()
     }
 
     /// Number of instants taken so far.
@@ -114,42 +132,29 @@ impl<const D: usize> Writer<D> {
     /// # Errors
     /// A step that could not be written, or a file that was moved or removed.
     pub fn finish(mut self) -> Result<(), FileError> {
-        self.stop();
-        let finished = match &self.failed {
-            Some(failure) => Err(failure.cause()),
-            None => self.complete(),
-        };
-        finished.map_err(|cause| cause.at(&self.path))
+        let completed = self.queue.end(self.next).and_then(|()| self.complete());
+        let path = self.path().to_path_buf();
+        completed.and_then(|place| self.target.put(place)).map_err(|cause| cause.at(&path))
     }
 
-    fn complete(&self) -> Result<(), FileCause> {
+    /// Completes the file and returns its place.
+    fn complete(&self) -> Result<PathBuf, FileCause> {
         let stored = self.stored.max(self.places.had);
         let failed = |detail: String| FileCause::Finish { detail, steps: stored };
         let told = |error: io::Error| failed(error.to_string());
-        self.held.file().sync_data().map_err(told)?;
-        let place = self.held.place(&self.path);
-        let Some(now) = place else { return Err(FileCause::Lost { now: None }) };
-        set_steps(&now, stored).map_err(failed)?;
+        let file = self.target.file();
+        file.sync_data().map_err(told)?;
+        let Some(place) = self.target.place() else { return Err(FileCause::Lost { now: None }) };
+        set_steps(&place, stored).map_err(failed)?;
         let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
-        give_back_room(self.held.file(), self.places.rooms(D as u64), planned, stored);
+        give_back_room(file, self.places.rooms(D as u64), planned, stored);
         if let Some(checkpoints) = self.places.checkpoints.filter(|_| self.next > self.last) {
-            checkpoints.give_back(self.held.file());
+            checkpoints.give_back(file);
         }
         // The last write: a file that is complete is the same, byte by byte, wherever its run was killed.
-        write_all_at(self.held.file(), &[1], self.places.complete).map_err(told)?;
-        self.held.file().sync_all().map_err(told)?;
-        if now == self.path { Ok(()) } else { Err(FileCause::Lost { now: Some(now) }) }
-    }
-
-    /// Completes the pending writes and ends the thread.
-    fn stop(&mut self) {
-        self.rows = None;
-        let ended = self.thread.take().map(JoinHandle::join);
-        match ended {
-            Some(Ok(Err(failure))) => self.failed = Some(failure),
-            Some(Err(_)) => self.failed = Some(Failure { step: self.next, kind: io::ErrorKind::Other, code: None }),
-            Some(Ok(Ok(()))) | None => {}
-        }
+        write_all_at(file, &[1], self.places.complete).map_err(told)?;
+        file.sync_all().map_err(told)?;
+        Ok(place)
     }
 
     fn check_order(&self, step: &Step<'_, D>) -> Result<(), StepError> {
@@ -183,31 +188,17 @@ impl<const D: usize> Writer<D> {
     }
 
     fn send(&mut self, step: &Step<'_, D>) -> Result<(), FileCause> {
-        if let Some(failure) = &self.failed {
-            return Err(failure.cause());
-        }
+        self.queue.check()?;
         self.check_order(step)?;
         let Some(place) = self.kept.as_ref().map_or(Some(step.index), |kept| kept.row_of(step.index)) else {
             self.next += 1;
             return Ok(());
         };
         self.check(step)?;
-        let mut row = self.used.try_recv().unwrap_or_default();
-        row.take(step, place);
-        self.pass_on(Entry::Row(row))?;
+        self.queue.row(step, place)?;
         (self.next, self.stored) = (self.next + 1, place + 1);
         self.unfinished = None;
         Ok(())
-    }
-
-    /// Hands an entry to the thread that writes.
-    fn pass_on(&mut self, entry: Entry<D>) -> Result<(), FileCause> {
-        if self.rows.as_ref().is_some_and(|rows| rows.send(entry).is_ok()) {
-            return Ok(());
-        }
-        self.stop();
-        let failure = self.failed.get_or_insert(Failure { step: self.next, kind: io::ErrorKind::Other, code: None });
-        Err(failure.cause())
     }
 
     /// Keeps the state of the step appended last, if it is one from which the run can go on. `restated` gives the state
@@ -224,8 +215,8 @@ impl<const D: usize> Writer<D> {
             return Ok(());
         }
         let Some(checkpoint) = state.checkpoint() else { return Ok(()) };
-        let kept = self.pass_on(Entry::Checkpoint(restated(checkpoint)));
-        Ok(kept.map_err(|cause| cause.at(&self.path))?)
+        let kept = self.queue.checkpoint(restated(checkpoint));
+        Ok(kept.map_err(|cause| cause.at(self.path()))?)
     }
 
     /// Appends a step; one that the file does not keep is only counted.
@@ -233,7 +224,7 @@ impl<const D: usize> Writer<D> {
     /// # Errors
     /// A step that does not fit, or a file that cannot be written.
     pub fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
-        Ok(self.send(step).map_err(|cause| cause.at(&self.path))?)
+        Ok(self.send(step).map_err(|cause| cause.at(self.path()))?)
     }
 }
 
@@ -242,34 +233,4 @@ impl<const D: usize> StateSink<D> for Writer<D> {
         self.push(state.step())?;
         self.keep(state, |checkpoint| checkpoint)
     }
-}
-
-impl<const D: usize> Drop for Writer<D> {
-    fn drop(&mut self) {
-        self.stop();
-    }
-}
-
-/// Writes entries in order, until the last one or a failure.
-fn write_all<const D: usize>(
-    file: &File,
-    places: &Places,
-    taken: &Receiver<Entry<D>>,
-    back: &Sender<Row<D>>,
-) -> Result<(), Failure> {
-    for entry in taken {
-        let failure = |step| move |error: io::Error| Failure { step, kind: error.kind(), code: error.raw_os_error() };
-        match entry {
-            Entry::Row(row) => {
-                row.write(file, places).map_err(failure(row.index))?;
-                // There is no receiver once the run has ended.
-                let _ = back.send(row);
-            }
-            Entry::Checkpoint(checkpoint) => {
-                let written = places.checkpoints.map_or(Ok(()), |places| places.write(file, &checkpoint));
-                written.map_err(failure(checkpoint.step))?;
-            }
-        }
-    }
-    Ok(())
 }
