@@ -28,12 +28,29 @@ use std::sync::MutexGuard;
 /// The layout of histories and estimates.
 pub(crate) const LAYOUT: i64 = 2;
 
+/// The attributes that are texts.
+const TEXTS: [&str; 4] = ["kind", "program", "architecture", "system"];
+
+/// Whether texts of variable length can be read.
+struct Texts {
+    /// Or why not.
+    heaps: Result<(), String>,
+    /// Of the attributes with these names.
+    attributes: Vec<attribute::Found>,
+}
+
+impl Texts {
+    fn check(file: &File, bytes: u64) -> io::Result<Self> {
+        Ok(Self { heaps: heap::check(file, bytes)?, attributes: attribute::check(file, &TEXTS, bytes)? })
+    }
+}
+
 /// A file open for reading, with exclusive use of the library.
 pub(crate) struct Opened {
     file: hdf5::File,
     bytes: u64,
-    /// Whether texts of variable length can be read, or why not; unknown until one is.
-    heaps: OnceCell<Result<(), String>>,
+    /// Whether texts of variable length can be read; unknown until one is.
+    texts: OnceCell<Texts>,
     _held: Held,
     /// Dropped last, after the file is closed.
     _alone: MutexGuard<'static, ()>,
@@ -44,7 +61,7 @@ impl Opened {
         let alone = alone();
         let (held, bytes) = look(path)?;
         let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open(path).map_err(damaged)?;
-        Ok(Self { file, bytes, heaps: OnceCell::new(), _held: held, _alone: alone })
+        Ok(Self { file, bytes, texts: OnceCell::new(), _held: held, _alone: alone })
     }
 
     /// Bytes of the file.
@@ -53,8 +70,8 @@ impl Opened {
     }
 
     pub(crate) fn root(&self) -> Part<'_> {
-        let Self { file, bytes, heaps, .. } = self;
-        Part { group: (**file).clone(), name: String::new(), file_bytes: *bytes, file, heaps }
+        let Self { file, bytes, texts, .. } = self;
+        Part { group: (**file).clone(), name: String::new(), file_bytes: *bytes, file, texts }
     }
 
     /// History or estimate; any other file is an error with its contents.
@@ -124,7 +141,7 @@ pub(crate) struct Part<'f> {
     name: String,
     file_bytes: u64,
     file: &'f hdf5::File,
-    heaps: &'f OnceCell<Result<(), String>>,
+    texts: &'f OnceCell<Texts>,
 }
 
 impl<'f> Part<'f> {
@@ -137,8 +154,8 @@ impl<'f> Part<'f> {
             return Ok(None);
         }
         let group = self.group.group(name).map_err(damaged)?;
-        let Self { file_bytes, file, heaps, .. } = *self;
-        Ok(Some(Part { group, name: self.path(name), file_bytes, file, heaps }))
+        let Self { file_bytes, file, texts, .. } = *self;
+        Ok(Some(Part { group, name: self.path(name), file_bytes, file, texts }))
     }
 
     pub(crate) fn group(&self, name: &str) -> Result<Part<'f>, FileCause> {
@@ -209,25 +226,25 @@ impl<'f> Part<'f> {
     pub(crate) fn text_attribute(&self, name: &str) -> Result<String, FileCause> {
         let (attribute, path, kind) = self.attribute(name)?;
         if is_variable(&kind) {
-            self.check_heaps()?;
-            let found = File::open(self.file.filename()).and_then(|f| attribute::check(&f, name, self.file_bytes));
+            let texts = self.checked_texts()?;
+            let found = TEXTS.iter().zip(&texts.attributes).find(|(text, _)| **text == name);
             let fault = |fault| FileCause::Damaged { detail: format!("the text attribute `{path}` {fault}") };
-            found.map_err(|source| FileCause::Read { source })?.map_err(fault)?;
+            found.map_or(Ok(()), |(_, found)| *found).map_err(fault)?;
         }
         text(&attribute, &kind, path)
     }
 
     /// Makes sure that texts of variable length can be read.
-    fn check_heaps(&self) -> Result<(), FileCause> {
-        if self.heaps.get().is_none() {
-            let found = File::open(self.file.filename()).and_then(|file| heap::check(&file, self.file_bytes));
-            // It was found empty, and one thread reads the file.
-            let _ = self.heaps.set(found.map_err(|source| FileCause::Read { source })?);
-        }
-        match self.heaps.get() {
-            Some(Err(detail)) => Err(FileCause::Damaged { detail: detail.clone() }),
-            _ => Ok(()),
-        }
+    fn checked_texts(&self) -> Result<&'f Texts, FileCause> {
+        let texts = match self.texts.get() {
+            Some(texts) => texts,
+            None => {
+                let found = File::open(self.file.filename()).and_then(|file| Texts::check(&file, self.file_bytes));
+                let found = found.map_err(|source| FileCause::Read { source })?;
+                self.texts.get_or_init(|| found)
+            }
+        };
+        texts.heaps.clone().map_err(|detail| FileCause::Damaged { detail }).map(|()| texts)
     }
 
     /// A text attribute, empty if missing.
@@ -261,7 +278,7 @@ impl<'f> Part<'f> {
             return Ok(Some(text));
         }
         if is_variable(&data.kind) {
-            self.check_heaps()?;
+            self.checked_texts()?;
             self.check_length(&data)?;
         }
         text(&data.set, &data.kind, data.name).map(Some)

@@ -23,16 +23,26 @@ const VARIABLE: u8 = 9;
 /// Bytes of the value: length, place of the heap, number of the object.
 const VALUE: u64 = 16;
 
-/// Compares the length in all attributes of a name that may be texts of variable length with the size of the file.
+/// Whether texts of variable length of a name can be read, or what is wrong with them.
+pub(super) type Found = Result<(), &'static str>;
+
+/// Compares the length in all attributes of these names that may be texts of variable length with the size of the file.
+/// The file is read once.
 ///
 /// # Errors
-/// What is wrong with the attribute; a file that cannot be read.
-pub(super) fn check(file: &File, name: &str, bytes: u64) -> io::Result<Result<(), &'static str>> {
-    let (mut ended, mut found) = (name.as_bytes().to_vec(), false);
-    ended.push(0);
-    for name in places(file, bytes, &ended)? {
+/// A file that cannot be read.
+pub(super) fn check(file: &File, names: &[&str], bytes: u64) -> io::Result<Vec<Found>> {
+    let ended: Vec<Vec<u8>> = names.iter().map(|name| [name.as_bytes(), &[0]].concat()).collect();
+    let all = places(file, bytes, ended.iter().map(Vec::as_slice))?;
+    all.iter().zip(&ended).map(|(places, name)| of_name(file, places, name.len() as u64, bytes)).collect()
+}
+
+/// The same for one name, which is at these places and has so many bytes with the zero at its end.
+fn of_name(file: &File, places: &[u64], length: u64, bytes: u64) -> io::Result<Found> {
+    let mut found = false;
+    for &name in places {
         for layout in LAYOUTS.iter().filter(|layout| layout.name <= name) {
-            let value = layout.value(file, name, ended.len() as u64)?;
+            let value = layout.value(file, name, length)?;
             if let Some(value) = value.filter(|value| value + VALUE <= bytes) {
                 found = true;
                 if is_too_long(file, value, bytes)? {
@@ -95,18 +105,20 @@ mod tests {
         for (count, newest) in [(1, false), (12, false), (1, true), (12, true)] {
             let file = written(&folder.path().join("a.h5"), count, newest);
             let bytes = file.metadata().unwrap().len();
-            for number in 0..count {
-                let name = format!("kind{number}");
-                assert_eq!(check(&file, &name, bytes).unwrap(), Ok(()), "{name} of {count}, {newest}");
+            let names: Vec<String> = (0..count).map(|number| format!("kind{number}")).collect();
+            let told = || check(&file, &names.iter().map(String::as_str).collect::<Vec<_>>(), bytes).unwrap();
+            assert_eq!(told(), vec![Ok(()); count], "{count}, {newest}");
+            let lengths = places(&file, bytes, [&7_u32.to_le_bytes()[..]]).unwrap().remove(0);
+            for (number, name) in names.iter().enumerate() {
                 // The length 7, before the place of the heap and the number of the object.
-                let place = places(&file, bytes, format!("{name}\0").as_bytes()).unwrap()[0];
-                let length =
-                    places(&file, bytes, &7_u32.to_le_bytes()).unwrap().into_iter().find(|&at| at > place).unwrap();
+                let place = places(&file, bytes, [format!("{name}\0").as_bytes()]).unwrap()[0][0];
+                let length = *lengths.iter().find(|&&at| at > place).unwrap();
                 write_all_at(&file, &0xf000_0000_u32.to_le_bytes(), length).unwrap();
-                assert_eq!(check(&file, &name, bytes).unwrap(), Err("is longer than the file"), "{name} of {count}");
+                let wrong = |k| if k == number { Err("is longer than the file") } else { Ok(()) };
+                assert_eq!(told(), (0..count).map(wrong).collect::<Vec<_>>(), "{name} of {count}");
                 write_all_at(&file, &7_u32.to_le_bytes(), length).unwrap();
             }
-            assert!(check(&file, "king", bytes).unwrap().is_err());
+            assert!(check(&file, &["king"], bytes).unwrap()[0].is_err());
         }
     }
 
@@ -121,7 +133,7 @@ mod tests {
         let told = |record: &[u8]| {
             let file = tempfile::tempfile().unwrap();
             write_all_at(&file, record, 0).unwrap();
-            check(&file, "kind", record.len() as u64).unwrap()
+            check(&file, &["kind"], record.len() as u64).unwrap()[0]
         };
         assert_eq!(told(&record), Err("is longer than the file"));
         for end in 0..record.len() {

@@ -234,4 +234,111 @@ mod tests {
         std::fs::write(&path, &bytes).unwrap();
         assert!(check(&file, bytes.len() as u64).unwrap().is_err());
     }
+
+    const FOREIGN: &str = "its addresses have a length that percute does not read";
+
+    /// A file of the oldest format with its first bytes in the format of one of the four versions. What follows them is
+    /// where it was, or, with a base, so many bytes later: addresses count from there.
+    fn as_version(old: &[u8], version: u8, base: u64) -> Vec<u8> {
+        let (fixed, root) = (&old[..8], &old[64..72]);
+        let numbers = |numbers: [u64; 3]| numbers.map(u64::to_le_bytes).concat();
+        let all = [base, u64::MAX, old.len() as u64 + base];
+        let mut first = match version {
+            0 | 1 => {
+                let mut first = [fixed, &[version, 0, 0, 0, 0, 8, 8, 0, 4, 0, 16, 0, 0, 0, 0, 0]].concat();
+                first.extend_from_slice(if version == 1 { &[32, 0, 0, 0] } else { &[] });
+                [first, numbers(all), u64::MAX.to_le_bytes().to_vec(), vec![0; 8]].concat()
+            }
+            _ => [fixed, &[version, 8, 8, 0], &numbers(all)].concat(),
+        };
+        first.extend_from_slice(root);
+        let mut bytes = old.to_vec();
+        bytes.splice(0..0, vec![0; base as usize]);
+        bytes[..first.len()].copy_from_slice(&first);
+        bytes
+    }
+
+    /// All versions of the first bytes lead to the groups, and to what is wrong with them.
+    #[test]
+    fn groups_are_found_behind_each_superblock() {
+        let folder = tempfile::tempdir().unwrap();
+        let _alone = crate::library::alone();
+        let path = folder.path().join("a.h5");
+        let mut options = hdf5::File::with_options();
+        let file = options.with_fapl(|p| p.libver_earliest()).create(&path).unwrap();
+        file.create_group("a").unwrap().create_group("b").unwrap();
+        file.close().unwrap();
+        let old = std::fs::read(&path).unwrap();
+        assert_eq!((old[8], &as_version(&old, 0, 0)[..72] == &old[..72]), (0, true));
+        let told = |bytes: &[u8]| {
+            std::fs::write(&path, bytes).unwrap();
+            check(&File::open(&path).unwrap(), bytes.len() as u64).unwrap()
+        };
+        for (version, base) in (0..4).flat_map(|version| [(version, 0), (version, 512)]) {
+            let bytes = as_version(&old, version, base);
+            assert_eq!(told(&bytes), Ok(()), "version {version}, base {base}");
+            // The last heap is that of the deepest group.
+            let heap = memchr::memmem::rfind(&bytes, b"HEAP\0\0\0\0").unwrap();
+            let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap());
+            let (size, free, data) = (number(heap + 8), number(heap + 16), number(heap + 24) + base);
+            let changed = |at: u64, value: u64| {
+                let mut bytes = bytes.clone();
+                bytes[at as usize..at as usize + 8].copy_from_slice(&value.to_le_bytes());
+                told(&bytes)
+            };
+            assert_eq!(changed(data + free, free), Err("the names of a group"), "version {version}, base {base}");
+            // A chain ends with its mark, or behind the heap; a heap that is not in the file is left to the library.
+            for end in [LAST, size, u64::MAX] {
+                assert_eq!(changed(data + free, end), Ok(()), "{end}");
+            }
+            let mut beyond = bytes.clone();
+            beyond[(data + free) as usize..][..8].copy_from_slice(&free.to_le_bytes());
+            beyond[heap + 8..heap + 16].copy_from_slice(&(bytes.len() as u64 - data + 1).to_le_bytes());
+            assert_eq!(told(&beyond), Ok(()));
+            beyond[heap + 8..heap + 16].copy_from_slice(&(bytes.len() as u64 - data).to_le_bytes());
+            assert_eq!(told(&beyond), Err("the names of a group"), "it ends with the file");
+            // Lengths of addresses, where this version has them.
+            for at in if version < 2 { [13, 14] } else { [9, 10] } {
+                let mut bytes = bytes.clone();
+                bytes[at] = 4;
+                assert_eq!(told(&bytes), Err(FOREIGN), "version {version}");
+            }
+        }
+        // Later versions are left to the library, and so are addresses beyond all files.
+        assert_eq!(told(&as_version(&old, 4, 0)), Ok(()));
+        let mut bytes = as_version(&old, 2, 0);
+        for base in [u64::MAX, u64::MAX - 100, 1 << 62] {
+            bytes[12..20].copy_from_slice(&base.to_le_bytes());
+            assert_eq!(told(&bytes), Ok(()), "{base}");
+        }
+    }
+
+    /// The parts of a header reach to the end of the file, and not one byte further; its messages to the end of their
+    /// part.
+    #[test]
+    fn parts_of_headers_must_fit() {
+        const HEADER: usize = 48;
+        let told = |part: (u64, u64), message: u16| {
+            let mut bytes = vec![0; 200];
+            bytes[..HEADER].copy_from_slice(
+                &[&b"\x89HDF\r\n\x1a\n\x02\x08\x08\0"[..], &[0; 24], &(HEADER as u64).to_le_bytes(), &[0; 4]].concat(),
+            );
+            // Two messages, the second behind the continuation.
+            bytes[HEADER..HEADER + 12].copy_from_slice(&[1, 0, 2, 0, 1, 0, 0, 0, 24, 0, 0, 0]);
+            bytes[HEADER + 16..HEADER + 20].copy_from_slice(&[0x10, 0, 16, 0]);
+            bytes[HEADER + 24..HEADER + 32].copy_from_slice(&part.0.to_le_bytes());
+            bytes[HEADER + 32..HEADER + 40].copy_from_slice(&part.1.to_le_bytes());
+            bytes[162..164].copy_from_slice(&message.to_le_bytes());
+            let file = tempfile::tempfile().unwrap();
+            write_all_at(&file, &bytes, 0).unwrap();
+            check(&file, bytes.len() as u64).unwrap()
+        };
+        for fits in [(160, 40), (160, 8), (199, 1), (200, 0)] {
+            assert_eq!(told(fits, 0), Ok(()), "{fits:?}");
+        }
+        for beyond in [(160, 41), (160, u64::MAX), (u64::MAX, 40), (201, 0), (1 << 63, 1 << 63)] {
+            assert_eq!(told(beyond, 0), Err("an object header"), "{beyond:?}");
+        }
+        assert_eq!((told((160, 40), 32), told((160, 40), 33)), (Ok(()), Err("an object header")));
+    }
 }

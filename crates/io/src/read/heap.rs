@@ -29,7 +29,7 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
         return Ok(Err("its texts have a layout that percute does not read".to_string()));
     }
     let mut heaps = Vec::new();
-    for place in places(file, bytes, &SIGNATURE)? {
+    for place in places(file, bytes, [&SIGNATURE[..]])?.remove(0) {
         if is_heap(file, place, bytes)? {
             if !is_sound(file, place, bytes)? {
                 return Ok(Err(format!("the texts of variable length at byte {place}")));
@@ -37,28 +37,37 @@ pub(super) fn check(file: &File, bytes: u64) -> io::Result<Result<(), String>> {
             heaps.push(place);
         }
     }
-    for heap in heaps {
-        for place in places(file, bytes, &heap.to_le_bytes())? {
-            // What has no number of an object behind it is no reference.
-            let reference = place >= 4 && place + 12 <= bytes && (1..=OBJECTS).contains(&number(file, place + 8)?);
-            if reference && is_too_long(file, place - 4, bytes)? {
-                return Ok(Err(format!("the length of a text at byte {}", place - 4)));
-            }
+    let addresses: Vec<[u8; 8]> = heaps.into_iter().map(u64::to_le_bytes).collect();
+    for place in places(file, bytes, addresses.iter().map(<[u8; 8]>::as_slice))?.concat() {
+        // What has no number of an object behind it is no reference.
+        let reference = place >= 4 && place + 12 <= bytes && (1..=OBJECTS).contains(&number(file, place + 8)?);
+        if reference && is_too_long(file, place - 4, bytes)? {
+            return Ok(Err(format!("the length of a text at byte {}", place - 4)));
         }
     }
     Ok(Ok(()))
 }
 
-/// Where these bytes are in a file.
-pub(super) fn places(file: &File, bytes: u64, wanted: &[u8]) -> io::Result<Vec<u64>> {
-    let mut block = vec![0; BLOCK.min(bytes as usize)];
-    let (mut start, mut found) = (0, Vec::new());
+/// Where each of these bytes are in a file, which is read once.
+pub(super) fn places<'w>(
+    file: &File,
+    bytes: u64,
+    wanted: impl IntoIterator<Item = &'w [u8]>,
+) -> io::Result<Vec<Vec<u64>>> {
+    let finders: Vec<_> = wanted.into_iter().map(memmem::Finder::new).collect();
+    let mut found = vec![Vec::new(); finders.len()];
+    let Some(longest) = finders.iter().map(|finder| finder.needle().len()).max() else { return Ok(found) };
+    let (mut block, mut start) = (vec![0; BLOCK.min(bytes as usize)], 0);
     while start < bytes {
         let length = block.len().min((bytes - start) as usize);
         read_exact_at(file, &mut block[..length], start)?;
-        found.extend(memmem::find_iter(&block[..length], wanted).map(|at| start + at as u64));
-        // They may begin at the end of a block.
-        start += if length < BLOCK { length } else { length - (wanted.len() - 1) } as u64;
+        for (finder, found) in finders.iter().zip(&mut found) {
+            // The end of a block is the start of the next one: they may begin there.
+            let seen = found.last().copied();
+            let here = finder.find_iter(&block[..length]).map(|at| start + at as u64);
+            found.extend(here.filter(|&at| seen.is_none_or(|seen| at > seen)));
+        }
+        start += if length < BLOCK { length } else { length - (longest - 1) } as u64;
     }
     Ok(found)
 }
@@ -127,6 +136,20 @@ fn length(file: &File, place: u64, bytes: u64) -> io::Result<u64> {
 mod tests {
     use super::*;
     use std::io::Write;
+
+    /// Bytes of several kinds are found in one pass, those across the ends of blocks once.
+    #[test]
+    fn places_are_found_once_each() {
+        let mut bytes = vec![b'.'; 3 * BLOCK];
+        let (short, long) = (b"ab", b"abcdefgh");
+        let at = [0, BLOCK - 9, BLOCK - 1, 2 * BLOCK - 20, 3 * BLOCK - 8];
+        at.iter().for_each(|&at| bytes[at..at + 8].copy_from_slice(long));
+        let mut file = tempfile::tempfile().unwrap();
+        file.write_all(&bytes).unwrap();
+        let found = places(&file, bytes.len() as u64, [&short[..], long]).unwrap();
+        assert_eq!(found, [at.map(|at| at as u64); 2]);
+        assert_eq!(places(&file, bytes.len() as u64, []).unwrap(), Vec::<Vec<u64>>::new());
+    }
 
     /// A file with a heap of one text and free space.
     fn heap(change: impl FnOnce(&mut Vec<u8>)) -> Result<(), String> {
