@@ -53,6 +53,11 @@ impl<const D: usize> ImpulseSmoothing<D> {
         Self { time: (0..nodes.len()).map(time).collect(), pending: vec![VecDeque::new(); nodes.len()] }
     }
 
+    /// The time τ of a node (s).
+    pub(super) fn time(&self, at: usize) -> f64 {
+        self.time[at]
+    }
+
     /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but
     /// for the rest after the last step. Nothing depends on the length of later steps.
     pub(super) fn advance<const N: usize>(

@@ -219,7 +219,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let mut arresting = step.reaction.to_vec();
         if let Some(concentration) = &self.concentration {
             let approaches = motions.approaches(dynamics, step.index);
-            self.own_forces.apply(problem, concentration, &gap, |at| approaches[at], [&mut contact, &mut arresting]);
+            let (step, smoothing) = (self.times.step(step.index), self.impulse_smoothing.as_ref());
+            let steps = |at: usize| smoothing.map_or(1.0, |smoothing| step / smoothing.time(at));
+            let fields = [contact.as_mut_slice(), arresting.as_mut_slice()];
+            self.own_forces.apply(problem, concentration, &gap, |at| approaches[at], steps, fields);
         }
         let densities = self.level([&contact, &arresting], &gap);
         self.halvings = halvings(&contact, &densities.acting);

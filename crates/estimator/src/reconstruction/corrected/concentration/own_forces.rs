@@ -3,6 +3,11 @@
 //! The force of the simulation is too large there, because the mesh lacks the compliance of the body close to the node.
 //! A force that is smaller for longer has another impulse after each contact phase. Such a node of the auxiliary
 //! solution therefore has a contact of its own, with Coulomb friction: it touches and is released by its own gap.
+//!
+//! Where neighbours are released, a node that touched with them begins to touch alone. The auxiliary solution, which
+//! the forces of the simulation moved until then, may have it behind its plane. To bring it back within a step would
+//! take a force that grows with the inverse square of the step. So the depth that a node has at the beginning falls in a
+//! step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at once.
 
 use super::Concentration;
 use crate::concentrated::{ShapeCosts, TractionShape};
@@ -34,6 +39,8 @@ struct OwnContact<const D: usize> {
     direction: [f64; D],
     /// Displacement along the plane at which the traction sticks (m).
     anchor: [f64; D],
+    /// What is left of the depth that the node had at the beginning (m).
+    depth: f64,
 }
 
 impl<const D: usize> OwnForces<D> {
@@ -49,13 +56,15 @@ impl<const D: usize> OwnForces<D> {
 
     /// Replaces the smoothed forces of the simulation (N), the first of the two fields, at nodes that touch alone, from
     /// then on until the own force is 0. The second field has the reactions of which the normal work is measured: none
-    /// at these nodes, where the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m).
+    /// at these nodes, where the loss is in the misfit of the motion. `gap` are the gaps of the simulation (m), `steps`
+    /// the step over the time τ of each node.
     pub(in crate::reconstruction::corrected) fn apply<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
         concentration: &Concentration<D>,
         gap: &[f64],
         approach: impl Fn(usize) -> Approach<D>,
+        steps: impl Fn(usize) -> f64,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let surface = problem.surface();
@@ -64,7 +73,9 @@ impl<const D: usize> OwnForces<D> {
             let (last, approach) = (self.contacts[at].take(), approach(at));
             // Reactions of a foreign history need not be in the cone.
             let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(&contact[at])).0;
-            let largest = (-approach.gap / approach.mobility).max(0.0);
+            let depth = last.map_or((-approach.gap_now).max(0.0), |last| last.depth);
+            let depth = depth * (1.0 - steps(at).min(1.0).powi(2));
+            let largest = (-(approach.gap + depth) / approach.mobility).max(0.0);
             if last.is_none() && simulated == 0.0 && largest == 0.0 {
                 continue;
             }
@@ -74,6 +85,7 @@ impl<const D: usize> OwnForces<D> {
                 // Along a support the reaction is the support's.
                 law: (!node.guided).then(|| obstacle.law()),
                 approach,
+                depth,
             };
             let direction = last.map_or(*own.frame.normal(), |last| last.direction);
             let Some(costs) = concentration.costs(problem, at, &direction, &gaps) else { continue };
@@ -102,6 +114,8 @@ struct Own<const D: usize> {
     frame: Frame<D>,
     law: Option<Coulomb>,
     approach: Approach<D>,
+    /// The depth at which the node may be at the next instant (m).
+    depth: f64,
 }
 
 impl<const D: usize> Own<D> {
@@ -119,7 +133,7 @@ impl<const D: usize> Own<D> {
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             let local = costs.approach(&costs.shape(middle), across, middle);
-            let remaining = self.approach.gap + middle * self.approach.mobility + local;
+            let remaining = self.approach.gap + self.depth + middle * self.approach.mobility + local;
             if remaining < 0.0 { low = middle } else { high = middle }
         }
         0.5 * (low + high)
@@ -145,6 +159,7 @@ impl<const D: usize> Own<D> {
             force: std::array::from_fn(|c| force * normal[c] + friction * tangent[c]),
             direction: std::array::from_fn(|c| normal[c] + friction / force * tangent[c]),
             anchor: std::array::from_fn(|c| anchor[c] + slip * tangent[c]),
+            depth: self.depth,
         })
     }
 }

@@ -14,6 +14,8 @@ use percute_core::time::TimeGrid;
 /// The motion of a contact node against its obstacle over the next step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
+    /// Gap now (m).
+    pub(in crate::reconstruction::corrected) gap_now: f64,
     /// Gap at the next instant without a contact force (m).
     pub(in crate::reconstruction::corrected) gap: f64,
     /// Displacement along the plane now, and at the next instant without a contact force (m).
@@ -103,8 +105,8 @@ impl<const D: usize> NearElements<D> {
                 mobility += other;
             }
             let frame = problem.obstacles()[contacts[at].obstacle].flat_frame();
-            let gap = problem.surface().gap(at, &places[1]);
-            Approach { gap, along: places.map(|place| frame.split(&place).1), mobility }
+            let [gap_now, gap] = places.map(|place| problem.surface().gap(at, &place));
+            Approach { gap_now, gap, along: places.map(|place| frame.split(&place).1), mobility }
         };
         self.approaches.clear();
         self.approaches.extend((0..contacts.len()).map(approach));
