@@ -1,26 +1,23 @@
 //! Histories: simulated, shown as arrays, put together again.
 
 use crate::any::AnyProblem;
-use crate::bridge::Watch;
 use crate::given::{Given, slice};
 use crate::options::Stated;
 use crate::problem::ProblemData;
-use crate::run::{AnyRun, Run};
-use crate::{bridge, contact, errors, options, view};
+use crate::run::AnyRun;
+use crate::stored_fields::{read, stored_acceleration, stored_velocity};
+use crate::{balance, bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
-use percute_core::dynamics::Balance;
 use percute_core::history::History;
 use percute_core::time::TimeGrid;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
+use percute_io::Overwrite;
 use percute_io::history::HistoryFile;
-use percute_io::{FileError, Overwrite};
 use percute_workflow::foreign::{Derived, Origin};
 use percute_workflow::history::lacks;
-use percute_workflow::report::{ENERGIES, Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -276,12 +273,12 @@ impl HistoryData {
 
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each_dimension!(&self.run, run => columns(py, &kept_balance(py, run)?))
+        each_dimension!(&self.run, run => balance::columns(py, &balance::kept(py, run)?))
     }
 
     /// Velocities before and after contact, as a JSON document.
     fn rebound(&self, py: Python<'_>) -> PyResult<String> {
-        each_dimension!(&self.run, run => rebound(py, run))
+        each_dimension!(&self.run, run => balance::rebound(py, run))
     }
 }
 
@@ -289,66 +286,6 @@ impl HistoryData {
     fn any_problem(&self) -> AnyProblem {
         map_dimension!(&self.run, run => run.problem.clone())
     }
-}
-
-fn stored_velocity<const D: usize, const N: usize>(
-    file: &HistoryFile<D, N>,
-    steps: Range<usize>,
-) -> Result<Vec<[f64; D]>, FileError> {
-    Ok(file.velocity(steps)?.unwrap_or_default())
-}
-
-fn stored_acceleration<const D: usize, const N: usize>(
-    file: &HistoryFile<D, N>,
-    steps: Range<usize>,
-) -> Result<Vec<[f64; D]>, FileError> {
-    Ok(file.acceleration(steps)?.unwrap_or_default())
-}
-
-/// Bytes of a field that are read at once: enough for the disk, and soon done after Ctrl-C.
-const BLOCK: usize = 1 << 25;
-
-/// Reads a field at all instants of a file, a block after the other.
-fn read<const D: usize, const N: usize, T: Send + 'static>(
-    py: Python<'_>,
-    run: &Arc<Run<D, N>>,
-    field: fn(&HistoryFile<D, N>, Range<usize>) -> Result<Vec<T>, FileError>,
-) -> PyResult<Arc<Vec<T>>> {
-    let run = run.clone();
-    let work = move |watch: Watch| {
-        let mut rows = Vec::new();
-        let [count, nodes] = run.shape();
-        let steps = (BLOCK / (nodes * size_of::<T>()).max(1)).max(1);
-        for start in (0..count).step_by(steps) {
-            match run.file() {
-                Some(file) if !watch.0.stopped() => rows.extend(field(file, start..count.min(start + steps))?),
-                _ => break,
-            }
-        }
-        Ok(rows)
-    };
-    bridge::blocking(py, None, work)?.map(Arc::new).map_err(|error| errors::file(py, &error))
-}
-
-/// The rebound as a JSON document; `null` without contact.
-fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<String> {
-    let contact = contact::of_run(py, run)?;
-    let balance = kept_balance(py, run)?;
-    let rebound = Rebound::new(&run.problem, &balance, &contact);
-    rebound_to_json(rebound.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
-}
-
-/// Energies, works and momentum at each instant, computed now or before.
-fn kept_balance<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<Vec<Balance>> {
-    let worker = run.clone();
-    let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
-    kept.map_err(|error| errors::steps(py, &error))
-}
-
-/// An array for each quantity of the balance.
-fn columns<'py>(py: Python<'py>, balance: &[Balance]) -> PyResult<Bound<'py, PyDict>> {
-    let drifts: [Named<Balance>; 2] = [("energy_drift", |b| b.energy_drift), ("impulse_drift", |b| b.impulse_drift)];
-    view::columns(py, balance, &[&ENERGIES[..], &drifts].concat())
 }
 
 fn stated(py: Python<'_>, (reconstruction, acceleration, every): &Stated) -> PyResult<Options> {

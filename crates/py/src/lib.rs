@@ -2,6 +2,7 @@
 //! `python/percute`.
 
 mod any;
+mod balance;
 mod bar_row;
 mod bridge;
 mod case;
@@ -23,6 +24,7 @@ mod run;
 mod simulate;
 mod statement;
 mod stored;
+mod stored_fields;
 mod sweep;
 mod time;
 mod verify;
