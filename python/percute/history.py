@@ -46,6 +46,7 @@ class History(HistoryViews):
 
     _problem: Problem | None
     _name: str
+    _saved: str = ""
     _file: str | None
 
     def __init__(self) -> None:
@@ -356,7 +357,9 @@ class History(HistoryViews):
             raise InputError(f"the history is in the file {str(self.path)!r}; copy that")
         with file_closed_at_signals(file):
             self._data.save(os.path.abspath(file), replace)
-        self._name = self._name or encodable(file)
+        # A page names the file that was saved last; the history of a case keeps the name of the case.
+        if self._name in ("", self._saved):
+            self._name = self._saved = encodable(file)
 
     def __len__(self) -> int:
         return self._data.count

@@ -99,5 +99,5 @@ def test_the_instants_of_a_thinned_run_are_checked(tmp_path: Path) -> None:
     with h5py.File(path, "r") as file:
         count = len(file["percute/run_times"])
     flipped(path, other, "percute/run_times", (8 * 4) / (8 * count - 1))
-    with pytest.raises(pc.FileFormatError, match="instants and contact nodes` does not have its checksum"):
+    with pytest.raises(pc.FileFormatError, match="instants or contact nodes` does not have its checksum"):
         pc.open(other)

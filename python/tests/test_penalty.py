@@ -10,7 +10,7 @@ import percute as pc
 import pytest
 from conftest import block, tilted
 from numpy.typing import NDArray
-from spoiling import FALLS, STATED, Parts, cause, given, parts, without
+from spoiling import FALLS, STATED, Parts, cause, given, parts, shifted, without
 
 
 def matrices(problem: pc.Problem, consistent: bool = False) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -80,6 +80,28 @@ def test_contact_by_a_penalty_is_graded(stiffness: float, lacks: tuple[str, ...]
     # Stiff springs make energy; the verdict warns of that, too.
     assert estimate.trust == ("limited" if (estimate.consistency or {})["energy"] < 0.1 else "low") and "penalty" in estimate.verdict
     assert (estimate.consistency or {})["penalty"] > 0.9
+    # Its index is outside the range of the other cases.
+    assert json.loads(estimate.to_json())["verdict"]["effectivity"] is None
+    assert "no range of estimate over true error is known for contact by a penalty" in estimate.verdict
+
+
+@pytest.mark.filterwarnings("ignore:the last instant")
+@pytest.mark.parametrize(("steps", "when"), [(1, "late"), (-1, "early")])
+@pytest.mark.parametrize("courant", [0.2, 0.02])
+def test_a_shift_is_named_below_the_limit_too(courant: float, steps: int, when: str) -> None:
+    """With short steps, forces of a penalty change little in a step: the residual stays within its limit."""
+    problem, whole = penalty(1e13, courant=courant)
+    late = {**whole, "reaction": shifted(whole["reaction"], steps)}
+    told = f"the contact forces are a step too {when}"
+    if courant > 0.1:
+        assert told in cause(problem, late)
+        return
+    with pytest.warns(pc.SimulationWarning, match=told):
+        estimate = pc.estimate(given(problem, late))
+    assert 1e-3 < (estimate.consistency or {})["balance"] < 0.01
+    assert estimate.trust == "limited" and "contact forces of another step" in estimate.verdict
+    # No such history is correct.
+    assert "another step" not in pc.estimate(given(problem, whole)).verdict
 
 
 @pytest.mark.parametrize("sideways", [0.0, 5.0, 50.0, 400.0])

@@ -70,6 +70,44 @@ def test_a_history_of_another_program_stays_the_same(make: Any, names: tuple[str
     assert (tmp_path / "report.html").read_text(encoding="utf-8").replace("report.html", "page.html") == page.replace("report.html", "page.html")
 
 
+@pytest.mark.filterwarnings("ignore:the last instant")
+def test_a_page_names_the_file_that_was_saved_last_from_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in ("runs", "pages", "pages/sub"):
+        (tmp_path / folder).mkdir()
+    monkeypatch.chdir(tmp_path)
+    history = theirs(pc.simulate(block(), end=9e-6, courant=0.9), "displacement", "reaction")
+    estimate = pc.estimate(history)
+    for file, page, command in (
+        ("first.vtkhdf", "a.html", "first.vtkhdf"),
+        ("runs/b.vtkhdf", "pages/b.html", "../runs/b.vtkhdf"),
+        ("pages/sub/c.vtkhdf", "pages/c.html", "sub/c.vtkhdf"),
+    ):
+        history.save(file)
+        estimate.report(page)
+        shown = (tmp_path / page).read_text(encoding="utf-8").split("<pre>percute ")[1].split("</pre>")[0]
+        assert shown.split()[:2] == ["estimate", command]
+        run((tmp_path / page).parent, *shown.split(), "--quiet", "--force")
+
+
+@pytest.mark.filterwarnings("ignore:the last instant")
+def test_a_forced_estimate_says_how_it_is_made_again(tmp_path: Path) -> None:
+    history = pc.simulate(block(), end=9e-6, courant=0.9)
+    late = pc.History.from_arrays(history.problem, history.time, history.displacement, np.roll(history.reaction, 1, axis=0), program="a\x1b[31m solver")
+    late.save(tmp_path / "late.vtkhdf")
+    estimate = pc.estimate(late, force=True)
+    estimate.report(tmp_path / "page.html")
+    command = (tmp_path / "page.html").read_text(encoding="utf-8").split("<pre>percute ")[1].split("</pre>")[0].split()
+    assert "--accept-inconsistent" in command
+    assert "in Python <code>force=True</code>" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    told = run(tmp_path, *command)
+    # The name of the program is shown, without what colours a terminal.
+    for text in (told, run(tmp_path, "info", "late.vtkhdf")):
+        assert "a\\u{1b}[31m solver" in text and "\x1b" not in text
+    # A page may also be asked for as elsewhere.
+    run(tmp_path, "report", "late.vtkhdf", "--accept-inconsistent", "--report", "again.html")
+    assert "--accept-inconsistent" in (tmp_path / "again.html").read_text(encoding="utf-8")
+
+
 def test_other_commands_read_it(tmp_path: Path, block_history: pc.History) -> None:
     theirs(block_history, "displacement", "reaction", "touching").save(tmp_path / "a.vtkhdf")
     told = run(tmp_path, "info", "a.vtkhdf")

@@ -2,12 +2,14 @@
 
 import json
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import percute as pc
 import pytest
 from percute.verification.bodies import BODIES
+from percute.verification.durations import Impact
 
 pytestmark = pytest.mark.filterwarnings("ignore::percute.InputWarning")
 ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
@@ -19,7 +21,7 @@ def struck(mesh: pc.Mesh, *, tilt: float = 0.0, speed: float = 400.0, **changes:
     normal = np.array([math.sin(angle), math.cos(angle)])
     lowest = float((mesh.points @ normal).min()) - 5e-7 * speed
     plane = pc.Plane(point=normal * lowest, normal=normal, friction=changes.pop("friction", 0.2))
-    times = {"end": 12e-6, "courant": changes.pop("courant", 0.9)}
+    times = {"end": changes.pop("end", 12e-6), "courant": changes.pop("courant", 0.9)}
     material = pc.Elastic(**ALUMINIUM, plane="stress")
     problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=-speed * normal, **changes)
     return pc.estimate(pc.simulate(problem, **times))
@@ -101,3 +103,35 @@ def test_shorter_steps_help_where_they_do() -> None:
     change = round(100 * (sources.mean_with_half_size / estimate.mean - 1))
     assert f"by −{-change} %" in str(estimate.verdict) and "Refine the elements that touch" in str(estimate.verdict)
     assert "Refine the whole mesh" in str(struck(BODIES["block"]().refine()).verdict)
+
+
+@pytest.mark.parametrize(
+    ("impact", "last"),
+    [(Impact("flat block", 0, 0.5), 5.0), (Impact("block", 0, 0.9), 2.0), (Impact("block", 0, 0.1, oblique=True), 2.0)],
+)
+def test_the_range_depends_on_the_time_from_the_first_touch(impact: Impact, last: float) -> None:
+    """Wide at the first touch, and wider again long after it: it contains the index at each time."""
+    ranges = []
+    for duration, sup, mean, (low, high) in replace(impact, last=last).indices():
+        assert low <= min(sup, mean) and max(sup, mean) <= high, (duration, sup, mean)
+        ranges.append((duration, high))
+    assert ranges[0] == (0.1, 3.5) and ranges[-1] == (last, 1.6)
+
+
+def test_a_very_long_run_is_not_tested() -> None:
+    """A block flies on for fifteen wave passages."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    estimate = struck(mesh, end=180e-6)
+    found = facts(estimate)
+    assert found["effectivity"] == [0.7, 1.6] and any("wave passages" in each for each in found["untested"])
+    assert estimate.trust == "limited"
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+def test_a_release_is_no_spike_with_short_steps() -> None:
+    """Neighbours of a node are released before it. Its return to the plane within a step once made an error of 70 %."""
+    material = pc.Elastic(**ALUMINIUM, plane="stress")
+    plane = pc.Plane(point=(0, -5e-6), normal=(0, 1), friction=0.2)
+    problem = pc.Problem(pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4), material=material, obstacles=[plane], initial_velocity=(0, -10))
+    # The onset of contact makes 21 %.
+    assert pc.estimate(pc.simulate(problem, end=20e-6, courant=0.05)).relative_sup < 0.25

@@ -181,8 +181,8 @@ pub struct ReportArguments {
     pub file: PathBuf,
     /// The page (.html) [default: named after the file, in the working directory]
     pub page: Option<PathBuf>,
-    /// The page, as an option
-    #[arg(short, long, value_name = "PAGE", conflicts_with = "page")]
+    /// The page, as an option; `--report` is the same
+    #[arg(short, long, alias = "report", value_name = "PAGE", conflicts_with = "page")]
     pub output: Option<PathBuf>,
     /// Title of the page [default: "Error of the simulation" and the name of the file]
     #[arg(long, value_name = "TEXT")]

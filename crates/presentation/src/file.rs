@@ -5,6 +5,7 @@ use crate::png::rendered;
 use percute_io::{Overwrite, write_bytes};
 use percute_workflow::Failure;
 use percute_workflow::outputs::OutputFile;
+use std::path::Path;
 
 /// The kind of a picture, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +70,8 @@ pub fn write_picture(output: &OutputFile<'_>, overwrite: Overwrite, svg: &str) -
 /// A name that is not that of a page; a file that exists and may not be replaced, or that cannot be written.
 pub fn write_page(output: &OutputFile<'_>, overwrite: Overwrite, contents: &Contents<'_>) -> Result<u64, Failure> {
     page(output)?;
-    let html = crate::page::page(contents);
+    let folder = output.file.parent().unwrap_or(Path::new(""));
+    let html = crate::page::page(contents, folder);
     write_bytes(output.file, overwrite, html.as_bytes())?;
     Ok(html.len() as u64)
 }
@@ -77,7 +79,6 @@ pub fn write_page(output: &OutputFile<'_>, overwrite: Overwrite, contents: &Cont
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
     #[test]
     fn names_say_the_format() {

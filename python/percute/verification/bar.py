@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import percute as pc
+from percute.verification.impacts import holds
 from percute.verification.parallel import Stop
 
 BAR = {"length": 0.1, "young": 70e9, "density": 2700.0, "section": 0.02, "speed": 400.0}
@@ -26,6 +27,8 @@ class Outcome:
     """Largest and mean estimated error (J^½) of each choice, and both relative to their denominators, eq. [22]."""
     indices: list[pc.Effectivity]
     """e_RdC/e_Ex of each choice."""
+    held: list[bool]
+    """Whether the range of the verdict contains both, of each choice."""
 
     def effectivity(self, choice: int) -> tuple[float, float]:
         """Give e_RdC/e_Ex of a choice, of the largest and the mean error."""
@@ -65,4 +68,6 @@ class Setting:
         estimates = [pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
         errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
-        return Outcome((true.sup, true.mean), errors, [each.effectivity(true) for each in estimates])
+        indices = [each.effectivity(true) for each in estimates]
+        held = [holds(each, (index.sup, index.mean)) for each, index in zip(estimates, indices, strict=True)]
+        return Outcome((true.sup, true.mean), errors, indices, held)

@@ -1,7 +1,7 @@
 """Figures of consistency of correct histories: the table of ``docs/foreign.md``.
 
 ``python -m percute.verification.consistency`` prints it from some histories, with ``--whole`` from all. A refused history is
-an error.
+an error, and so is one whose contact forces are named as those of another step.
 """
 
 from __future__ import annotations
@@ -70,7 +70,10 @@ def figures(history: pc.History, kind: str, forces: str) -> dict[str, float]:
     if forces == "with forces":
         arrays["reaction"] = history.reaction.astype(kind)
     given = pc.History.from_arrays(history.problem, history.time.astype(kind), **arrays)
-    consistency = pc.estimate(given, every=len(history)).consistency or {}
+    estimate = pc.estimate(given, every=len(history))
+    if "contact forces of another step" in str(estimate.verdict):
+        raise AssertionError(f"contact forces of a correct history are named as shifted: {estimate.verdict}")
+    consistency = estimate.consistency or {}
     return {name: float(consistency[name] or 0.0) for name in FIGURES}
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from percute.verification import figures, steps, turning
 from percute.verification.choices import RECONSTRUCTIONS as NAMES
 from percute.verification.impacts import CORNER, CURVED, FLAT, GOOD, KINDS, MESHES, RECONSTRUCTION_OPTIONS, STEP, TILTED, VERDICT, Case, Found
-from percute.verification.impacts import cases, curve, inside, stated
+from percute.verification.impacts import cases, curve, holds, inside, stated
 from percute.verification.page import Column, Figure, Section, Table, percent, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -26,7 +26,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     found = resolution.map(work, wanted, lambda case: case.cost)
     results = list(zip(wanted, found, strict=True))
     table = _effectivities(results)
-    every = [(each.estimates[r], each.effectivity(r)) for _, found in results for each in filter(None, found) for r in range(len(NAMES))]
+    every = [holds(each.estimates[r], each.effectivity(r)) for _, found in results for each in filter(None, found) for r in range(len(NAMES))]
     section.add(
         f"Bodies of aluminium (E = 70 GPa, ν = 0.3, ρ = 2700 kg/m³) fly against a rigid plane. The estimates, each with its default Γ_DA, are "
         "compared with the energy norm of the difference to a run on a much finer mesh, in which the mesh is nested: e_ref² = max or mean "

@@ -197,10 +197,16 @@ VERDICT = tuple(f"verdict: {name}" for name in ("trust", "touches", "lowest", "h
 """Columns of what `stated` gives."""
 
 
-def inside(found: Iterable[tuple[pc.Estimate, tuple[float, float]]]) -> str:
-    """Say in how many runs the range of the verdict contains the effectivity index of the largest error and of the mean."""
-    held = [low <= min(pair) and max(pair) <= high for estimate, pair in found for _, _, low, high in [stated(estimate)]]
-    return f"The range that the verdict states contains both indices in {sum(held)} of {len(held)} runs."
+def holds(estimate: pc.Estimate, pair: tuple[float, float]) -> bool:
+    """Say whether the range of the verdict contains the effectivity index of the largest error and of the mean."""
+    _, _, low, high = stated(estimate)
+    return low <= min(pair) and max(pair) <= high
+
+
+def inside(held: Iterable[bool]) -> str:
+    """Say in how many runs the range of the verdict holds."""
+    each = list(held)
+    return f"The range that the verdict states contains both indices in {sum(each)} of {len(each)} runs."
 
 
 def contact_size(speed: float) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 import percute as pc
 from percute.verification import bodies, bounces, figures
-from percute.verification.impacts import FLAT, GOOD, VERDICT, Case, Found, contact_size, inside, stated, steps_past
+from percute.verification.impacts import FLAT, GOOD, VERDICT, Case, Found, contact_size, holds, inside, stated, steps_past
 from percute.verification.page import Column, Figure, Section, Table, interval, short
 from percute.verification.parallel import Resolution, Stop
 
@@ -88,7 +88,7 @@ def compute(section: Section, resolution: Resolution) -> None:
     runs = [(case, speed) for case in wanted for speed in resolution.either(FEW, SPEEDS)]
     found = resolution.map(run, runs, _cost)
     results = list(zip(runs, found, strict=True))
-    held = inside((each.estimates[0], each.effectivity(0)) for _, (_, meshes) in results for each in meshes if each is not None)
+    held = inside(holds(each.estimates[0], each.effectivity(0)) for _, (_, meshes) in results for each in meshes if each is not None)
     section.add(
         "Impacts of bodies that touch with a corner, a curve, or an edge beside an inclined side, from 400 to 0.4 m/s. The gap shrinks with the "
         "speed, so that a body touches at the same instant at each speed. Each run goes on through contact and release. Where a corner touches "

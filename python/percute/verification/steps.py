@@ -7,7 +7,7 @@ from typing import Any
 
 from percute.verification import figures
 from percute.verification.bar import Setting
-from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, RECONSTRUCTION_OPTIONS, Case, cases
+from percute.verification.impacts import CORNER, FEW, FLAT, GOOD, RECONSTRUCTION_OPTIONS, Case, cases, holds, inside
 from percute.verification.page import Column, Figure, Section, Table, interval
 from percute.verification.parallel import Resolution, Stop
 
@@ -18,6 +18,8 @@ ELEMENTS, FRACTIONS = 40, (0.1, 0.3, 0.5, 0.7, 0.9)
 ATTEMPTS: dict[str, dict[str, Any]] = {options["reconstruction"]: options for options in RECONSTRUCTION_OPTIONS}
 ATTEMPTS["corrected, not spread"] = {"_ablation": "impulse smoothing"}
 """The reconstructions, and the default with reactions that are not spread in time."""
+KNOWN = len(RECONSTRUCTION_OPTIONS)
+"""Attempts that have verdicts."""
 MEASURES = ("sup", "mean")
 ENDS = tuple(f"{end}, {measure}" for measure in MEASURES for end in ("lowest", "highest"))
 
@@ -29,16 +31,19 @@ def _name(subject: Subject) -> str:
     return f"bar, {ELEMENTS} elements" if subject is None else subject.name
 
 
-def _ranges(run: tuple[Subject, float], stop: Stop) -> list[list[float]]:
-    """Give lowest and highest of sup and mean for each attempt at one ratio."""
+def _ranges(run: tuple[Subject, float], stop: Stop) -> tuple[list[list[float]], list[bool]]:
+    """Give lowest and highest of sup and mean for each attempt at one ratio, and whether verdicts hold, of each reconstruction."""
     (subject, ratio), choices = run, list(ATTEMPTS.values())
     if subject is None:
         outcomes = [Setting(ELEMENTS, ratio, fraction, 2.0).run(choices, stop) for fraction in FRACTIONS]
         found = [[outcome.effectivity(r) for outcome in outcomes] for r in range(len(choices))]
+        held = [kept for outcome in outcomes for kept in outcome.held[:KNOWN]]
     else:
         finest = subject.at(ratio=ratio).finest(choices, stop)
         found = [[finest.effectivity(r)] for r in range(len(choices))]
-    return [[pick(pair[m] for pair in pairs) for m in range(2) for pick in (min, max)] for pairs in found]
+        held = [holds(finest.estimates[r], finest.effectivity(r)) for r in range(KNOWN)]
+    ranges = [[pick(pair[m] for pair in pairs) for m in range(2) for pick in (min, max)] for pairs in found]
+    return ranges, held
 
 
 def add(section: Section, resolution: Resolution) -> None:
@@ -50,7 +55,7 @@ def add(section: Section, resolution: Resolution) -> None:
     columns = [Column("body"), Column("reconstruction"), Column("Δt/Δt_c", digits=2), *(Column(end, digits=3) for end in ENDS)]
     caption = "Effectivity index over Δt/Δt_c: for the bar the lowest and the highest over the fractions of a step, for a plane body one value."
     table = Table("effectivity-steps", caption, columns, on_page=False)
-    for (subject, ratio), ranges in zip(runs, found, strict=True):
+    for (subject, ratio), (ranges, _) in zip(runs, found, strict=True):
         for attempt, values in zip(ATTEMPTS, ranges, strict=True):
             table.add(_name(subject), attempt, ratio, *values)
     section.add(
@@ -59,7 +64,8 @@ def add(section: Section, resolution: Resolution) -> None:
         "must not follow it, and `corrected` spreads its impulses in time for this reason. The bar of the paper's figure 5, with impacts at "
         f"{len(FRACTIONS)} fractions of a step and until t_c + 2L/c, is compared with the exact solution, plane bodies on mesh {FEW} with the "
         "first reference. A force that is spread over the time of a wave through the depth of the node begins with twice the exact one: on "
-        "the flat block the largest error of `corrected` is then that of the impact and rises to a limit with shorter steps. The mean does not.",
+        "the flat block the largest error of `corrected` is then that of the impact and rises to a limit with shorter steps. The mean does not. "
+        f"{inside(kept for _, held in found for kept in held)}",
         Figure(
             "effectivity-steps",
             "Effectivity index over Δt/Δt_c (both axes logarithmic), a panel for each body: the largest error [15] as lines, the mean [16] "

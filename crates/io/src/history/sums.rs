@@ -34,7 +34,7 @@ pub(super) fn check_fixed_part(ours: &Part<'_>, found: i64) -> Result<(), FileCa
         return Ok(());
     }
     Err(FileCause::Checksum {
-        name: "mesh, initial velocity, texts, instants and contact nodes".to_string(),
+        name: "mesh, initial fields, statement, case, program, instants or contact nodes".to_string(),
         step: None,
     })
 }

@@ -63,10 +63,10 @@ pub fn convergence(verification: &Verification) -> Option<String> {
         Chart { label: "error (J^½)", y, lines: errors, rows: 2, band: None, none: "" },
         Chart {
             label: "effectivity index",
-            y: padded(&indices, &band),
+            y: padded(&indices, band.as_slice().as_flattened()),
             lines: indices,
             rows: 1,
-            band: Some(band),
+            band,
             none: "the error is zero to rounding",
         },
         Chart {

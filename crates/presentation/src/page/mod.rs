@@ -6,6 +6,7 @@ mod error;
 mod html;
 mod model;
 mod numbers;
+mod place;
 mod reproduce;
 mod verdict;
 
@@ -16,6 +17,7 @@ use crate::body::Body;
 use crate::document::Document;
 use crate::svg;
 use crate::typeset::escaped;
+use std::path::Path;
 
 /// The looks of the page.
 const STYLE: &str = include_str!("page.css");
@@ -37,9 +39,9 @@ pub struct Contents<'a> {
     pub surface: Option<&'a Surface>,
 }
 
-/// The page, for a browser and for paper (A4).
+/// The page, for a browser and for paper (A4), that will lie in a folder.
 #[must_use]
-pub fn page(contents: &Contents<'_>) -> String {
+pub fn page(contents: &Contents<'_>, folder: &Path) -> String {
     let document = contents.document;
     let (marks, light) = svg::style();
     let title = contents.about.title.clone().unwrap_or_else(|| match document.name() {
@@ -54,7 +56,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         contact::section_of(contents),
         model::balance(document),
         model::section_of(contents),
-        reproduce::section(contents),
+        reproduce::section(contents, folder),
         numbers::section(document),
     ];
     let style = STYLE.replace("/*light*/", &light);
@@ -85,7 +87,7 @@ mod tests {
         let mesh =
             TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
         let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
-        page(&Contents { about, document: &document, body: &body, statement: "", case, surface: None })
+        page(&Contents { about, document: &document, body: &body, statement: "", case, surface: None }, Path::new(""))
     }
 
     #[test]

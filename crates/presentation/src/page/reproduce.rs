@@ -2,28 +2,30 @@
 
 use super::Contents;
 use super::html::{heading, paragraph, remark, section as sectioned, verbatim};
+use super::place::seen_from;
 use crate::body::Body;
 use crate::document::Document;
 use percute_io::{Case, is_vtkhdf_name};
 use percute_workflow::message::{bytes, counted};
+use std::path::Path;
 
 /// Longest text of a case on the page (bytes): longer ones hold their mesh as arrays.
 const LONGEST: usize = 100_000;
 /// The name of a history that is not in a file yet.
 const UNSAVED: &str = "history.vtkhdf";
 
-pub(super) fn section(contents: &Contents<'_>) -> String {
+pub(super) fn section(contents: &Contents<'_>, folder: &Path) -> String {
     let document = contents.document;
     let version = document.text("versions.percute");
     let mut html = paragraph(&format!(
         "percute {version} computed the numbers on {} {}. The same version on the same architecture gives them again \
-         bit by bit.",
+         bit by bit. Commands are for the folder of this page.",
         document.text("versions.architecture"),
         document.text("versions.system")
     ));
     html += &match contents.case {
         Some(case) => {
-            verbatim(&commands(contents, case))
+            verbatim(&commands(contents, case, folder))
                 + &mesh_file(contents.body, &case.text)
                 + &heading(&format!("Case file {}", file_of(&case.name)))
                 + &text(&case.text)
@@ -31,7 +33,10 @@ pub(super) fn section(contents: &Contents<'_>) -> String {
         None => {
             let origin = "The problem was not stated in a case file. This is the problem in the language of the case \
                           files, without mesh, initial fields and instants.";
-            without_case(document) + &heading("Statement of the problem") + &remark(origin) + &text(contents.statement)
+            without_case(document, folder)
+                + &heading("Statement of the problem")
+                + &remark(origin)
+                + &text(contents.statement)
         }
     };
     sectioned("How to reproduce", &html)
@@ -70,21 +75,28 @@ fn file_of(name: &str) -> String {
     if file.contains('.') { file } else { file + ".toml" }
 }
 
-fn commands(contents: &Contents<'_>, case: &Case) -> String {
+fn commands(contents: &Contents<'_>, case: &Case, folder: &Path) -> String {
     let (document, name) = (contents.document, contents.document.name());
-    let case = quoted(&file_of(&case.name));
-    if quoted(&file_of(&name)) == case {
+    let file = file_of(&case.name);
+    let case = quoted(&seen_from(folder, &case.name).unwrap_or_else(|| file.clone()));
+    if file_of(&name) == file {
         return format!("percute run {case} --report report.html");
     }
+    let name = history(document, folder);
     format!("percute simulate {case} --history {}\n{}", quoted(&name), estimate(document, &name))
 }
 
+/// The history, from the folder of the page on if it is there; else its name.
+fn history(document: &Document, folder: &Path) -> String {
+    seen_from(folder, &document.text("case")).unwrap_or_else(|| document.name())
+}
+
 /// The way to a page whose history was not made from a case: from its file, or else from one to be made.
-fn without_case(document: &Document) -> String {
+fn without_case(document: &Document, folder: &Path) -> String {
     let stated = document.at("simulated_by").as_str();
     let program =
         stated.filter(|_| document.is_foreign()).map_or("another program".to_string(), |name| format!("`{name}`"));
-    let name = document.name();
+    let name = history(document, folder);
     if is_vtkhdf_name(name.as_ref()) {
         let origin = if document.is_foreign() {
             format!("{program} simulated it")
@@ -92,7 +104,7 @@ fn without_case(document: &Document) -> String {
             "it was simulated in Python".to_string()
         };
         let told = format!("The estimate is that of the history `{name}`: {origin}, and no case file belongs to it.");
-        return paragraph(&told) + &verbatim(&estimate(document, &name));
+        return paragraph(&told) + &forced(document) + &verbatim(&estimate(document, &name));
     }
     let origin =
         if document.is_foreign() { format!("was made from arrays of {program}") } else { "was simulated".to_string() };
@@ -102,7 +114,19 @@ fn without_case(document: &Document) -> String {
     );
     let save = format!("estimate.history.save(\"{UNSAVED}\")");
     let then = paragraph("With this file, the command is");
-    paragraph(&told) + &verbatim(&save) + &then + &verbatim(&estimate(document, UNSAVED))
+    paragraph(&told) + &verbatim(&save) + &forced(document) + &then + &verbatim(&estimate(document, UNSAVED))
+}
+
+/// Whether a history was estimated although it is not consistent.
+fn is_accepted(document: &Document) -> bool {
+    document.at("accepted_inconsistent").as_bool() == Some(true)
+}
+
+/// That such a history needs an option.
+fn forced(document: &Document) -> String {
+    let told = "The history is not consistent, and was accepted as it is: with `--accept-inconsistent`, in Python \
+                `force=True`.";
+    if is_accepted(document) { paragraph(told) } else { String::new() }
 }
 
 /// The options of the estimate: name and value.
@@ -117,7 +141,8 @@ fn options(document: &Document) -> impl Iterator<Item = (&'static str, String)> 
 /// The command for a history, with all options.
 fn estimate(document: &Document, file: &str) -> String {
     let options: String = options(document).map(|(key, value)| format!(" --{key} {}", quoted(&value))).collect();
-    format!("percute estimate {}{options} --report report.html", quoted(file))
+    let accepted = if is_accepted(document) { " --accept-inconsistent" } else { "" };
+    format!("percute estimate {}{options}{accepted} --report report.html", quoted(file))
 }
 
 /// A word for the shell.

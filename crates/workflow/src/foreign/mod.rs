@@ -81,6 +81,20 @@ pub struct Checked {
     pub consistency: Consistency,
     /// Its samples, if they are farther apart than the steps of a solver.
     pub samples: Option<Samples>,
+    /// That its contact forces fit another step better, if they do.
+    pub shifted: Option<String>,
+    /// Whether it would have been refused if it had not been accepted as it is.
+    pub accepted: bool,
+}
+
+/// What a check found.
+pub(crate) struct Found {
+    pub(crate) consistency: Consistency,
+    pub(crate) samples: Option<Samples>,
+    /// That contact forces fit another step better, if they do.
+    pub(crate) shifted: Option<String>,
+    /// Whether it is accepted although it is refused otherwise.
+    pub(crate) accepted: bool,
 }
 
 /// Why a history cannot be graded.
@@ -107,7 +121,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     critical: f64,
     derived: &[Derived],
     accept: bool,
-) -> Result<(Consistency, Option<Samples>), Refusal> {
+) -> Result<Found, Refusal> {
     let energies = RefCell::new((Evaluation::new(problem, source.times()), Balancing::new(problem, source.times())));
     let watched = Through::new(source, |step, take| {
         let (evaluation, balancing) = &mut *energies.borrow_mut();
@@ -121,13 +135,15 @@ pub(crate) fn check<const D: usize, const N: usize>(
     // These compare an instant with the next step of the solver, which a sample does not have.
     let of_steps = ["velocity", "touching", "slip", "plane", "gap_under_force"];
     exceeded.retain(|excess| samples.is_none() || !of_steps.contains(&excess.name));
+    let touches = evidence.contact.forced.contains(&true);
+    let lacking = lacking(source, &found, (evidence.given, touches), critical);
     if accept {
-        return Ok((found, samples));
+        let accepted = lacking.is_some() || !exceeded.is_empty();
+        return Ok(Found { consistency: found, samples, shifted: None, accepted });
     }
     let balance = exceeded.iter().find(|excess| excess.name == "balance");
-    let touches = evidence.contact.forced.contains(&true);
     let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
-    if let Some((figure, way_out)) = lacking(source, &found, (evidence.given, touches), critical) {
+    if let Some((figure, way_out)) = lacking {
         let changed = balance.map(|_| of_balance::changed(&suspect)).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
         return Err(Refusal::Inconsistent { figure, cause: changed.or(Some(way_out)) });
@@ -138,7 +154,8 @@ pub(crate) fn check<const D: usize, const N: usize>(
         let cause = cause.or_else(|| of_balance::hint(&suspect).filter(|_| balance.is_some()));
         return Err(Refusal::Inconsistent { figure: format!("{}{place}", balance.unwrap_or(first).what), cause });
     }
-    Ok((found, samples))
+    let shifted = if samples.is_none() { of_balance::shifted(&suspect)? } else { None };
+    Ok(Found { consistency: found, samples, shifted, accepted: false })
 }
 
 /// a/b, and 0 where both are.

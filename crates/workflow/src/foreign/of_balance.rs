@@ -5,7 +5,7 @@ use super::holding::{MOST, holding};
 use super::limits::BALANCE;
 use super::residual::Residual;
 use super::suspect::Suspect;
-use super::tried::{FALL, Tried, best};
+use super::tried::{FALL, ROUNDING, Tried, best};
 use super::{instants, lost, mass, moduli, orders, planes, rounded, skipped, surface, units};
 use crate::message::{numbered, percent, trimmed};
 use crate::through::Through;
@@ -15,6 +15,9 @@ use percute_core::history::{SinkError, Step};
 /// Nodes are few if they are no more than this, or than this share of all.
 const FEW: usize = 8;
 const FEW_OF_ALL: f64 = 0.1;
+/// Contact forces of another step must make a residual within its limit so many times smaller. Those of correct
+/// histories, also in single precision, make it larger (python/percute/verification/consistency.py).
+const SHIFTED: f64 = 3.0;
 /// The residual from which on the displacements have nothing to do with the mesh.
 const ALL_WRONG: f64 = 0.3;
 
@@ -77,6 +80,17 @@ fn shifts<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
         suspect.tried(suspect.source, shift, text)
     });
     tried.into_iter().collect()
+}
+
+/// A change to contact forces of another step that leaves much less of a residual within its limit.
+pub(super) fn shifted<const D: usize, const N: usize>(
+    suspect: &Suspect<'_, D, N>,
+) -> Result<Option<String>, SinkError> {
+    if suspect.residual() <= ROUNDING {
+        return Ok(None);
+    }
+    let less = |one: &Tried| one.left * SHIFTED <= one.before;
+    Ok(shifts(suspect)?.into_iter().find(less).map(|one| one.told()))
 }
 
 /// Nodes of the surface on which no force acts, although they have the residual.

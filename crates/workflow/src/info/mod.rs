@@ -13,7 +13,7 @@ pub use setting::{MaterialInfo, PlaneInfo};
 use crate::case::{CaseOf, FIELDS, NotRepresentable, Output};
 use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
-use crate::message::{bytes, counted, trimmed};
+use crate::message::{bytes, counted, printable, trimmed};
 use crate::report::build::problem_summary;
 use crate::report::summary::{body, layout, step};
 use crate::report::{FORMAT, ProblemSummary, Versions};
@@ -244,7 +244,8 @@ impl HistoryInfo {
         let mut lines =
             vec![("history", format!("{}, {}", self.file, bytes(self.bytes))), ("written", writer(&self.written_by))];
         if self.foreign {
-            let program = self.simulated_by.as_deref().map_or_else(String::new, |name| format!(": {name}"));
+            let program =
+                self.simulated_by.as_deref().map_or_else(String::new, |name| format!(": {}", printable(name)));
             lines.push(("", format!("simulated by another program{program}")));
         }
         if !self.checksums {

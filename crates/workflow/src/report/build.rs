@@ -56,6 +56,7 @@ impl Report {
             derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
             consistency: checked.map(|checked| checked.consistency),
             samples: checked.and_then(|checked| checked.samples),
+            accepted_inconsistent: checked.is_some_and(|checked| checked.accepted),
             held,
             error: estimate.error,
             meaning: meaning(),

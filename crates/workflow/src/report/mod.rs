@@ -79,6 +79,7 @@ pub struct Report {
     pub derived: Vec<Derived>,
     pub consistency: Option<Consistency>,
     pub samples: Option<Samples>,
+    pub accepted_inconsistent: bool,
     #[serde(skip)]
     pub held: Option<usize>,
     pub error: ErrorMeasures,

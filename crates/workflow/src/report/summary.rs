@@ -2,7 +2,7 @@
 
 use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
-use crate::message::{counted, percent, short, trimmed, whole_percent};
+use crate::message::{counted, percent, printable, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
 use percute_estimator::Sampling;
 
@@ -76,8 +76,10 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
     let label = if report.held.is_some() { "history" } else { "case" };
     let (version, seconds) = (report.versions.percute, short(report.seconds.unwrap_or(f64::NAN), 3));
     let options = &report.options;
-    let mut lines = vec![
-        (label, format!("{} (percute {version}, {seconds} s)", report.case)),
+    let mut lines = vec![(label, format!("{} (percute {version}, {seconds} s)", report.case))];
+    let program = report.simulated_by.as_ref();
+    lines.extend(program.map(|name| ("", format!("simulated by {}", printable(name)))));
+    lines.extend([
         ("body", body(&report.problem)),
         ("time", time(report)),
         ("", step(report.time_step, report.critical_time_step)),
@@ -90,7 +92,7 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
                 sampled(options.every)
             ),
         ),
-    ];
+    ]);
     let given = [("velocities", report.given.velocity), ("accelerations", report.given.acceleration)];
     let given: Vec<_> = given.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
     if !given.is_empty() {

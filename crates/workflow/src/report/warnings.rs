@@ -60,6 +60,7 @@ pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
         not_admissible(facts),
         last_instant(facts),
         samples(facts),
+        shifted(facts),
         energy_drift(facts),
         relative_error(facts.relative),
         flat_elements(facts),
@@ -77,8 +78,16 @@ impl Warning {
     /// Whether it doubts the result, rather than the input or how it was taken.
     #[must_use]
     pub fn doubts_result(&self) -> bool {
-        ["not_admissible", "energy_drift", "relative_error", "flat_elements", "kept_impulse", "no_contact"]
-            .contains(&self.name)
+        [
+            "not_admissible",
+            "shifted_forces",
+            "energy_drift",
+            "relative_error",
+            "flat_elements",
+            "kept_impulse",
+            "no_contact",
+        ]
+        .contains(&self.name)
     }
 }
 
@@ -121,6 +130,15 @@ fn samples(facts: &Facts<'_>) -> Option<Warning> {
         format!("samples {} critical steps apart", trimmed(samples.critical_steps, 4)),
         sampled(&samples),
     )
+}
+
+fn shifted(facts: &Facts<'_>) -> Option<Warning> {
+    let cause = facts.checked?.shifted.as_ref()?;
+    let message = format!(
+        "the balance of the history is within its limit, but {cause}; the estimate counts this shift as an error of \
+         the simulation"
+    );
+    warning("shifted_forces", "contact forces of another step fit better", message)
 }
 
 /// The limits of an estimate from samples.

@@ -24,8 +24,8 @@ pub struct Level {
     pub error: Option<Measures>,
     /// Estimate over true error; none where that is zero.
     pub effectivity: Option<Measures>,
-    /// Range of this index that the verdict states.
-    pub expected: [f64; 2],
+    /// Range of this index that the verdict states, if it states one.
+    pub expected: Option<[f64; 2]>,
     /// Largest normal force of all nodes together (N).
     pub peak_force: Option<f64>,
     /// Normal impulse of all planes (N s).

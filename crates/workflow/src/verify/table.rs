@@ -74,7 +74,7 @@ fn row(cells: &[String; 9]) -> String {
 /// error of its own that the true error lacks: the index is too large.
 fn expected(verification: &Verification) -> Option<String> {
     let first = verification.levels.first()?;
-    let (index, [low, high]) = (first.effectivity?, first.expected);
+    let (index, [low, high]) = (first.effectivity?, first.expected?);
     // The reference is off by about the last move at most, and the index with it.
     let found = match verification.settled {
         Some(Settled { moved, fine_enough: true }) => {

@@ -31,6 +31,8 @@ pub(in crate::report) struct Facts {
     pub(super) elements_in_contact: usize,
     /// Number of contact phases.
     pub(super) phases: usize,
+    /// Time from the first touch to the end over that of a wave along the diagonal of the body; 0 without contact.
+    pub(super) passages: f64,
     /// Mean thickness 2 A/P over the diagonal of the body, A its area and P its outline; 1 for a bar.
     pub(super) slenderness: f64,
     /// Whether nearly flat elements have much of the estimate.
@@ -58,6 +60,8 @@ pub(in crate::report) struct Facts {
     pub(super) off_contact: Option<f64>,
     /// Whether the history has samples instead of steps.
     pub(super) sampled: bool,
+    /// Whether its contact forces fit another step better.
+    pub(super) shifted: bool,
 }
 
 /// The part of the contact surface in the squared mean error, and expected changes of the mean error, relative.
@@ -106,6 +110,7 @@ impl Facts {
             courant: beside.courant,
             elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
             phases: phases(results, APART * size / wave_speed, shortest_release),
+            passages: after_first_touch(results) * wave_speed / size,
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
@@ -124,6 +129,7 @@ impl Facts {
             by_a_penalty: figures.is_some_and(by_a_penalty),
             off_contact: figures.filter(|found| is_off_contact(found)).map(off_contact),
             sampled: beside.checked.is_some_and(|checked| checked.samples.is_some()),
+            shifted: beside.checked.is_some_and(|checked| checked.shifted.is_some()),
         }
     }
 }
@@ -146,6 +152,12 @@ fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
     let half_size = change(sources.mean_with_half_size())?;
     let surface = sources.mean.surface / sources.mean.total();
     Some(Expected { surface, half_size, half_step: change(sources.mean_with_half_step())? })
+}
+
+/// The time from the first touch to the last instant (s); 0 without contact.
+fn after_first_touch<const D: usize>(results: &ContactResults<D>) -> f64 {
+    let first = results.summary.iter().filter_map(|summary| summary.first_touch).reduce(f64::min);
+    results.instants.last().zip(first).map_or(0.0, |(last, first)| last - first)
 }
 
 /// Number of contact phases; contacts that begin within `apart` (s) are one, and so are those between which is a

@@ -45,8 +45,9 @@ pub struct Verdict {
     pub trust: Trust,
     /// At most three sentences: situation and effectivity index, place and parts of the error, recommendation.
     pub text: Vec<String>,
-    /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence.
-    pub effectivity: [f64; 2],
+    /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence;
+    /// none where such cases are outside the range of all others.
+    pub effectivity: Option<[f64; 2]>,
     /// How the body touches first.
     pub touches: Touches,
     /// Normal velocity of the centre of mass before contact over the wave speed; none without contact.
@@ -95,7 +96,7 @@ impl Verdict {
         Self {
             trust,
             text: text::sentences(facts, rule, &untested, &doubts, shares),
-            effectivity: rule.range,
+            effectivity: rules::outside(facts).is_none().then_some(rule.range),
             touches: facts.contact.touches,
             speed_ratio: facts.speed_ratio,
             courant: facts.courant,

@@ -2,7 +2,7 @@
 
 use super::Shares;
 use super::facts::Facts;
-use super::rules::Rule;
+use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::message::{change, short, whole_percent};
 
@@ -68,8 +68,14 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     };
     let speed = facts.speed_ratio.filter(|ratio| *ratio > 0.0);
     let speed = speed.map_or_else(String::new, |ratio| format!(" at {} of the wave speed", short(ratio, 2)));
-    let [least, most] = rule.range;
-    let range = format!("in tests of {} the estimate was {least} to {most} times the true error", rule.situation);
+    let outside = rules::outside(facts);
+    let range = match (outside, rule.range) {
+        (Some(property), _) => format!("no range of estimate over true error is known for {property}"),
+        (None, [least, most]) => {
+            format!("in tests of {} the estimate was {least} to {most} times the true error", rule.situation)
+        }
+    };
+    let untested: Vec<&str> = untested.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
     let missing = if untested.is_empty() { String::new() } else { format!("; not tested: {}", untested.join(", ")) };
     format!("{touches}{speed}, with steps of {} Δt_c: {range}{missing}.", short(facts.courant, 2))
 }
