@@ -1,15 +1,15 @@
 //! Runs that were killed or stopped, and go on from their histories.
 
 mod difference;
+mod numbers;
 
-use crate::case::{CaseOf, statement};
+use crate::case::{CaseOf, TIME_KEYS, statement};
 use crate::failure::Failure;
 use crate::history::Stored;
 use crate::numbering::Ordered;
 use crate::storing::{Outcome, Storage, drive};
 use percute_core::dynamics::Simulation;
 use percute_core::history::Discard;
-use percute_core::mesh::Mesh;
 use percute_core::observer::Observer;
 use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
@@ -46,36 +46,40 @@ where
             let reaction = kept.reaction || problem.surface().nodes().is_empty();
             Kept { reaction, ..kept }
         };
-        let same_start = file.initial_displacement() == problem.initial_displacement()
-            && file.initial_velocity() == problem.initial_velocity();
+        if file.is_foreign() {
+            return Ok(Some("another program has simulated it".to_string()));
+        }
         let stated = difference::of_statements(&statement(problem, Some(&case.options))?, file.statement(), estimated);
-        let differs = if file.is_foreign() {
-            Some("another program has simulated it")
-        } else if !same_mesh(problem.mesh(), file.mesh()) {
-            Some("its mesh differs")
-        } else if !same_start {
-            Some("its initial displacement or velocity differs")
-        } else if stated.is_some() {
-            return Ok(stated);
-        } else if !self.same_time(case) {
-            Some("its end or its steps differ")
-        } else if kept(case.output.keep.of(times)) != kept(file.keeps()) {
-            Some("`every`, `times` or `fields` of its [output] differ")
-        } else {
-            None
+        let start = || {
+            let (displacement, velocity) = (problem.initial_displacement(), problem.initial_velocity());
+            let first = numbers::of_starts("displacement", "m", displacement, file.initial_displacement());
+            first.or_else(|| numbers::of_starts("velocity", "m/s", velocity, file.initial_velocity()))
         };
-        Ok(differs.map(str::to_string))
+        let output = || {
+            let differs = numbers::of_kept(&kept(case.output.keep.of(times)), &kept(file.keeps()))?;
+            Some(self.of_texts(case, "output", &["every", "times", "fields"]).unwrap_or(differs))
+        };
+        let mesh = numbers::of_meshes(problem.mesh(), file.mesh());
+        Ok(mesh.or_else(start).or(stated).or_else(|| self.of_times(case)).or_else(output))
     }
 
-    /// Whether the case asks for the instants of the file. Those of a run that ends with the rebound follow from its
-    /// simulation: its statement must be that of the case in the file.
-    fn same_time(&self, case: &CaseOf<D, N>) -> bool {
+    /// The first difference between the instants that the case asks for and those of the file. Those of a run that ends
+    /// with the rebound follow from its simulation: its statement must be that of the case in the file.
+    fn of_times(&self, case: &CaseOf<D, N>) -> Option<String> {
+        let stated = || self.of_texts(case, "time", &TIME_KEYS);
         if case.until.is_none() {
-            return case.times.instants() == self.file.run_times().instants();
+            let differs = numbers::of_instants(&case.times, self.file.run_times())?;
+            return Some(stated().unwrap_or(differs));
         }
-        let time = |text: &str| text.parse::<toml::Table>().ok()?.remove("time");
-        let stored = self.file.case().and_then(|case| time(&case.text));
-        stored.is_some() && stored == time(case.source.text())
+        match self.file.case() {
+            Some(_) => stated(),
+            None => Some("the case that it came from, with the end of its run, is not in it".to_string()),
+        }
+    }
+
+    /// The first difference between keys of a table in the texts of both cases.
+    fn of_texts(&self, case: &CaseOf<D, N>, table: &str, keys: &[&str]) -> Option<String> {
+        difference::of_cases(case.source.text(), self.file.case().map(|case| case.text.as_str()), table, keys)
     }
 
     /// Lets the run go on to its end, on so many threads, by default one for each core. The file then is, byte by byte,
@@ -94,13 +98,6 @@ where
         let checkpoint = checkpoint.map(|checkpoint| ordered.local(checkpoint));
         drive(&ordered, self.file.run_times(), (threads, checkpoint.as_ref()), storage, &mut Discard, observer)
     }
-}
-
-fn same_mesh<const D: usize, const N: usize>(one: &Mesh<D, N>, other: &Mesh<D, N>) -> bool {
-    one.points() == other.points()
-        && one.cells() == other.cells()
-        && one.facet_groups() == other.facet_groups()
-        && one.element_groups() == other.element_groups()
 }
 
 /// All steps with their reactions.

@@ -97,6 +97,10 @@ where
                 // An estimate of all steps until there would take long; standard output has results only.
                 let seconds = start.elapsed().as_secs_f64();
                 console.say(simulated(&case.subject(), &simulation, file, seconds).trim_end());
+                console.say(&format!(
+                    "no estimate was made: `percute estimate {}` makes that of the steps done, and --resume goes on",
+                    file.display()
+                ));
                 return Ok(Break(INTERRUPTED));
             }
             again(&Stored::of_case(case, file, true)?, analysis, work, console)

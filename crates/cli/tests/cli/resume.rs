@@ -70,6 +70,22 @@ fn a_killed_run_ends_as_one_that_was_not() {
     assert!(std::fs::read(bench.path("case.vtkhdf")).unwrap() == file, "the history is left alone");
 }
 
+/// Ctrl-C in a run that goes on gives no estimate: it would be one of all steps from the first one on.
+#[test]
+fn a_run_that_goes_on_and_is_stopped_tells_how_to_estimate_it() {
+    let bench = Bench::new(&case());
+    kill(running(&bench, &RUN, FILE, 200));
+    let output = send_interrupt(running(&bench, &RUN, FILE, 400));
+    let told = stderr(&output);
+    assert!(output.status.code() == Some(130) && stdout(&output).is_empty(), "{told}");
+    assert!(
+        told.contains("no estimate was made: `percute estimate case.vtkhdf` makes that of the steps done"),
+        "{told}"
+    );
+    let estimated = bench.percute(&["estimate", FILE, "--json", "--every", "100"]);
+    assert_eq!(estimated.status.code(), Some(0), "{}", stderr(&estimated));
+}
+
 #[test]
 fn a_stopped_simulation_goes_on() {
     let (file, _) = undisturbed(&case());
@@ -115,18 +131,37 @@ fn another_case_is_refused() {
     assert_eq!(bench.percute(&["simulate", "case.toml"]).status.code(), Some(0));
     let before = std::fs::read(bench.path("case.vtkhdf")).unwrap();
     for (from, to, told) in [
-        ("nx = 5", "nx = 6", "its mesh differs"),
+        ("nx = 5", "nx = 6", "[mesh], the number of nodes is 35 in this case and 30 in the history"),
+        (
+            "width = 0.05",
+            "width = 0.06",
+            "[mesh], node 1 is [0.012, 0.0] m in this case and [0.01, 0.0] m in the history",
+        ),
         ("poisson = 0.3", "poisson = 0.31", "[[material]] 1, poisson is 0.31 in this case and 0.3 in the history"),
         (
             "[time]",
             "[[body_force]]\nvalue = [0.0, 1.0]\n\n[time]",
             "[body_force] is given 1 times in this case and missing",
         ),
-        ("velocity = [", "displacement = [1e-9, 0.0]\nvelocity = [", "its initial displacement or velocity differs"),
-        ("end = 5e-6", "end = 6e-6", "its end or its steps differ"),
-        ("[time]", "[output]\nevery = 3\n\n[time]", "`every`, `times` or `fields`"),
+        (
+            "velocity = [",
+            "displacement = [1e-9, 0.0]\nvelocity = [",
+            "the initial `displacement` of node 0 is [1e-9, 0.0] m in this case and [0.0, 0.0] m in the history",
+        ),
+        (
+            "-400.0]",
+            "-401.0]",
+            "the initial `velocity` of node 0 is [400.0, -401.0] m/s in this case and [400.0, -400.0]",
+        ),
+        ("end = 5e-6", "end = 6e-6", "[time], end is 6e-6 in this case and 5e-6 in the history"),
+        ("courant = 0.9", "courant = 0.8", "[time], courant is 0.8 in this case and 0.9 in the history"),
+        ("[time]", "[output]\nevery = 3\n\n[time]", "[output], every is 3 in this case and missing in the history"),
         // The end of such a run follows from its simulation.
-        ("end = 5e-6", "end = \"rebound\"\nlongest = 5e-6", "its end or its steps differ"),
+        (
+            "end = 5e-6",
+            "end = \"rebound\"\nlongest = 5e-6",
+            "[time], end is \"rebound\" in this case and 5e-6 in the history",
+        ),
     ] {
         assert!(BLOCK.contains(from), "{from}");
         std::fs::write(bench.path("case.toml"), BLOCK.replacen(from, to, 1)).unwrap();

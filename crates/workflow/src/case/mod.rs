@@ -55,6 +55,7 @@ pub(crate) use source::At;
 pub use source::{CaseError, Source};
 pub use statement::{NotRepresentable, problem_from, statement};
 pub use stranger::stranger;
+pub(crate) use time::KEYS as TIME_KEYS;
 
 use crate::effort::{Effort, Long};
 use crate::message::bytes;

@@ -1,5 +1,6 @@
 //! The first difference between two statements, in words: the key with both values.
 
+use std::fmt::Display;
 use toml::{Table, Value};
 
 /// The order of the tables in a statement.
@@ -23,6 +24,17 @@ pub(super) fn of_statements(case: &str, history: &str, estimated: bool) -> Optio
     })
 }
 
+/// The first difference between some keys of a table of two case texts; none if both have the same, or neither.
+pub(super) fn of_cases(case: &str, history: Option<&str>, table: &str, keys: &[&str]) -> Option<String> {
+    let part = |text: &str| {
+        let mut table = text.parse::<Table>().ok()?.remove(table)?.as_table()?.clone();
+        table.retain(|key, _| keys.contains(&key));
+        Some(table)
+    };
+    let [case, history] = [part(case), part(history?)].map(Option::unwrap_or_default);
+    between_tables(&format!("[{table}], "), &case, &history)
+}
+
 /// The same between tables; `path` ends with what joins it to a key.
 fn between_tables(path: &str, case: &Table, history: &Table) -> Option<String> {
     let more = history.keys().filter(|key| !case.contains_key(*key));
@@ -39,14 +51,15 @@ fn between(path: &str, case: Option<&Value>, history: Option<&Value>) -> Option<
         }
         // Zero has two signs.
         (Some(Value::Float(case)), Some(Value::Float(history))) if case.to_bits() == history.to_bits() => None,
-        (Some(Value::Float(_)), Some(Value::Float(_))) => differ(path, case, history),
+        (Some(Value::Float(_)), Some(Value::Float(_))) => Some(differ(path, &shown(case), &shown(history))),
         _ if case == history => None,
-        _ => differ(path, case, history),
+        _ => Some(differ(path, &shown(case), &shown(history))),
     }
 }
 
-fn differ(path: &str, case: Option<&Value>, history: Option<&Value>) -> Option<String> {
-    Some(format!("{path} is {} in this case and {} in the history", shown(case), shown(history)))
+/// A difference in words.
+pub(super) fn differ(path: &str, case: &dyn Display, history: &dyn Display) -> String {
+    format!("{path} is {case} in this case and {history} in the history")
 }
 
 fn shown(value: Option<&Value>) -> String {
