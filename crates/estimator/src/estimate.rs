@@ -131,7 +131,12 @@ impl<const D: usize> Estimate<D> {
     #[must_use]
     pub fn worst_elements(&self, count: usize) -> Vec<(ElementId, f64)> {
         let mut order: Vec<usize> = (0..self.by_element.len()).collect();
-        order.sort_by(|&a, &b| self.by_element[b].total_cmp(&self.by_element[a]).then(a.cmp(&b)));
-        order.into_iter().take(count).map(|e| (ElementId::new(e), self.by_element[e])).collect()
+        let larger = |a: &usize, b: &usize| self.by_element[*b].total_cmp(&self.by_element[*a]).then(a.cmp(b));
+        if count < order.len() {
+            order.select_nth_unstable_by(count, larger);
+            order.truncate(count);
+        }
+        order.sort_unstable_by(larger);
+        order.into_iter().map(|e| (ElementId::new(e), self.by_element[e])).collect()
     }
 }

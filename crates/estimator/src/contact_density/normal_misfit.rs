@@ -83,7 +83,15 @@ struct HatForce<const D: usize> {
     force: f64,
 }
 
-/// Normal forces at the beginning and the end of one step, where there are any, in the order of the facets.
+impl<const D: usize> HatForce<D> {
+    /// Its place in the order.
+    fn place(&self) -> (usize, usize) {
+        (self.end, self.hat.facet)
+    }
+}
+
+/// Normal forces at the beginning and the end of one step, where there are any, in the order of the facets; those of
+/// hats at the beginning come first.
 #[derive(Clone, Debug)]
 struct NormalForces<const D: usize> {
     linear: Vec<LinearForce<D>>,
@@ -108,15 +116,21 @@ impl<const D: usize> NormalForces<D> {
             let hats = densities[end].hats().iter();
             hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.facet, &hat.resultant) })
         };
-        Self { linear, hats: hats(0).chain(hats(1)).collect() }
+        let mut hats: Vec<_> = hats(0).chain(hats(1)).collect();
+        // Hats of one facet keep their order.
+        hats.sort_by_key(HatForce::place);
+        Self { linear, hats }
     }
 
     /// Those on one facet.
     fn on(&self, facet: usize) -> [NormalForce<D>; 2] {
         let linear = self.linear.binary_search_by_key(&facet, |linear| linear.facet);
         let ends = linear.map_or([[0.0; D]; 2], |at| self.linear[at].ends);
-        let hats = |end: usize| self.hats.iter().filter(move |hat| hat.end == end && hat.hat.facet == facet);
-        [0, 1].map(|k| NormalForce { linear: ends[k], hats: hats(k).map(|hat| (hat.hat, hat.force)).collect() })
+        [0, 1].map(|k| {
+            let start = self.hats.partition_point(|hat| hat.place() < (k, facet));
+            let hats = self.hats[start..].iter().take_while(|hat| hat.place() == (k, facet));
+            NormalForce { linear: ends[k], hats: hats.map(|hat| (hat.hat, hat.force)).collect() }
+        })
     }
 }
 

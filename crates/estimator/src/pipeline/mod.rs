@@ -87,7 +87,8 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         if may_need_a_file(problem, times.step_count() / spacing + 1, spacing) {
             ScratchFile::check()?;
         }
-        let window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
+        let mut window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);
+        pool.install(|| window.make_room());
         let mut preparation = Preparation::new(problem, times, &options);
         preparation.prepare(&window.equilibration.elements);
         Ok(Self { problem, times, every: options.every, pool, preparation, window })

@@ -146,6 +146,11 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         &mut self.near
     }
 
+    /// Has the memory of the first window at hand: a stop waits for that window, but not for this.
+    pub(super) fn make_room(&mut self) {
+        self.equilibrated = EquilibratedLevels::with_links(self.problem.mesh().stars().link_count());
+    }
+
     /// Takes in a level; works when the window is full.
     pub(super) fn push(
         &mut self,

@@ -3,6 +3,7 @@
 use crate::lanes::Lanes;
 use crate::time_level::ForcesKnown;
 use percute_core::ids::ElementId;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only
@@ -45,6 +46,14 @@ pub(crate) struct KeptLevel<const D: usize> {
 }
 
 impl<const D: usize> EquilibratedLevels<D> {
+    /// Room for moments on so many links. All threads fill it: on a large mesh the system takes longer to give the memory
+    /// than the star problems of a level.
+    pub(crate) fn with_links(count: usize) -> Self {
+        let mut levels = Self::default();
+        (0..count).into_par_iter().map(|_| [Lanes::ZERO; D]).collect_into_vec(&mut levels.moments);
+        levels
+    }
+
     /// Number of levels.
     pub(crate) fn len(&self) -> usize {
         self.forces.len()

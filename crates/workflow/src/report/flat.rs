@@ -40,8 +40,10 @@ impl FlatElements {
             Shape::Bar => return None,
             Shape::Triangle => {}
         }
-        let angles = (0..mesh.element_count()).map(|e| largest_angle(mesh, ElementId::new(e)));
-        let mut flat: Vec<(usize, f64)> = angles.enumerate().filter(|(_, angle)| *angle > ANGLE).collect();
+        let (cosines, limit) =
+            ((0..mesh.element_count()).map(|e| least_cosine(mesh, ElementId::new(e))), ANGLE.to_radians().cos());
+        let flat = cosines.enumerate().filter(|(_, cosine)| *cosine < limit);
+        let mut flat: Vec<(usize, f64)> = flat.map(|(e, cosine)| (e, cosine.acos().to_degrees())).collect();
         let total: f64 = by_element.iter().map(|e| e * e).sum();
         if flat.is_empty() || total <= 0.0 {
             return None;
@@ -74,12 +76,11 @@ fn around<const D: usize, const N: usize>(mesh: &Mesh<D, N>, some: &[(usize, f64
     around
 }
 
-/// The largest angle of an element (degrees).
-fn largest_angle<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: ElementId) -> f64 {
+/// The cosine of the largest angle of an element.
+fn least_cosine<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: ElementId) -> f64 {
     // The gradients of the shape functions are normal to the edges: they enclose π minus the angles.
     let gradients = mesh.cell_geometry(element).gradients;
     let product = |a: usize, b: usize| gradients[a].iter().zip(&gradients[b]).map(|(x, y)| x * y).sum::<f64>();
     let cosine = |a: usize, b: usize| -product(a, b) / (product(a, a) * product(b, b)).sqrt();
-    let angle = |(a, b): (usize, usize)| cosine(a, b).clamp(-1.0, 1.0).acos().to_degrees();
-    (0..N).flat_map(|b| (0..b).map(move |a| (a, b))).map(angle).fold(0.0, f64::max)
+    (0..N).flat_map(|b| (0..b).map(move |a| cosine(a, b))).fold(1.0, f64::min).max(-1.0)
 }
