@@ -154,7 +154,7 @@ fn another_case_is_refused() {
             "the initial `velocity` of node 0 is [400.0, -401.0] m/s in this case and [400.0, -400.0]",
         ),
         ("end = 5e-6", "end = 6e-6", "[time], end is 6e-6 in this case and 5e-6 in the history"),
-        ("courant = 0.9", "courant = 0.8", "[time], courant is 0.8 in this case and 0.9 in the history"),
+        ("courant = 0.9", "courant = 0.4", "[time], courant is 0.4 in this case and 0.9 in the history"),
         ("[time]", "[output]\nevery = 3\n\n[time]", "[output], every is 3 in this case and missing in the history"),
         // The end of such a run follows from its simulation.
         (
