@@ -269,7 +269,7 @@ mod tests {
         file.create_group("a").unwrap().create_group("b").unwrap();
         file.close().unwrap();
         let old = std::fs::read(&path).unwrap();
-        assert_eq!((old[8], &as_version(&old, 0, 0)[..72] == &old[..72]), (0, true));
+        assert_eq!((old[8], as_version(&old, 0, 0)[..72] == old[..72]), (0, true));
         let told = |bytes: &[u8]| {
             std::fs::write(&path, bytes).unwrap();
             check(&File::open(&path).unwrap(), bytes.len() as u64).unwrap()
