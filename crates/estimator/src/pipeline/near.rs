@@ -77,6 +77,8 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
 pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
     pub(super) shared: &'a Sampling<'a, 'p, D, N>,
     pub(super) reconstruction: &'a dyn ReconstructionMethod<D, N>,
+    /// The largest component of the initial velocity (m/s).
+    pub(super) fastest: f64,
     /// Those of the contact nodes, with the motion at hand over the intervals that are sampled.
     pub(super) tracks: &'a [ContactTrack],
 }
@@ -230,14 +232,13 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         first: &ElementVelocities<D, N>,
     ) {
         let size = context.shared.problem.mesh().size();
-        let fastest = context.shared.problem.initial_velocity().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         let displacement = element.gather(context.shared.problem.initial_displacement());
         let velocity = element.gather(context.shared.problem.initial_velocity());
         for i in 0..N {
             for c in 0..D {
                 let u = (first.motion.displacement()[i][c] - displacement[i][c]).abs() / size;
                 let v = (first.motion.velocity()[i][c] - velocity[i][c]).abs();
-                let v = if v == 0.0 { 0.0 } else { v / fastest };
+                let v = if v == 0.0 { 0.0 } else { v / context.fastest };
                 self.residuals.initial_conditions = worse(worse(self.residuals.initial_conditions, u), v);
             }
         }

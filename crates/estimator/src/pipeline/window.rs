@@ -241,6 +241,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     /// Samples near elements as far as the motion of all contact nodes is known.
     fn catch_up(&mut self, preparation: &mut Preparation<'p, D, N>) -> Result<(), ScratchError> {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
+        let fastest = problem.initial_velocity().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         while let Some(known) = self.near.first_known(preparation.tracks(), &self.intervals) {
             let intervals = &mut self.intervals[known];
             if let [first, ..] = intervals {
@@ -250,7 +251,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             }
             let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
             let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks().all());
-            self.near.sample(&ContactSampling { shared: &shared, reconstruction, tracks }, intervals)?;
+            self.near.sample(&ContactSampling { shared: &shared, reconstruction, fastest, tracks }, intervals)?;
             self.near.put(&mut self.maps);
         }
         Ok(())
