@@ -5,7 +5,7 @@
 //! [`Equilibrated`](crate::traction::Equilibrated) level. Each state takes the fields of the one before without copying
 //! them.
 
-use crate::contact_density::{Densities, LevelDensities, OffContact};
+use crate::contact_density::{CornerSliding, Densities, LevelDensities, OffContact};
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
 use crate::nodal_field::NodalField;
@@ -93,6 +93,8 @@ pub(crate) struct ForcesKnown<const D: usize> {
     pub(crate) before: Option<BeforeJump<D>>,
     /// Densities where nodes do not touch, over each step since the sampled level before.
     pub(crate) off_contact: Vec<OffContact<D>>,
+    /// Densities and velocities beside nodes at two planes, over each step since the sampled level before.
+    pub(crate) corner_sliding: Vec<CornerSliding<D>>,
     /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
     pub(crate) friction: Vec<[f64; 2]>,
 }

@@ -3,15 +3,14 @@
 // Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/finer.rs"]
+mod finer;
+
+use finer::indices;
 use percute_core::contact::Interface;
-use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
-use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, TriangleProblem};
-use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Motion};
-use percute_estimator::{Estimator, Options, Sampling};
 
 /// Blocks of 40 × 25 mm, plane stress, a gap of 50 µm and T = 14 µs; steps of 0.9 Δt_c.
 const GAP: f64 = 50e-6;
@@ -84,32 +83,8 @@ impl Row {
     /// The effectivity indices of sup and mean on these meshes.
     fn indices(&self, meshes: &[[usize; 2]], reference: [usize; 2]) -> Vec<[f64; 2]> {
         let problems: Vec<_> = meshes.iter().map(|&cells| self.problem(cells)).collect();
-        let fine = self.problem(reference);
-        let mut comparison = Comparison::new(&fine);
-        let mut end = 0.0_f64;
-        let run = |problem: &TriangleProblem| {
-            let times = grid(problem, END);
-            let options = Options { every: Sampling::Every(1), ..Options::default() };
-            let mut sink = (Motion::default(), Estimator::new(problem, &times, options).unwrap());
-            simulate(problem, &times, &mut sink, &mut Unobserved).unwrap();
-            end = end.max(times.end());
-            let (motion, estimator) = sink;
-            (motion, estimator.finish().unwrap().error)
-        };
-        let runs: Vec<_> = problems.iter().map(run).collect();
-        for (problem, (motion, _)) in problems.iter().zip(&runs) {
-            comparison.add(problem, motion).unwrap();
-        }
-        simulate(&fine, &grid(&fine, end), &mut comparison, &mut Unobserved).unwrap();
-        let exact = comparison.finish().unwrap();
-        runs.iter().zip(&exact).map(|((_, found), exact)| [found.sup / exact.sup, found.mean / exact.mean]).collect()
+        indices(&problems, &self.problem(reference), END)
     }
-}
-
-fn grid(problem: &TriangleProblem, reach: f64) -> TimeGrid {
-    let step = 0.9 * critical_time_step(problem);
-    let count = (reach / step).ceil();
-    TimeGrid::uniform(count * step, count as usize).unwrap()
 }
 
 /// Within 0.05 of the prototype. The reference of 80×64 cells makes the indices of 10×8 cells larger by up to 1 % than

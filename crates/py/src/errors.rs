@@ -77,11 +77,9 @@ pub(crate) fn argument(place: Place, groups: &[Option<String>]) -> String {
 /// Causes that count from 1 or speak of a case file, in the words of Python.
 fn cause(cause: &Cause) -> String {
     match cause {
-        Cause::TwoPlanes { node, first } => format!(
-            "node {node} could touch obstacles[{}] as well as this one; name for each plane a `group` so that no node \
-             lies in two",
-            first - 1
-        ),
+        Cause::TwoPlanes { first, .. } | Cause::Opening { first, .. } | Cause::Jams { first, .. } => {
+            cause.to_string().replace(&format!("obstacle {first}"), &format!("obstacles[{}]", first - 1))
+        }
         Cause::ConflictingSupports { node, component, first } => format!(
             "component {component} of node {node} is already prescribed by supports[{}] with another motion; make the \
              two agree, or take the node out of one of the groups",

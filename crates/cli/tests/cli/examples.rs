@@ -20,9 +20,10 @@ use std::path::{Path, PathBuf};
 /// strikes a wall, and else from the same case on the mesh that is refined twice, by the measure of [`Comparison`].
 struct Example(&'static str, &'static str, f64);
 
-const EXAMPLES: [Example; 7] = [
+const EXAMPLES: [Example; 8] = [
     Example("bar", "result    sup 4.10 % (76.30 J^½ at 4.9912e-5 s), mean 3.31 %", 1.007),
     Example("block", "result    sup 6.34 % (166.8 J^½ at 1.3e-5 s), mean 5.74 %", 1.066),
+    Example("corner", "result    sup 9.43 % (9.798 J^½ at 2e-5 s), mean 7.55 %", 1.1),
     Example("drop", "result    sup 7.36 % (2.162 J^½ at 0.0025153 s), mean 6.53 %", 1.272),
     Example("tilted", "result    sup 7.97 % (209.5 J^½ at 1.6e-5 s), mean 6.20 %", 1.114),
     Example("two_blocks", "result    sup 9.30 % (6.142 J^½ at 2e-5 s), mean 7.06 %", 1.14),

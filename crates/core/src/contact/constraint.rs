@@ -17,8 +17,17 @@ pub(crate) struct Constraint<const D: usize> {
     pub(super) mass: f64,
     /// Gap at t_{n+1} without the reaction (m).
     pub(super) gap: f64,
-    /// Tangential part of v_{n+½} against the obstacle, without the reaction (m/s).
-    pub(super) sliding: [f64; D],
+    /// v_{n+½} against the obstacle, without the reaction (m/s).
+    pub(super) velocity: [f64; D],
+}
+
+/// The constraints of a step, in the order of the contact surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraints<const D: usize> {
+    /// Those that are violated.
+    pub(super) single: Vec<Constraint<D>>,
+    /// Both of nodes at two planes, of which at least one is violated.
+    pub(super) corners: Vec<[Constraint<D>; 2]>,
 }
 
 /// The motion that a step would have without reactions.
@@ -48,30 +57,45 @@ impl<const D: usize> Prediction<'_, D> {
         (0..D).for_each(|c| velocity[c] += h * self.inverse_mass[node] * self.force[node][c]);
         velocity
     }
+
+    /// The constraint of a node of the contact surface.
+    #[inline]
+    fn constraint(&self, surface: &ContactSurface<D>, at: usize) -> Constraint<D> {
+        let ([dt, h], nodes) = (self.steps, surface.nodes());
+        let displacement = surface.against_obstacle(at, self.displacement);
+        let frame = surface.frame(at, &displacement);
+        let mut velocity = self.velocity_after(nodes[at].node, h);
+        if let Some(opposite) = nodes[at].opposite {
+            let other = self.velocity_after(nodes[opposite].node, h);
+            (0..D).for_each(|c| velocity[c] -= other[c]);
+        }
+        let gap = surface.gap(at, &displacement) + dt * frame.split(&velocity).0;
+        let (law, mass) = (surface.law(at), surface.moved_mass(at, self.mass));
+        Constraint { at, frame, law, mass, gap, velocity }
+    }
 }
 
-/// Collects the violated constraints of a step, in the order of the contact surface.
-pub(crate) fn violated<const D: usize>(
-    surface: &ContactSurface<D>,
-    prediction: &Prediction<'_, D>,
-    constraints: &mut Vec<Constraint<D>>,
-) {
-    constraints.clear();
-    let [dt, h] = prediction.steps;
-    let nodes = surface.nodes();
-    for at in (0..nodes.len()).filter(|&at| nodes[at].free && surface.leads(at)) {
-        let displacement = surface.against_obstacle(at, prediction.displacement);
-        let frame = surface.frame(at, &displacement);
-        let mut predicted = prediction.velocity_after(nodes[at].node, h);
-        if let Some(opposite) = nodes[at].opposite {
-            let other = prediction.velocity_after(nodes[opposite].node, h);
-            (0..D).for_each(|c| predicted[c] -= other[c]);
-        }
-        let (normal, sliding) = frame.split(&predicted);
-        let gap = surface.gap(at, &displacement) + dt * normal;
-        if gap < -prediction.tolerance {
-            let (law, mass) = (surface.law(at), surface.moved_mass(at, prediction.mass));
-            constraints.push(Constraint { at, frame, law, mass, gap, sliding });
+impl<const D: usize> Constraints<D> {
+    pub(crate) const NONE: Self = Self { single: Vec::new(), corners: Vec::new() };
+
+    /// Collects those of a step.
+    pub(crate) fn collect(&mut self, surface: &ContactSurface<D>, prediction: &Prediction<'_, D>) {
+        self.single.clear();
+        self.corners.clear();
+        let nodes = surface.nodes();
+        let violated = |constraint: &Constraint<D>| constraint.gap < -prediction.tolerance;
+        for at in (0..nodes.len()).filter(|&at| nodes[at].free && surface.leads(at)) {
+            let own = prediction.constraint(surface, at);
+            match nodes[at].beside.filter(|&beside| nodes[beside].free) {
+                None if violated(&own) => self.single.push(own),
+                Some(beside) if at < beside => {
+                    let both = [own, prediction.constraint(surface, beside)];
+                    if both.iter().any(violated) {
+                        self.corners.push(both);
+                    }
+                }
+                _ => {}
+            }
         }
     }
 }

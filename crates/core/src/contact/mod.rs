@@ -4,6 +4,7 @@
 //! the only implementation of the cone of friction.
 
 mod constraint;
+mod corner;
 mod coulomb;
 mod frame;
 mod interface;
@@ -13,7 +14,7 @@ mod results;
 mod solve;
 mod surface;
 
-pub(crate) use constraint::{Constraint, Prediction, violated};
+pub(crate) use constraint::{Constraints, Prediction};
 pub(crate) use coulomb::dissipation;
 pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;

@@ -23,6 +23,9 @@ pub struct ContactNode {
     /// The node of another body that it may touch, by its position in [`ContactSurface::nodes`]; `None` at a rigid
     /// obstacle. The two have each other, and opposite reactions.
     pub opposite: Option<usize>,
+    /// The other entry of the same node, for a second plane that it may touch, by its position in
+    /// [`ContactSurface::nodes`].
+    pub beside: Option<usize>,
 }
 
 /// A facet that may touch an obstacle.
@@ -133,6 +136,28 @@ impl<const D: usize> ContactSurface<D> {
         if self.nodes[at].opposite.is_some() { 0.5 } else { 1.0 }
     }
 
+    /// The first entry of the node of an entry.
+    #[inline]
+    #[must_use]
+    pub fn first_entry(&self, at: usize) -> usize {
+        self.nodes[at].beside.map_or(at, |beside| at.min(beside))
+    }
+
+    /// Whether a facet has a node that may touch two planes.
+    #[inline]
+    #[must_use]
+    pub fn reaches_a_corner(&self, facet: &ContactFacet<D>) -> bool {
+        facet.nodes.iter().any(|&at| self.nodes[at].beside.is_some())
+    }
+
+    /// The force that the contact forces at all its obstacles do on a node.
+    #[inline]
+    #[must_use]
+    pub fn force_on_node(&self, at: usize, forces: &[[f64; D]]) -> [f64; D] {
+        let own = forces[at];
+        self.nodes[at].beside.map_or(own, |beside| std::array::from_fn(|c| own[c] + forces[beside][c]))
+    }
+
     /// The gap of a node with this displacement against its obstacle (m), eq. \[3\].
     #[inline]
     #[must_use]
@@ -186,6 +211,9 @@ impl<const D: usize> ContactSurface<D> {
     ) {
         let start = self.nodes.len();
         for (node, point) in nodes {
+            if let Some(first) = node.beside {
+                self.nodes[first].beside = Some(self.nodes.len());
+            }
             self.nodes.push(node);
             self.points.push(point);
         }

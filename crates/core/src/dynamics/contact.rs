@@ -1,7 +1,7 @@
 //! Reactions and touching status along the steps.
 
 use super::Dynamics;
-use crate::contact::{Constraint, Prediction, solve, violated};
+use crate::contact::{Constraints, Prediction, solve};
 
 /// Contact at one step.
 #[derive(Clone, Debug)]
@@ -12,7 +12,7 @@ pub(super) struct Contact<const D: usize> {
     pub(super) touching: Vec<bool>,
     /// Touching status at t_{n+1}.
     pub(super) touching_next: Vec<bool>,
-    constraints: Vec<Constraint<D>>,
+    constraints: Constraints<D>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -21,7 +21,7 @@ impl<const D: usize> Contact<D> {
             reaction: vec![[0.0; D]; count],
             touching: vec![false; count],
             touching_next: vec![false; count],
-            constraints: Vec::new(),
+            constraints: Constraints::NONE,
         }
     }
 
@@ -46,11 +46,11 @@ impl<const D: usize> Contact<D> {
             steps,
             tolerance: problem.contact_tolerance(),
         };
-        violated(problem.surface(), &prediction, &mut self.constraints);
+        self.constraints.collect(problem.surface(), &prediction);
         std::mem::swap(&mut self.touching, &mut self.touching_next);
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
-        solve(&self.constraints, steps, |constraint, reaction| {
+        solve(&self.constraints, steps, problem.contact_tolerance(), |at, reaction| {
             let nodes = problem.surface().nodes();
             let mut act = |at: usize, reaction: [f64; D]| {
                 let node = nodes[at].node.index();
@@ -58,8 +58,8 @@ impl<const D: usize> Contact<D> {
                 self.reaction[at] = reaction;
                 self.touching_next[at] = true;
             };
-            act(constraint.at, reaction);
-            if let Some(opposite) = nodes[constraint.at].opposite {
+            act(at, reaction);
+            if let Some(opposite) = nodes[at].opposite {
                 act(opposite, reaction.map(|r| -r));
             }
         });

@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 /// A facet faces an obstacle if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
+/// Angles (degrees) between two planes that a node may touch. Contact was tried from 30 to 150 degrees.
+const OPENINGS: std::ops::RangeInclusive<f64> = 15.0..=165.0;
 /// A prescribed component of which the normal has no more than this is tangential.
 pub(super) const ALIGNED: f64 = 1e-12;
 
@@ -22,18 +24,23 @@ pub(super) fn add<const D: usize, const N: usize>(
 ) -> Result<(), InputError> {
     let index = surface.obstacles().len();
     let facing = facing(mesh, &obstacle, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
+    if let Some(other) = surface.facets().iter().find(|other| facing.contains(&other.facet)) {
+        let nodes = mesh.facets()[other.facet.index()].nodes.map(NodeId::index).to_vec();
+        return Err(Cause::TwoPlanes { nodes, first: other.obstacle + 1 }.at("obstacle", Some(index), "group"));
+    }
     let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
     for node in along_the_boundary(mesh, &facing) {
-        if let Some(other) = surface.nodes().iter().find(|c| c.node == node) {
-            let cause = Cause::TwoPlanes { node: node.index(), first: other.obstacle + 1 };
-            return Err(cause.at("obstacle", Some(index), "group"));
-        }
+        let beside = surface.nodes().iter().position(|c| c.node == node);
         let (point, held) = (mesh.points()[node.index()], prescribed(node));
         let frame = obstacle.frame_at(&point);
         let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
         let guided = free && held != [false; D];
         let undeformed_gap = plane.gap(&point);
-        nodes.push((ContactNode { node, obstacle: index, undeformed_gap, free, guided, opposite: None }, point));
+        if let Some(other) = beside {
+            corner(surface, other, (&obstacle, index), free)?;
+        }
+        let contact = ContactNode { node, obstacle: index, undeformed_gap, free, guided, opposite: None, beside };
+        nodes.push((contact, point));
     }
     if let Some((first, _)) = nodes.first().filter(|_| nodes.iter().all(|(contact, _)| !contact.free)) {
         return Err(Cause::HeldNodes { node: first.node.index() }.at("obstacle", Some(index), ""));
@@ -44,6 +51,35 @@ pub(super) fn add<const D: usize, const N: usize>(
         ContactFacet { facet, nodes, area: area(facet), obstacle: index }
     };
     surface.add(obstacle, nodes, facing.into_iter().map(facet));
+    Ok(())
+}
+
+/// Refuses a node at two planes, of which the first has it at this position of the surface, without a solution, or at
+/// angles that were not tried. It has two free facets, so that it is never at three.
+fn corner<const D: usize>(
+    surface: &ContactSurface<D>,
+    at: usize,
+    (obstacle, index): (&Obstacle<D>, usize),
+    free: bool,
+) -> Result<(), InputError> {
+    let other = &surface.nodes()[at];
+    let (node, first) = (other.node.index(), other.obstacle + 1);
+    if !(free && other.free) {
+        return Ok(());
+    }
+    let both = [&surface.obstacles()[other.obstacle], obstacle];
+    let [one, two] = both.map(Obstacle::flat_frame);
+    let opening = (-dot(one.normal(), two.normal())).clamp(-1.0, 1.0).acos();
+    if !OPENINGS.contains(&opening.to_degrees()) {
+        let cause = Cause::Opening { node, first, opening: opening.to_degrees() };
+        return Err(cause.at("obstacle", Some(index), "normal"));
+    }
+    let angles = both.map(|obstacle| obstacle.law().friction().atan());
+    if angles[0] + angles[1] >= opening {
+        let limit = (opening > angles[0]).then(|| (opening - angles[0]).tan());
+        let (opening, angles) = (opening.to_degrees(), angles.map(f64::to_degrees));
+        return Err(Cause::Jams { node, first, opening, angles, limit }.at("obstacle", Some(index), "friction"));
+    }
     Ok(())
 }
 

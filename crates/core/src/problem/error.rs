@@ -164,15 +164,51 @@ pub enum Cause {
         vector(.outward), vector(.normal), named(.facing)
     )]
     NothingFaces { group: String, outward: Box<[f64]>, normal: Box<[f64]>, facing: Box<[String]> },
-    /// A facet or node that could touch two planes.
+    /// A facet that could touch two planes.
     #[error(
-        "node {node} could touch obstacle {first} as well as this one; \
-         name for each obstacle a `group` so that no node lies in two"
+        "the {} faces obstacle {first} as well as this one; name for each obstacle a `group` so that no edge lies in two",
+        facet(.nodes)
     )]
     TwoPlanes {
+        nodes: Vec<usize>,
+        /// The earlier obstacle, from 1.
+        first: usize,
+    },
+    /// Two planes of a node that are almost parallel.
+    #[error(
+        "node {node} could touch obstacle {first} as well as this one, and the two open by {}°; a node at both needs 15 \
+         to 165°: name for each obstacle a `group` so that no node lies in both",
+        trimmed(*.opening, 4)
+    )]
+    Opening {
         node: usize,
         /// The earlier obstacle, from 1.
         first: usize,
+        /// The angle between the planes (degrees).
+        opening: f64,
+    },
+    /// Two planes of a node whose cones of friction hold forces that cancel.
+    #[error(
+        "node {node} would jam between this obstacle and obstacle {first}, which open by {}°: the angles of friction, {}° \
+         here and {}° there, must add up to less; {}",
+        trimmed(*.opening, 4),
+        trimmed(.angles[1], 4),
+        trimmed(.angles[0], 4),
+        match .limit {
+            Some(limit) => format!("`friction` must be below {} here", trimmed(*limit, 4)),
+            None => format!("lower `friction` of obstacle {first}"),
+        }
+    )]
+    Jams {
+        node: usize,
+        /// The earlier obstacle, from 1.
+        first: usize,
+        /// The angle between the planes (degrees).
+        opening: f64,
+        /// The angles of friction of the earlier and of this obstacle (degrees).
+        angles: [f64; 2],
+        /// The coefficient that this obstacle must stay below, if there is one.
+        limit: Option<f64>,
     },
     /// An interface of a body with itself.
     #[error(

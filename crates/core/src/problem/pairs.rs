@@ -60,7 +60,8 @@ pub(super) fn add<const D: usize, const N: usize>(
             let guided = bodies.guided(&frame, [*node, facing]).map_err(fail)?;
             let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
             let undeformed_gap = dot(&apart, &frame);
-            let contact = ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, opposite };
+            let contact =
+                ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, opposite, beside: None };
             Ok((contact, points[node.index()]))
         };
         let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, InputError>>()?;

@@ -220,9 +220,29 @@ fn planes_that_nothing_faces() {
 /// Bottom and left share node 0.
 #[test]
 fn nodes_between_two_planes() {
-    let wall = Obstacle::plane([-1.0, 0.0], [1.0, 0.0], 0.0, None).unwrap();
-    let corner = solid().obstacle(floor(-1.0, None)).obstacle(wall);
-    assert_eq!(refused(corner), (place("obstacle", Some(1), "group"), Cause::TwoPlanes { node: 0, first: 1 }));
+    let plane = |normal: [f64; 2], friction| {
+        let point = normal.map(|n| -3.0 * n / f64::hypot(normal[0], normal[1]));
+        Obstacle::plane(point, normal, friction, Some("left".to_string())).unwrap()
+    };
+    let floor = |friction| Obstacle::plane([0.0, -1.0], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap();
+    let both =
+        |first: f64, normal, second: f64| refused(solid().obstacle(floor(first)).obstacle(plane(normal, second)));
+    assert!(solid().obstacle(floor(1.0)).obstacle(plane([1.0, 0.0], 0.999)).build().is_ok());
+    let jams = |friction: f64| match both(1.0, [1.0, 0.0], friction) {
+        (at, Cause::Jams { node: 0, first: 1, opening, angles, limit }) => {
+            assert_eq!(at, place("obstacle", Some(1), "friction"));
+            assert!((opening - 90.0).abs() < 1e-12 && (angles[0] - 45.0).abs() < 1e-12, "{opening} {angles:?}");
+            limit
+        }
+        other => panic!("{other:?}"),
+    };
+    assert!((jams(1.001).unwrap() - 1.0).abs() < 1e-12);
+    assert!(matches!(both(2.0, [1.0, -1.9], 0.5).1, Cause::Jams { limit: None, .. }));
+    let narrow = both(0.0, [1.0, -4.0], 0.0);
+    assert!(matches!(narrow.1, Cause::Opening { node: 0, first: 1, opening } if opening < 15.0), "{narrow:?}");
+    let anywhere = |normal| Obstacle::plane([-3.0, -3.0], normal, 0.0, None).unwrap();
+    let edge = refused(solid().obstacle(floor(0.0)).obstacle(anywhere([1.0, 1.0])));
+    assert_eq!(edge, (place("obstacle", Some(1), "group"), Cause::TwoPlanes { nodes: vec![0, 1], first: 1 }));
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod balance;
 mod bar_impact;
 mod contact;
 mod contact_results;
+mod corner;
 mod critical_step;
 mod early_end;
 mod element_state;

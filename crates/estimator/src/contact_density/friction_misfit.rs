@@ -5,10 +5,39 @@ use percute_core::contact::{ContactFacet, Frame};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
+/// A density on one facet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacetDensity<'a, const D: usize, const M: usize> {
+    /// The part that is linear (Pa at its nodes).
+    pub(crate) wide: &'a [[f64; D]; D],
+    /// Hats, among them those of the facet.
+    pub(crate) hats: [&'a [NarrowHat<D>]; M],
+}
+
+/// The power of the misfit of the mean of densities on a facet (W), with this velocity at its nodes (m/s): hats keep
+/// their shapes.
+pub(crate) fn facet_power<const D: usize, const N: usize, const M: usize>(
+    problem: &Problem<D, N>,
+    f: usize,
+    velocity: &[[f64; D]; D],
+    densities: &[&FacetDensity<'_, D, M>],
+) -> f64 {
+    let (surface, share) = (problem.surface(), 1.0 / densities.len() as f64);
+    let facet = &surface.facets()[f];
+    let mut mean = [[0.0; D]; D];
+    let mut power = 0.0;
+    for density in densities {
+        (0..D).for_each(|p| (0..D).for_each(|c| mean[p][c] += share * density.wide[p][c]));
+        let hats = density.hats.iter().copied().flatten().filter(|hat| hat.facet == f);
+        power += hats.map(|hat| share * hat_misfit_power(problem, hat, velocity)).sum::<f64>();
+    }
+    surface.part_of_contact(facet.nodes[0]) * (power + misfit_power(problem, facet, &mean, velocity))
+}
+
 /// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
 /// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors
 /// are linear along the edge.
-pub(crate) fn misfit_power<const D: usize, const N: usize>(
+fn misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     facet: &ContactFacet<D>,
     density: &[[f64; D]; D],
@@ -33,7 +62,7 @@ pub(crate) fn misfit_power<const D: usize, const N: usize>(
 }
 
 /// The same of a hat (W).
-pub(crate) fn hat_misfit_power<const D: usize, const N: usize>(
+fn hat_misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     hat: &NarrowHat<D>,
     velocity: &[[f64; D]; D],

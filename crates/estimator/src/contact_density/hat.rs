@@ -8,11 +8,13 @@ use crate::numbers::Reader;
 pub(crate) struct NarrowHat<const D: usize> {
     /// Its node, by the position in the contact surface.
     pub(crate) node: usize,
+    /// The first entry of its node in the contact surface: those of a node at two planes have one star.
+    pub(crate) star: usize,
     /// Its edge, by the position among the candidate facets.
     pub(crate) facet: usize,
     /// Position of the node in the facet.
     pub(crate) end: usize,
-    /// Position of the edge among those of the node.
+    /// Position of the edge among the candidate edges of the star.
     pub(crate) edge: usize,
     /// Its width is the length of the edge over two to this power.
     pub(crate) halvings: usize,
@@ -23,22 +25,22 @@ pub(crate) struct NarrowHat<const D: usize> {
 impl<const D: usize> NarrowHat<D> {
     /// Appends it to numbers.
     pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
-        let counts = [self.node, self.facet, self.end, self.edge, self.halvings];
+        let counts = [self.node, self.star, self.facet, self.end, self.edge, self.halvings];
         numbers.extend(counts.map(|count| count as f64));
         numbers.extend_from_slice(&self.resultant);
     }
 
     /// A hat that was appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
-        let [node, facet, end, edge, halvings] = [(); 5].map(|()| numbers.count());
-        Self { node, facet, end, edge, halvings, resultant: numbers.take() }
+        let [node, star, facet, end, edge, halvings] = [(); 6].map(|()| numbers.count());
+        Self { node, star, facet, end, edge, halvings, resultant: numbers.take() }
     }
 
-    /// Half of each of two tractions: both shapes, superposed. Sorted by nodes, if they are.
+    /// Half of each of two tractions: both shapes, superposed. Sorted by stars, if they are.
     pub(crate) fn mean(start: &[Self], end: &[Self]) -> Vec<Self> {
         let half = |hat: &Self| Self { resultant: hat.resultant.map(|f| 0.5 * f), ..*hat };
         let mut both: Vec<Self> = start.iter().chain(end).map(half).collect();
-        both.sort_by_key(|hat| hat.node);
+        both.sort_by_key(|hat| hat.star);
         both
     }
 
@@ -111,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_equivalent_has_resultant_and_moment() {
-        let hat = NarrowHat { node: 0, facet: 0, end: 1, edge: 0, halvings: 3, resultant: [2.0, -1.0] };
+        let hat = NarrowHat { node: 0, star: 0, facet: 0, end: 1, edge: 0, halvings: 3, resultant: [2.0, -1.0] };
         let [near, far] = hat.equivalent();
         for c in 0..2 {
             assert!((0.5 * (near[c] + far[c]) - hat.resultant[c]).abs() < 1e-15);

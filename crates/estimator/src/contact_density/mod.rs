@@ -1,11 +1,13 @@
 //! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact
 //! law.
 
+mod corner_sliding;
 mod friction_misfit;
 mod hat;
 mod normal_misfit;
 
-pub(crate) use friction_misfit::{along, hat_misfit_power, misfit_power, tangent};
+pub(crate) use corner_sliding::{CornerSliding, trapezoids};
+pub(crate) use friction_misfit::{FacetDensity, along, facet_power, tangent};
 pub(crate) use hat::NarrowHat;
 pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
@@ -51,12 +53,14 @@ impl<const D: usize> Densities<D> {
         Self::with_hats(problem, value, Vec::new())
     }
 
-    /// The values of the part that is linear on each facet, and hats, sorted by their nodes.
+    /// The values of the part that is linear on each facet, and hats.
     pub(crate) fn with_hats<const N: usize>(
         problem: &Problem<D, N>,
         value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
-        hats: Vec<NarrowHat<D>>,
+        mut hats: Vec<NarrowHat<D>>,
     ) -> Self {
+        // In the order of the nodes already, but for those at two planes.
+        hats.sort_by_key(|hat| hat.star);
         let facets = problem.surface().facets();
         let mut linear: Vec<_> = facets.iter().enumerate().map(|(f, facet)| value(f, facet)).collect();
         let wide = (!hats.is_empty()).then(|| linear.clone());
@@ -94,10 +98,10 @@ impl<const D: usize> Densities<D> {
         &self.hats
     }
 
-    /// The hats of one node.
-    pub(crate) fn hats_of(&self, node: usize) -> &[NarrowHat<D>] {
-        let start = self.hats.partition_point(|hat| hat.node < node);
-        let end = self.hats.partition_point(|hat| hat.node <= node);
+    /// The hats of one star.
+    pub(crate) fn hats_of(&self, star: usize) -> &[NarrowHat<D>] {
+        let start = self.hats.partition_point(|hat| hat.star < star);
+        let end = self.hats.partition_point(|hat| hat.star <= star);
         &self.hats[start..end]
     }
 

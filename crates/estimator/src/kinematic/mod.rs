@@ -10,6 +10,7 @@
 mod common_motion;
 mod contact_track;
 mod contact_tracks;
+mod corner;
 mod free_motion;
 mod normal_motions;
 mod shape;
@@ -18,6 +19,8 @@ mod window;
 pub(crate) use common_motion::common;
 pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use contact_tracks::ContactTracks;
+use corner::Corner;
+pub(crate) use corner::at_both_planes;
 use free_motion::half_way;
 pub(crate) use free_motion::{FreeMotion, NodalMotion};
 
@@ -71,14 +74,14 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     }
 
     /// Puts the solution of P_CA in the place of the normal components at local node `i`, which is this node of the
-    /// contact surface.
+    /// contact surface, the first one at two planes.
     pub(crate) fn set_normal(
         &mut self,
         (problem, i, at): (&Problem<D, N>, usize, usize),
-        track: &ContactTrack,
+        tracks: &[ContactTrack],
         instant: usize,
     ) {
-        settle((problem, at), [&mut self.displacement[i], &mut self.velocity[i]], track, instant);
+        settle((problem, at), [&mut self.displacement[i], &mut self.velocity[i]], tracks, instant);
     }
 }
 
@@ -199,14 +202,21 @@ pub(crate) fn gather_common<const D: usize, const N: usize>(
 }
 
 /// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
-/// velocity; it is the common motion of two nodes that may touch.
+/// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components.
 pub(crate) fn settle<const D: usize, const N: usize>(
     (problem, at): (&Problem<D, N>, usize),
     [displacement, velocity]: [&mut [f64; D]; 2],
-    track: &ContactTrack,
+    tracks: &[ContactTrack],
     instant: usize,
 ) {
-    let contact = &problem.surface().nodes()[at];
+    let (contact, track) = (&problem.surface().nodes()[at], &tracks[at]);
+    if let Some(beside) = contact.beside {
+        if let Some(corner) = Corner::of(problem, contact, [track, &tracks[beside]], instant) {
+            corner.settle_displacement(displacement);
+            corner.settle_velocity(velocity);
+        }
+        return;
+    }
     let frame: Frame<D> = problem.obstacles()[contact.obstacle].flat_frame();
     if contact.opposite.is_some() {
         let part = problem.surface().own_part(at, problem.mass());

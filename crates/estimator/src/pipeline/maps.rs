@@ -103,7 +103,10 @@ impl<const D: usize> Maps<D> {
             };
             let (displacement, velocity) = (common(&fields.displacement), common(&fields.velocity));
             for (at, (mut displacement, mut velocity)) in displacement.into_iter().zip(velocity).enumerate() {
-                settle((problem, at), [&mut displacement, &mut velocity], &tracks[at], 2 * map.step);
+                if problem.surface().first_entry(at) != at {
+                    continue;
+                }
+                settle((problem, at), [&mut displacement, &mut velocity], tracks, 2 * map.step);
                 let i = nodes[at].node.index();
                 (fields.displacement[i], fields.velocity[i]) = (displacement, velocity);
             }

@@ -28,7 +28,7 @@ const CHECK: usize = 16;
 #[derive(Clone, Debug)]
 pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) element: ElementId,
-    /// Position of each node in the contact surface.
+    /// Position of each node in the contact surface, the first one of a node at two planes.
     contact: [Option<usize>; N],
     /// Candidate facets that the element owns.
     facets: Vec<usize>,
@@ -36,6 +36,8 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     start: Option<ContactInstant<D, N>>,
     /// ∫∫F_n|w_n| so far (J).
     normal_work: f64,
+    /// The part of friction beside nodes at two planes so far (J).
+    corner_friction: f64,
     /// Intervals so far.
     checks: usize,
     pub(super) course: Course,
@@ -49,7 +51,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
     let mesh = problem.mesh();
     let mut of_node = vec![None; mesh.node_count()];
     for (at, contact) in problem.surface().nodes().iter().enumerate() {
-        of_node[contact.node.index()] = Some(at);
+        of_node[contact.node.index()].get_or_insert(at);
     }
     let mut facets = vec![Vec::new(); mesh.element_count()];
     for (f, facet) in problem.surface().facets().iter().enumerate() {
@@ -63,6 +65,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             facets,
             start: None,
             normal_work: 0.0,
+            corner_friction: 0.0,
             checks: 0,
             course: Course::default(),
             kept: Vec::new(),
@@ -119,11 +122,16 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         sampler.check(&end, &to, turn, &mut self.residuals);
         let forces = to.forces();
         let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
+        let surface = sampler.problem().surface();
+        let entries = |at: Option<usize>| [at, at.and_then(|at| surface.nodes()[at].beside)];
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
-        let touching = [&from, &to].map(|level| self.contact.map(|at| at.is_some_and(|at| touches(level, at))));
+        let touching = [&from, &to]
+            .map(|level| self.contact.map(|at| entries(at).map(|at| at.is_some_and(|at| touches(level, at)))));
         let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
         let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
         let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
+        let sliding = forces.corner_sliding.iter().filter(|sliding| self.facets.contains(&sliding.facet));
+        let sliding = sliding.cloned().collect();
         let hats: [Vec<_>; 2] = [&from, &to].map(|level| {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
@@ -137,7 +145,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             stress: stress(&Balanced::middle(&start, &end), loaded),
         });
         let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };
-        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, hats }
+        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, sliding, hats }
     }
 
     fn at(
@@ -153,7 +161,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     fn settle(&self, context: &ContactSampling<'_, '_, D, N>, at: &mut ContactInstant<D, N>, instant: usize) {
         for (i, node) in self.contact.iter().enumerate() {
             if let Some(node) = *node {
-                at.velocities.motion.set_normal((context.shared.problem, i, node), &context.tracks[node], instant);
+                at.velocities.motion.set_normal((context.shared.problem, i, node), context.tracks, instant);
             }
         }
     }
@@ -177,7 +185,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         if let Some(mid) = &mut waiting.mid {
             self.settle(context, &mut mid.at, stop - 1);
             let [before, after] = waiting.touching;
-            let touching = std::array::from_fn(|i| before[i] && after[i]);
+            let touching = std::array::from_fn(|i| [0, 1].map(|k| before[i][k] && after[i][k]));
             self.check_contact(context, &mid.at.velocities, &touching, stop - 1);
         }
         self.settle(context, &mut waiting.stop.at, stop);
@@ -200,8 +208,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     /// The stress of hats in the element.
     fn hat_stress<'c>(&self, context: &ContactSampling<'c, '_, D, N>, hats: &[NarrowHat<D>]) -> Vec<HatStress<'c>> {
         let Some(concentration) = context.reconstruction.concentration() else { return Vec::new() };
-        let nodes = hats.chunk_by(|a, b| a.node == b.node);
-        nodes.filter_map(|hats| concentration.in_element(context.shared.problem, hats, self.element)).collect()
+        let stars = hats.chunk_by(|a, b| a.star == b.star);
+        stars.filter_map(|hats| concentration.in_element(context.shared.problem, hats, self.element)).collect()
     }
 
     /// The contact part of η at the beginning, middle and end of an interval (J).
@@ -215,13 +223,28 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         for pressures in &waiting.pressures {
             normal.add(&context.reconstruction.normal_misfit(pressures, context.tracks));
         }
-        let frictions = [friction, waiting.mid.as_ref().map_or(0.0, |mid| mid.at.friction), waiting.stop.at.friction];
+        let mut frictions =
+            [friction, waiting.mid.as_ref().map_or(0.0, |mid| mid.at.friction), waiting.stop.at.friction];
+        frictions.iter_mut().zip(self.beside_corners(context, waiting)).for_each(|(all, corner)| *all += corner);
         let so_far = self.normal_work;
         self.normal_work += normal.work[2];
         std::array::from_fn(|k| {
             let normal_work = so_far + normal.work[k];
             ContactPart { total: frictions[k] + normal_work + normal.energy[k], normal_work }
         })
+    }
+
+    /// The part of friction beside nodes at two planes at the beginning, middle and end of an interval (J).
+    fn beside_corners(&mut self, context: &ContactSampling<'_, '_, D, N>, waiting: &Waiting<D, N>) -> [f64; 3] {
+        let Sampling { problem, times, .. } = context.shared;
+        let (start, first) = (self.corner_friction, waiting.sliding.first().map(|sliding| sliding.step));
+        let mut middle = start;
+        for sliding in &waiting.sliding {
+            let [half, all] = sliding.misfit(problem, times, context.tracks);
+            middle += if Some(sliding.step) == first { half } else { 0.0 };
+            self.corner_friction += all;
+        }
+        [start, middle, self.corner_friction]
     }
 
     /// u_CA and u̇_CA against the initial conditions.
@@ -249,29 +272,32 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         &mut self,
         context: &ContactSampling<'_, '_, D, N>,
         velocities: &ElementVelocities<D, N>,
-        touching: &[bool; N],
+        touching: &[[bool; 2]; N],
         instant: usize,
     ) {
         let problem = context.shared.problem;
         let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        for (i, at) in self.contact.iter().enumerate() {
-            let Some(at) = *at else { continue };
-            let contact = &problem.surface().nodes()[at];
-            let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
-            // The element does not have the motion of a node of another body.
-            let (normal, gap) = match contact.opposite {
-                Some(_) => context.tracks[at].at(instant),
-                None => {
-                    let frame = problem.obstacles()[contact.obstacle].flat_frame();
-                    (frame.split(velocity).0, problem.surface().gap(at, displacement))
+        for (i, first) in self.contact.iter().enumerate() {
+            let second = first.and_then(|at| problem.surface().nodes()[at].beside);
+            for (k, at) in [*first, second].into_iter().enumerate() {
+                let Some(at) = at else { continue };
+                let contact = &problem.surface().nodes()[at];
+                let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
+                // The element does not have the motion of a node of another body.
+                let (normal, gap) = match contact.opposite {
+                    Some(_) => context.tracks[at].at(instant),
+                    None => {
+                        let frame = problem.obstacles()[contact.obstacle].flat_frame();
+                        (frame.split(velocity).0, problem.surface().gap(at, displacement))
+                    }
+                };
+                if touching[i][k] && contact.free {
+                    let residual = if normal == 0.0 { 0.0 } else { normal.abs() / speed(velocity) };
+                    self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);
                 }
-            };
-            if touching[i] && contact.free {
-                let residual = if normal == 0.0 { 0.0 } else { normal.abs() / speed(velocity) };
-                self.residuals.normal_velocity = worse(self.residuals.normal_velocity, residual);
+                let depth = worse(0.0, -gap / problem.mesh().size());
+                self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
             }
-            let depth = worse(0.0, -gap / problem.mesh().size());
-            self.residuals.penetration_at_instants = worse(self.residuals.penetration_at_instants, depth);
         }
     }
 }

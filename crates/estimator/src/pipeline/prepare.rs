@@ -6,7 +6,7 @@ mod supports;
 
 use super::near_elements::span;
 use super::schedule::Schedule;
-use crate::contact_density::OffContact;
+use crate::contact_density::{CornerSliding, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
@@ -50,6 +50,8 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     ready: VecDeque<ForcesKnown<D>>,
     /// Densities off contact of the steps since the last sampled level that was handed on.
     off_contact: Vec<OffContact<D>>,
+    /// Sliding beside nodes at two planes over these steps.
+    corner_sliding: Vec<CornerSliding<D>>,
     /// Displacement of the simulation at the last level, if its difference is not measured (m).
     unmeasured: Vec<[f64; D]>,
     /// Number of steps taken in.
@@ -79,6 +81,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             motions: VecDeque::new(),
             ready: VecDeque::new(),
             off_contact: Vec::new(),
+            corner_sliding: Vec::new(),
             unmeasured: Vec::new(),
             count: 0,
             given: Given::default(),
@@ -252,8 +255,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn next_ready(&mut self) -> Option<ForcesKnown<D>> {
         while let Some(mut level) = self.ready.pop_front() {
             level.off_contact.drain(..).for_each(|step| step.add_to(&mut self.off_contact));
+            self.corner_sliding.append(&mut level.corner_sliding);
             if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
+                level.corner_sliding = std::mem::take(&mut self.corner_sliding);
                 return Some(level);
             }
         }

@@ -183,6 +183,10 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice) }
     }
 
+    pub(super) fn problem(&self) -> &'p Problem<D, N> {
+        self.shared.problem
+    }
+
     /// Hands over a function that makes σ_DA of the fields that balance, with its loading or without.
     pub(super) fn with_stress<R>(
         &self,

@@ -1,7 +1,7 @@
 //! Intervals of near elements that wait until the motion of their nodes is known, as numbers.
 
 use super::sampling::{ElementVelocities, SampledStress};
-use crate::contact_density::{FacetPressures, NarrowHat};
+use crate::contact_density::{CornerSliding, FacetPressures, NarrowHat};
 use crate::numbers::Reader;
 
 /// An element at a half-step instant; until contact is solved for, its normal components are those of the simulation.
@@ -26,17 +26,19 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
     pub(super) start: Option<SampledStress<D, N>>,
     pub(super) mid: Option<WaitingSample<D, N>>,
     pub(super) stop: WaitingSample<D, N>,
-    /// Which nodes touch at the beginning and at the end.
-    pub(super) touching: [[bool; N]; 2],
+    /// Which nodes touch at the beginning and at the end: the plane of their first entry, and a second one.
+    pub(super) touching: [[[bool; 2]; N]; 2],
     /// Pressures on its candidate facets, where they act off contact.
     pub(super) pressures: Vec<FacetPressures<D>>,
-    /// Narrow hats of its nodes at the beginning and the end, sorted by nodes.
+    /// Sliding on its candidate facets beside a node at two planes, step by step.
+    pub(super) sliding: Vec<CornerSliding<D>>,
+    /// Narrow hats of its nodes at the beginning and the end, those of a node side by side.
     pub(super) hats: [Vec<NarrowHat<D>>; 2],
 }
 
-/// Numbers of an interval of several steps without pressures and hats.
+/// Numbers of an interval of several steps without pressures, sliding and hats.
 pub(super) const fn shortest<const D: usize, const N: usize>() -> usize {
-    4 + sample::<D, N>()
+    5 + sample::<D, N>()
 }
 
 /// Numbers of a sample.
@@ -65,10 +67,14 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
 
     /// Appends it to numbers.
     pub(super) fn append(&self, numbers: &mut Vec<f64>) {
-        let flags = [self.start.is_some(), self.mid.is_some()].into_iter().chain(self.touching.into_iter().flatten());
+        let touching = self.touching.as_flattened().as_flattened().iter().copied();
+        let flags = [self.start.is_some(), self.mid.is_some()].into_iter().chain(touching);
         numbers.push(flags.fold(0, |flags, flag| 2 * flags + usize::from(flag)) as f64);
-        numbers.extend([self.pressures.len(), self.hats[0].len(), self.hats[1].len()].map(|count| count as f64));
+        let [from, to] = &self.hats;
+        let counts = [self.pressures.len(), self.sliding.len(), from.len(), to.len()];
+        numbers.extend(counts.map(|count| count as f64));
         self.pressures.iter().for_each(|pressures| pressures.append(numbers));
+        self.sliding.iter().for_each(|sliding| sliding.append(numbers));
         self.hats.iter().flatten().for_each(|hat| hat.append(numbers));
         self.start.iter().for_each(|start| start.append(numbers));
         self.mid.iter().for_each(|mid| mid.append(numbers));
@@ -78,17 +84,19 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
     /// One that was appended.
     pub(super) fn read(numbers: &mut Reader<'_>) -> Self {
         let flags = numbers.count();
-        let flag = |k: usize| (flags >> (2 * N + 1 - k)) & 1 == 1;
-        let [pressures, from, to] = [(); 3].map(|()| numbers.count());
+        let flag = |k: usize| (flags >> (4 * N + 1 - k)) & 1 == 1;
+        let [pressures, sliding, from, to] = [(); 4].map(|()| numbers.count());
         let pressures = (0..pressures).map(|_| FacetPressures::read(numbers)).collect();
+        let sliding = (0..sliding).map(|_| CornerSliding::read(numbers)).collect();
         let hats = [from, to].map(|count| (0..count).map(|_| NarrowHat::read(numbers)).collect());
         let loaded = Self::has_hats(&hats);
         Self {
             start: flag(0).then(|| SampledStress::read(numbers, loaded)),
             mid: flag(1).then(|| WaitingSample::read(numbers, loaded)),
             stop: WaitingSample::read(numbers, loaded),
-            touching: [0, 1].map(|end| std::array::from_fn(|i| flag(2 + end * N + i))),
+            touching: [0, 1].map(|end| std::array::from_fn(|i| [0, 1].map(|k| flag(2 + 2 * (end * N + i) + k)))),
             pressures,
+            sliding,
             hats,
         }
     }

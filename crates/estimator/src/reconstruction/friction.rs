@@ -1,11 +1,12 @@
 //! The friction part of η of densities that are linear over a step.
 
-use crate::contact_density::{Densities, hat_misfit_power, misfit_power};
+use crate::contact_density::{Densities, FacetDensity, facet_power, trapezoids};
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::problem::Problem;
 
 /// On each candidate facet (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
-/// this density at its end: the trapezoidal rule over its three half-step instants.
+/// this density at its end: the trapezoidal rule over its three half-step instants. Facets with a node at two planes
+/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding).
 pub(super) fn friction<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     length: f64,
@@ -13,35 +14,25 @@ pub(super) fn friction<const D: usize, const N: usize>(
     next: &MotionKnown<D>,
     density: &Densities<D>,
 ) -> Vec<[f64; 2]> {
-    let mut friction = Vec::with_capacity(problem.surface().facets().len());
-    for f in 0..problem.surface().facets().len() {
-        let power = |velocity: &[[f64; D]], densities: &[&Densities<D>]| misfit(problem, f, velocity, densities);
-        let (a, b) = (power(now.now.motion.velocity(), &[&now.density]), power(next.now.velocity(), &[density]));
-        let m = next.mid_velocity.as_ref().map_or(0.0, |velocity| power(velocity, &[&now.density, density]));
+    let surface = problem.surface();
+    let mut friction = Vec::with_capacity(surface.facets().len());
+    for (f, facet) in surface.facets().iter().enumerate() {
+        if surface.reaches_a_corner(facet) {
+            friction.push([0.0; 2]);
+            continue;
+        }
+        let [start, end] = [&now.density, density].map(|densities| FacetDensity {
+            wide: &densities.wide()[f],
+            hats: facet.nodes.map(|k| densities.hats_of(k)),
+        });
+        let power = |velocity: &[[f64; D]], densities: &[&FacetDensity<'_, D, D>]| {
+            let velocity = facet.nodes.map(|k| surface.against_obstacle(k, velocity));
+            facet_power(problem, f, &velocity, densities)
+        };
+        let (a, b) = (power(now.now.motion.velocity(), &[&start]), power(next.now.velocity(), &[&end]));
+        let m = next.mid_velocity.as_ref().map_or(0.0, |velocity| power(velocity, &[&start, &end]));
         let so_far = now.friction[f][1];
-        // 2∫[…], twice over half a step each.
-        friction.push([so_far + 0.5 * length * (a + m), so_far + 0.5 * length * (a + 2.0 * m + b)]);
+        friction.push(trapezoids(length, [a, m, b]).map(|work| so_far + work));
     }
     friction
-}
-
-/// The power of the mean of densities on a facet: hats keep their shapes.
-fn misfit<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    f: usize,
-    velocity: &[[f64; D]],
-    densities: &[&Densities<D>],
-) -> f64 {
-    let (surface, share) = (problem.surface(), 1.0 / densities.len() as f64);
-    let facet = &surface.facets()[f];
-    let velocity = facet.nodes.map(|k| surface.against_obstacle(k, velocity));
-    let mut mean = [[0.0; D]; D];
-    let mut power = 0.0;
-    for density in densities {
-        let wide = &density.wide()[f];
-        (0..D).for_each(|p| (0..D).for_each(|c| mean[p][c] += share * wide[p][c]));
-        let hats = facet.nodes.iter().flat_map(|&k| density.hats_of(k)).filter(|hat| hat.facet == f);
-        power += hats.map(|hat| share * hat_misfit_power(problem, hat, &velocity)).sum::<f64>();
-    }
-    surface.part_of_contact(facet.nodes[0]) * (power + misfit_power(problem, facet, &mean, &velocity))
 }

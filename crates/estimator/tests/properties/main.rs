@@ -11,6 +11,9 @@ mod beside;
 mod bodies;
 mod chatter;
 mod consistency;
+#[path = "../common/corner.rs"]
+mod corner;
+mod corners;
 mod determinism;
 mod edges;
 mod estimating;

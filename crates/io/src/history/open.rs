@@ -224,8 +224,9 @@ fn contact(
     let of_rows = listed.indices(nodes, "nodes")?;
     let mut sorted = of_rows.clone();
     sorted.sort_unstable();
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        let detail = format!("node {} stands in it twice", pair[0]);
+    // A node at two planes stands in it twice.
+    if let Some(three) = sorted.windows(3).find(|three| three[0] == three[2]) {
+        let detail = format!("node {} stands in it three times", three[0]);
         return Err(FileCause::Value { name: listed.name, detail });
     }
     let count = of_rows.len();

@@ -5,9 +5,11 @@ use super::sums::{of_flags, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Opened, Part};
+use percute_core::contact::ContactNode;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 
 /// Bytes of steps that are read at once: enough for the disk, little for memory.
@@ -48,20 +50,30 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         if given != needed {
             return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
         }
-        Ok(HistorySource::new(self.clone(), problem))
+        HistorySource::new(self.clone(), problem)
     }
 }
 
 impl<const D: usize, const N: usize> HistorySource<D, N> {
-    fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Self {
-        let mut row_of = vec![None; file.mesh().node_count()];
+    fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Result<Self, FileError> {
+        let mut rows_of: BTreeMap<usize, VecDeque<usize>> = BTreeMap::new();
         for (row, &node) in file.contact_nodes().iter().enumerate() {
-            row_of[node] = Some(row);
+            rows_of.entry(node).or_default().push_back(row);
         }
-        // Rows of surface nodes are removed; the remaining nodes can touch no obstacle.
-        let rows = problem.surface().nodes().iter().map(|c| row_of[c.node.index()].take()).collect();
-        let strange = row_of.iter().enumerate().filter_map(|(node, row)| Some(((*row)?, node))).collect();
-        Self { file, rows, strange }
+        // Rows of surface nodes are removed, those of a node at two planes in their order; the remaining nodes can touch
+        // no obstacle.
+        let take = |contact: &ContactNode| rows_of.get_mut(&contact.node.index())?.pop_front();
+        let rows = problem.surface().nodes().iter().map(take).collect();
+        let mut strange = Vec::new();
+        for (node, left) in rows_of {
+            let touches_one = problem.surface().nodes().iter().any(|contact| contact.node.index() == node);
+            if left.len() > usize::from(!touches_one) {
+                let (name, detail) = ("percute/contact/nodes".to_string(), format!("node {node} stands in it twice"));
+                return Err(FileCause::Value { name, detail }.at(file.path()));
+            }
+            strange.extend(left.into_iter().map(|row| (row, node)));
+        }
+        Ok(Self { file, rows, strange })
     }
 
     fn block(&self, steps: Range<usize>) -> Result<StepBlock<D>, FileError> {

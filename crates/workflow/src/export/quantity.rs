@@ -93,7 +93,7 @@ impl<const D: usize, const N: usize> Rows<'_, D, N> {
     fn reaction(&self, step: &Step<'_, D>) -> Vec<f64> {
         let mut all = vec![[0.0; D]; self.problem.mesh().node_count()];
         for (contact, reaction) in self.problem.surface().nodes().iter().zip(step.reaction) {
-            all[contact.node.index()] = *reaction;
+            (0..D).for_each(|c| all[contact.node.index()][c] += reaction[c]);
         }
         in_space(&all)
     }

@@ -58,12 +58,20 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// Several bodies that may touch; steps that cannot be read; fewer than three instants of which the last is not
+    /// Several bodies that may touch; a node that may touch two planes; steps that cannot be read; fewer than three instants of which the last is not
     /// known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
         if !problem.statement().interfaces.is_empty() {
             let told = "histories of other programs are read for a single body on planes, and this problem has several \
                         bodies that may touch";
+            return Err(told.into());
+        }
+        if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
+            let told = format!(
+                "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
+                 plane a `group` so that no node lies in two, or simulate with percute",
+                contact.node.index()
+            );
             return Err(told.into());
         }
         let (times, count) = (source.times().clone(), source.count());

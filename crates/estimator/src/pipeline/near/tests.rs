@@ -46,7 +46,7 @@ fn checked(track: &ContactTrack) -> Residuals {
     let velocities = Velocities { motion, increment: Increment::zero(&pool), lumping_increment: None };
     let mut stop = near.at(&sampler, &velocities, 0.0);
     near.settle(&context, &mut stop, 2);
-    let touching = near.contact.map(|at| at.is_some());
+    let touching = near.contact.map(|at| [at.is_some(), false]);
     near.check_contact(&context, &stop.velocities, &touching, 2);
     near.residuals
 }

@@ -2,7 +2,7 @@
 
 use super::Preparation;
 use crate::acceleration::accelerate;
-use crate::contact_density::{Densities, OffContact, driving_forces};
+use crate::contact_density::{CornerSliding, Densities, OffContact, driving_forces};
 use crate::increment::Increment;
 use crate::reconstruction::{self, SurfaceSteps};
 use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, MotionKnown, Velocities};
@@ -42,6 +42,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             density: Densities::none(self.problem),
             before: None,
             off_contact: Vec::new(),
+            corner_sliding: Vec::new(),
             friction: vec![[0.0; 2]; self.problem.surface().facets().len()],
         };
         ForcesBefore { forces, surface_force }
@@ -55,8 +56,9 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         if forces.level.index > 0 && earlier != forces.density {
             forces.before = Some(BeforeJump { acceleration: self.on_surface(&forces.acceleration), density: earlier });
         }
-        for ((contact, force), pull) in self.problem.surface().nodes().iter().zip(&surface_force).zip(&pull) {
-            let i = contact.node.index();
+        let surface = self.problem.surface();
+        for (at, (contact, force)) in surface.nodes().iter().zip(&surface_force).enumerate() {
+            let (i, pull) = (contact.node.index(), surface.force_on_node(at, &pull));
             forces.acceleration[i] = std::array::from_fn(|c| (force[c] + pull[c]) * self.dynamics.inverse_mass()[i]);
         }
         forces
@@ -73,6 +75,10 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     ) -> ForcesBefore<D> {
         let length = self.times.step(now.level.index);
         let friction = self.reconstruction.friction(self.problem, length, now, &next, &density);
+        let corner_sliding = next.mid_velocity.as_ref().map_or_else(Vec::new, |middle| {
+            let velocities = [now.now.motion.velocity(), middle, next.now.velocity()];
+            CornerSliding::all(self.problem, now.level.index, velocities, [&now.density, &density])
+        });
         let MotionKnown { level, now: motion, mid_velocity, force: mut acceleration } = next;
         let surface_force = self.on_surface(&acceleration);
         let pull = driving_forces(self.problem, &density);
@@ -89,6 +95,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             density,
             before: None,
             off_contact: off_contact.into_iter().collect(),
+            corner_sliding,
             friction,
         };
         ForcesBefore { forces, surface_force }

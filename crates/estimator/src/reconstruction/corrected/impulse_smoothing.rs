@@ -83,8 +83,11 @@ impl<const D: usize> ImpulseSmoothing<D> {
                     let other = acceleration(surface.nodes()[opposite].node.index());
                     (0..D).for_each(|c| towards[c] -= other[c]);
                 }
-                let inertia = surface.moved_mass(k, problem.mass()) * frame.split(&towards).0;
-                let share = (inertia / normal).min(1.0);
+                let mut part = frame.split(&towards).0;
+                if let Some(beside) = contact.beside {
+                    part = stopped_in_corner(problem, [k, beside], reaction, part, &towards);
+                }
+                let share = (surface.moved_mass(k, problem.mass()) * part / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
@@ -103,6 +106,23 @@ impl<const D: usize> ImpulseSmoothing<D> {
         }
         forces
     }
+}
+
+/// The part of the acceleration of a node at two planes that the reaction of the first one causes, along its normal, if
+/// both act. `across` is the acceleration along this normal.
+fn stopped_in_corner<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    entries: [usize; 2],
+    reaction: &[[f64; D]],
+    across: f64,
+    acceleration: &[f64; D],
+) -> f64 {
+    let frames = entries.map(|at| problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame());
+    if frames[1].split(&reaction[entries[1]]).0 <= 0.0 {
+        return across;
+    }
+    let cosine = frames[0].split(frames[1].normal()).0;
+    (across - cosine * frames[1].split(acceleration).0) / (1.0 - cosine * cosine)
 }
 
 /// The part of the rest of an impulse that is due. Its weight is now `weight` and falls by `fall` in each step; this

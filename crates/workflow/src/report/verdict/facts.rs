@@ -38,6 +38,8 @@ pub(in crate::report) struct Facts {
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
     pub(super) largest_friction: f64,
+    /// Whether a node touches two planes.
+    pub(super) corner: bool,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
@@ -114,6 +116,7 @@ impl Facts {
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
+            corner: touches_two_planes(problem, results),
             bodies,
             slip: results.slip,
             supported: !problem.prescribed().is_empty(),
@@ -178,6 +181,13 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
         }
     }
     count
+}
+
+/// Whether a node touches both of two planes in the course of time.
+fn touches_two_planes<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> bool {
+    let touched = |at: usize| results.summary[at].first_touch.is_some();
+    let entries = problem.surface().nodes().iter().enumerate();
+    entries.filter_map(|(at, contact)| Some((at, contact.beside?))).any(|(at, beside)| touched(at) && touched(beside))
 }
 
 /// The largest speed at which two nodes of different bodies approach each other at the start (m/s).

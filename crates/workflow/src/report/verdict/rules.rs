@@ -46,7 +46,7 @@ const LONGEST: f64 = 10.0;
 const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 20] = [
+pub(super) const RULES: [Rule; 21] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -99,6 +99,8 @@ pub(super) const RULES: [Rule; 20] = [
         situation: "bodies that strike each other",
         doubt: None,
     },
+    // crates/estimator/tests/corner.rs: 1.00 to 1.53.
+    Rule { applies: |f| f.corner, range: [0.98, 1.65], situation: "bodies in the corner of two planes", doubt: None },
     // bar-maps.csv at Δt = Δt_c: after release the shortest wave grows.
     Rule {
         applies: |f| f.dimension == 1 && f.courant > 0.99,

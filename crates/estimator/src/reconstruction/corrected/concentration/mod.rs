@@ -41,7 +41,7 @@ impl<const D: usize> Concentration<D> {
         let gap = problem.surface().gaps(problem.initial_displacement());
         let needed = (0..self.nodes.len()).filter(|&at| self.gaps(at, &gap).is_some());
         let stars: BTreeSet<usize> = needed.map(|at| self.nodes[at].alike).collect();
-        let memory = |star: &NodeStar| StarStress::memory(star.elements.len(), star.edges.len());
+        let memory = |star: &NodeStar| StarStress::memory(star.elements.len(), star.sides.len());
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
@@ -94,7 +94,7 @@ impl<const D: usize> Concentration<D> {
                 return None;
             }
             compliance += other.compliance;
-            let edges = if node == at { [0, 1] } else { self.facing_edges(problem, at, node) };
+            let edges = if node == at { star.own_places() } else { self.facing_edges(problem, at, node) };
             stars.push(LoadedStar { energy: &stress.energy, frame: other.frame, edges });
         }
         Some(ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars))
@@ -121,16 +121,16 @@ impl<const D: usize> Concentration<D> {
         shape: &'a TractionShape,
         force: &'a [f64; D],
     ) -> impl Iterator<Item = NarrowHat<D>> + 'a {
-        let edges = self.nodes[at].edges.iter().zip(shape.iter()).enumerate();
-        edges.filter(|(_, (_, hat))| hat.halvings > 0 && hat.share != 0.0).map(move |(edge, (candidate, hat))| {
-            NarrowHat {
-                node: at,
-                facet: candidate.facet,
-                end: candidate.end,
-                edge,
-                halvings: hat.halvings,
-                resultant: force.map(|f| hat.share * f),
-            }
+        let star = &self.nodes[at];
+        let edges = star.edges.iter().zip(&star.places).zip(shape.iter());
+        edges.filter(|(_, hat)| hat.halvings > 0 && hat.share != 0.0).map(move |((candidate, &edge), hat)| NarrowHat {
+            node: at,
+            star: star.first,
+            facet: candidate.facet,
+            end: candidate.end,
+            edge,
+            halvings: hat.halvings,
+            resultant: force.map(|f| hat.share * f),
         })
     }
 
@@ -180,22 +180,21 @@ impl<const D: usize> Concentration<D> {
         centroid
     }
 
-    /// Calls `with` for each element of the star of each node, with the stress of these hats, which are sorted by
-    /// nodes.
+    /// Calls `with` for each element of each star, with the stress of these hats, which are sorted by stars.
     pub(crate) fn each_element<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         hats: &[NarrowHat<D>],
         mut with: impl FnMut(ElementId, &HatStress<'_>),
     ) {
-        for hats in hats.chunk_by(|a, b| a.node == b.node) {
+        for hats in hats.chunk_by(|a, b| a.star == b.star) {
             for &element in &self.nodes[hats[0].node].elements {
                 self.in_element(problem, hats, element).iter().for_each(|stress| with(element, stress));
             }
         }
     }
 
-    /// The stress of hats of one node in an element of its star.
+    /// The stress of hats of one star in an element of it.
     pub(crate) fn in_element<const N: usize>(
         &self,
         problem: &Problem<D, N>,

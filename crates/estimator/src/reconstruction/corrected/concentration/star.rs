@@ -18,6 +18,12 @@ pub(super) struct NodeStar {
     /// The first edge of the star, but global axes where there are supports, which are in these.
     pub(super) frame: StarFrame,
     pub(super) edges: Vec<CandidateEdge>,
+    /// 0 the first edge of the star, 1 the last: those of all candidate edges, of either plane of a node at two.
+    pub(super) sides: Vec<usize>,
+    /// The position of each edge among them.
+    pub(super) places: Vec<usize>,
+    /// The first entry of the node in the contact surface.
+    pub(super) first: usize,
     /// Tributary shares of the edges.
     pub(super) tributary: Vec<f64>,
     /// 1 over plane modulus and thickness (m/N), their mean over the elements.
@@ -59,16 +65,29 @@ impl NodeStar {
                 });
             }
         }
+        let sides = |at: usize| {
+            let beside = surface.nodes()[at].beside;
+            let both = [Some(at), beside].into_iter().flatten().flat_map(|at| &edges[at]);
+            let mut sides: Vec<usize> = both.map(|edge| edge.side).collect();
+            sides.sort_unstable();
+            sides
+        };
+        let sides: Vec<_> = (0..edges.len()).map(sides).collect();
         let mut first = HashMap::new();
-        let star = |(at, edges): (usize, Vec<CandidateEdge>)| {
-            let mut star = Self::new(problem, at, edges);
+        let star = |(at, (edges, sides)): (usize, (Vec<CandidateEdge>, Vec<usize>))| {
+            let mut star = Self::new(problem, at, edges, sides);
             star.alike = *first.entry(star.congruence(problem)).or_insert(at);
             star
         };
-        edges.into_iter().enumerate().map(star).collect()
+        edges.into_iter().zip(sides).enumerate().map(star).collect()
     }
 
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, mut edges: Vec<CandidateEdge>) -> Self {
+    fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        at: usize,
+        mut edges: Vec<CandidateEdge>,
+        sides: Vec<usize>,
+    ) -> Self {
         edges.sort_by_key(|edge| edge.side);
         let node = problem.surface().nodes()[at].node;
         let star = problem.mesh().stars().star(node);
@@ -84,6 +103,9 @@ impl NodeStar {
         });
         let corner = |&id: &ElementId| problem.mesh().local_node(id, node).unwrap_or(0);
         let mut made = Self {
+            places: edges.iter().map(|edge| sides.partition_point(|side| *side < edge.side)).collect(),
+            sides,
+            first: problem.surface().first_entry(at),
             tributary: edges.iter().map(|edge| edge.area / total).collect(),
             compliance: elements.iter().map(compliance).sum(),
             corners: elements.iter().map(corner).collect(),
@@ -113,7 +135,7 @@ impl NodeStar {
 
     /// The same numbers for stars whose unit hats have the same stresses.
     fn congruence<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<i64> {
-        let mut numbers: Vec<i64> = self.edges.iter().map(|edge| edge.side as i64).collect();
+        let mut numbers: Vec<i64> = self.sides.iter().map(|&side| side as i64).collect();
         numbers.extend(self.supported.as_flattened().iter().map(|&supported| i64::from(supported)));
         for (position, id) in self.elements.iter().enumerate() {
             numbers.push(i64::from(problem.element_material()[id.index()]));
@@ -124,6 +146,11 @@ impl NodeStar {
         numbers
     }
 
+    /// The position of each edge among the candidate edges of the star.
+    pub(super) fn own_places(&self) -> [usize; 2] {
+        [0, 1].map(|edge| self.places.get(edge).copied().unwrap_or(edge))
+    }
+
     /// The stresses of unit hats.
     pub(super) fn stress<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> StarStress {
         let element = |(position, &id): (usize, &ElementId)| StarElement {
@@ -131,7 +158,6 @@ impl NodeStar {
             law: problem.material(id),
         };
         let elements: Vec<_> = self.elements.iter().enumerate().map(element).collect();
-        let sides: Vec<usize> = self.edges.iter().map(|edge| edge.side).collect();
-        StarStress::new(&elements, &sides, self.supported)
+        StarStress::new(&elements, &self.sides, self.supported)
     }
 }

@@ -124,7 +124,7 @@ fn turned_stars_share_their_stress() {
         let NodeStar { edges, elements, corners, frame, .. } = &concentration.nodes[at];
         let hats = [0, 1].map(|edge| {
             let CandidateEdge { facet, end, .. } = edges[edge];
-            NarrowHat { node: at, facet, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
+            NarrowHat { node: at, star: at, facet, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
         });
         let stress = concentration.in_element(&problem, &hats, elements[0]).unwrap();
         let products = stress.products();

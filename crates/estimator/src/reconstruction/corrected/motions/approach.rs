@@ -7,6 +7,7 @@ use super::pairs::{Moduli, Pair, Pairs};
 use super::surface::SurfaceForces;
 use super::sweeps::subtract_stiffness;
 use crate::simd::{Registers, Task, run_task};
+use percute_core::contact::Frame;
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -22,6 +23,16 @@ pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
     pub(in crate::reconstruction::corrected) along: [[f64; D]; 2],
     /// Displacement that a unit force adds until then (m/N).
     pub(in crate::reconstruction::corrected) mobility: f64,
+}
+
+impl<const D: usize> Approach<D> {
+    /// The same under a force (N) beside that of the obstacle.
+    pub(in crate::reconstruction::corrected) fn under(mut self, frame: &Frame<D>, force: &[f64; D]) -> Self {
+        let (normal, along) = frame.split(force);
+        self.gap += self.mobility * normal;
+        (0..D).for_each(|c| self.along[1][c] += self.mobility * along[c]);
+        self
+    }
 }
 
 /// The data of the level before its pass.
