@@ -1,7 +1,7 @@
 //! Contact constraints of one step.
 
 use super::coulomb::Coulomb;
-use super::frame::Frame;
+use super::frame::{Frame, dot};
 use super::surface::ContactSurface;
 use crate::ids::NodeId;
 
@@ -19,6 +19,18 @@ pub(crate) struct Constraint<const D: usize> {
     pub(super) gap: f64,
     /// v_{n+½} against the obstacle, without the reaction (m/s).
     pub(super) velocity: [f64; D],
+}
+
+impl<const D: usize> Constraint<D> {
+    /// The reaction (N) if no other constraint has the node, for a step of these Δt_n and h_n (s).
+    pub(super) fn alone(&self, [dt, h]: [f64; 2]) -> [f64; D] {
+        let Self { frame, law, mass, gap, velocity, .. } = self;
+        // Normal: end exactly on the obstacle. Tangential: stop, as far as Coulomb's cone allows.
+        let normal = -mass * gap / (dt * h);
+        let (stop, (_, sliding)) = (mass / h, frame.split(velocity));
+        let scale = law.admissible(normal, stop * dot(&sliding, &sliding).sqrt(), stop);
+        std::array::from_fn(|c| normal * frame.normal()[c] - scale * sliding[c])
+    }
 }
 
 /// The constraints of a step, in the order of the contact surface.

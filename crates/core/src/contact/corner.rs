@@ -6,7 +6,6 @@
 
 use super::constraint::Constraint;
 use super::frame::dot;
-use super::solve::alone;
 
 /// Such a part of the force is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -17,7 +16,7 @@ pub(super) fn reactions<const D: usize>(pair: &[Constraint<D>; 2], steps: [f64; 
     let [dt, h] = steps;
     let (mut open, mut closed) = (Vec::new(), Vec::new());
     for i in (0..2).filter(|&i| pair[i].gap < -tolerance) {
-        let force = alone(&pair[i], steps);
+        let force = pair[i].alone(steps);
         let other = &pair[1 - i];
         let gap = other.gap + dt * h / other.mass * dot(&force, other.frame.normal());
         let mut both = [[0.0; D]; 2];

@@ -1,8 +1,7 @@
 //! Reactions of the contact constraints of one step (§5.3).
 
-use super::constraint::{Constraint, Constraints};
+use super::constraint::Constraints;
 use super::corner;
-use super::frame::dot;
 
 /// Hands the reaction R_n (N) of each node of the surface, by its position, to `reaction`, for a step of these Δt_n and
 /// h_n (s). Gaps within the tolerance (m) are none.
@@ -16,7 +15,7 @@ pub(crate) fn solve<const D: usize>(
     mut reaction: impl FnMut(usize, [f64; D]),
 ) {
     for constraint in &constraints.single {
-        reaction(constraint.at, alone(constraint, steps));
+        reaction(constraint.at, constraint.alone(steps));
     }
     for pair in &constraints.corners {
         let forces = corner::reactions(pair, steps, tolerance);
@@ -24,14 +23,4 @@ pub(crate) fn solve<const D: usize>(
             reaction(constraint.at, force);
         }
     }
-}
-
-/// The reaction of a constraint alone.
-pub(super) fn alone<const D: usize>(constraint: &Constraint<D>, [dt, h]: [f64; 2]) -> [f64; D] {
-    let Constraint { frame, law, mass, gap, velocity, .. } = constraint;
-    // Normal: end exactly on the obstacle. Tangential: stop, as far as Coulomb's cone allows.
-    let normal = -mass * gap / (dt * h);
-    let (stop, (_, sliding)) = (mass / h, frame.split(velocity));
-    let scale = law.admissible(normal, stop * dot(&sliding, &sliding).sqrt(), stop);
-    std::array::from_fn(|c| normal * frame.normal()[c] - scale * sliding[c])
 }

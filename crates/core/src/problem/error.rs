@@ -166,7 +166,8 @@ pub enum Cause {
     NothingFaces { group: String, outward: Box<[f64]>, normal: Box<[f64]>, facing: Box<[String]> },
     /// A facet that could touch two planes.
     #[error(
-        "the {} faces obstacle {first} as well as this one; name for each obstacle a `group` so that no edge lies in two",
+        "the {} faces obstacle {first} as well as this one; name for each obstacle a `group` so that no edge lies \
+         in two",
         facet(.nodes)
     )]
     TwoPlanes {
@@ -176,8 +177,8 @@ pub enum Cause {
     },
     /// Two planes of a node that are almost parallel.
     #[error(
-        "node {node} could touch obstacle {first} as well as this one, and the two open by {}°; a node at both needs 15 \
-         to 165°: name for each obstacle a `group` so that no node lies in both",
+        "node {node} could touch obstacle {first} as well as this one, and the two open by {}°; a node at both needs \
+         15 to 165°: name for each obstacle a `group` so that no node lies in both",
         trimmed(*.opening, 4)
     )]
     Opening {
@@ -189,8 +190,8 @@ pub enum Cause {
     },
     /// Two planes of a node whose cones of friction hold forces that cancel.
     #[error(
-        "node {node} would jam between this obstacle and obstacle {first}, which open by {}°: the angles of friction, {}° \
-         here and {}° there, must add up to less; {}",
+        "node {node} would jam between this obstacle and obstacle {first}, which open by {}°: the angles of friction, \
+         {}° here and {}° there, must add up to less; {}",
         trimmed(*.opening, 4),
         trimmed(.angles[1], 4),
         trimmed(.angles[0], 4),

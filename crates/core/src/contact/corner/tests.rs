@@ -106,6 +106,6 @@ fn a_right_corner() {
 fn one_plane_alone() {
     for velocity in [[0.3, -2.0], [-0.3, -2.0], [0.0, -1e-3]] {
         let pair = pair([std::f64::consts::FRAC_PI_2, 0.0], velocity, [0.0, 1.0], [0.3, 0.3]);
-        assert_eq!(reactions(&pair, STEPS, TOLERANCE), [alone(&pair[0], STEPS), [0.0; 2]]);
+        assert_eq!(reactions(&pair, STEPS, TOLERANCE), [pair[0].alone(STEPS), [0.0; 2]]);
     }
 }

@@ -1,0 +1,53 @@
+"""A node at two planes: from a case, in Python, and from a file."""
+
+import numpy as np
+import pytest
+
+import percute as pc
+from percute import InputError
+
+
+@pytest.fixture(scope="module")
+def problem():
+    """A box that slides along a floor into a wall."""
+    return pc.Problem(
+        mesh=pc.Mesh.rectangle(0.05, 0.04, nx=10, ny=8),
+        material=pc.Elastic(young=70e9, poisson=0.3, density=2700, plane="stress"),
+        velocity=(-20, -10),
+        obstacles=[
+            pc.Plane(point=(0, -2e-5), normal=(0, 1), friction=0.2, group="bottom"),
+            pc.Plane(point=(-6e-5, 0), normal=(1, 0), friction=0.4, group="left"),
+        ],
+    )
+
+
+def test_a_node_has_a_row_for_each_plane(problem):
+    nodes = problem.contact_nodes
+    assert len(nodes) == 11 + 9
+    assert np.unique(nodes).size == 19
+    history = pc.simulate(problem, end=20e-6, courant=0.9)
+    rows = np.flatnonzero(nodes == 0)
+    reaction = history.reaction[:, rows]
+    assert (reaction[:, 0, 1] > 0).any() and (reaction[:, 1, 0] > 0).any()
+    # Each in its cone: along x at the floor, along y at the wall.
+    assert (np.abs(reaction[:, 0, 0]) <= 0.2 * reaction[:, 0, 1] * (1 + 1e-9)).all()
+    assert (np.abs(reaction[:, 1, 1]) <= 0.4 * reaction[:, 1, 0] * (1 + 1e-9)).all()
+
+
+def test_files_give_the_same_estimate(problem, tmp_path):
+    path = tmp_path / "corner.vtkhdf"
+    history = pc.simulate(problem, end=20e-6, courant=0.9)
+    stored = pc.simulate(problem, end=20e-6, courant=0.9, store=path)
+    opened = pc.open(path)
+    estimates = [pc.estimate(one) for one in (history, stored, opened)]
+    assert len({(e.error.sup, e.error.mean) for e in estimates}) == 1
+    assert (opened.reaction == history.reaction).all()
+    assert estimates[0].trust == "limited"
+    assert "in the corner of two planes" in str(estimates[0].verdict)
+    assert len(history.to_pandas()) > 0
+
+
+def test_histories_of_other_programs_are_refused(problem):
+    history = pc.simulate(problem, end=2e-6, courant=0.9)
+    with pytest.raises(InputError, match="node 0 may touch two"):
+        pc.estimate(pc.History.from_arrays(problem, history.time, history.displacement, reaction=history.reaction))
