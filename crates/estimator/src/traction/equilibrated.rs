@@ -46,8 +46,8 @@ pub(crate) struct KeptLevel<const D: usize> {
 }
 
 impl<const D: usize> EquilibratedLevels<D> {
-    /// Room for moments on so many links. All threads fill it: on a large mesh the system takes longer to give the memory
-    /// than the star problems of a level.
+    /// Room for moments on so many links. All threads fill it: on a large mesh the system takes longer to give the
+    /// memory than the star problems of a level.
     pub(crate) fn with_links(count: usize) -> Self {
         let mut levels = Self::default();
         (0..count).into_par_iter().map(|_| [Lanes::ZERO; D]).collect_into_vec(&mut levels.moments);

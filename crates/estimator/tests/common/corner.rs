@@ -6,8 +6,8 @@ use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_testkit::rotated;
 
-/// A parallelogram of aluminium, 50 mm along the floor and 40 mm along the wall, which open by an angle (degrees). It is
-/// 0.1 mm away from the floor and 0.3 mm from the wall.
+/// A parallelogram of aluminium, 50 mm along the floor and 40 mm along the wall, which open by an angle (degrees). It
+/// is 0.1 mm away from the floor and 0.3 mm from the wall.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corner {
     pub(crate) opening: f64,

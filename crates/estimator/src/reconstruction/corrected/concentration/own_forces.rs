@@ -6,8 +6,9 @@
 //!
 //! Where neighbours are released, a node that touched with them begins to touch alone. The auxiliary solution, which
 //! the forces of the simulation moved until then, may have it behind its plane. To bring it back within a step would
-//! take a force that grows with the inverse square of the step. So the depth that a node has at the beginning falls in a
-//! step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at once.
+//! take a force that grows with the inverse square of the step. So the depth that a node has at the beginning falls in
+//! a step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at
+//! once.
 
 use super::Concentration;
 use crate::concentrated::{ShapeCosts, TractionShape};
@@ -114,8 +115,8 @@ impl<const D: usize> OwnForces<D> {
         }
     }
 
-    /// Replaces the force of a node, if it touches alone or did at the step before, by that of its own contact, which is
-    /// returned.
+    /// Replaces the force of a node, if it touches alone or did at the step before, by that of its own contact, which
+    /// is returned.
     fn replace<const N: usize>(
         &mut self,
         (at, simulated): (usize, &[f64; D]),
