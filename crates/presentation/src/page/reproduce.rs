@@ -88,7 +88,7 @@ fn commands(contents: &Contents<'_>, case: &Case, folder: &Path) -> String {
 
 /// The history, from the folder of the page on if it is there; else its name.
 fn history(document: &Document, folder: &Path) -> String {
-    seen_from(folder, &document.text("case")).unwrap_or_else(|| document.name())
+    seen_from(folder, document.text("case")).unwrap_or_else(|| document.name())
 }
 
 /// The way to a page whose history was not made from a case: from its file, or else from one to be made.
