@@ -38,6 +38,7 @@ from percute.estimation import Estimate
 from percute.evidence import reproduce
 from percute.files import open, resume, run
 from percute.history import History
+from percute.impacts import BodyMotion, Impacts, InterfaceRebound
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
@@ -53,6 +54,7 @@ __all__ = [
     "Balance",
     "Body",
     "BodyForce",
+    "BodyMotion",
     "Contact",
     "ContactStatus",
     "Effectivity",
@@ -63,9 +65,11 @@ __all__ = [
     "ExistingFileError",
     "FileFormatError",
     "History",
+    "Impacts",
     "InputError",
     "InputWarning",
     "Interface",
+    "InterfaceRebound",
     "Mesh",
     "MeshWarning",
     "MissingFileError",

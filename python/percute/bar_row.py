@@ -110,7 +110,7 @@ class BarRow(Compared):
     def _check(self, history: History) -> None:
         """See that a history is that of these bodies."""
         problem = history.problem
-        points = np.concatenate([body._points() for body in self.bodies])
+        points = np.concatenate([body._placed().points for body in self.bodies])
         if not np.array_equal(problem.mesh.points, points):
             raise InputError("`history` is that of other bodies: its mesh is not that of `bodies`, one after the other")
         velocity = np.concatenate([np.full(len(body.mesh.points), _numbers(body)[5]) for body in self.bodies])
@@ -155,6 +155,6 @@ def _numbers(body: Body) -> tuple[float, ...]:
     law: Elastic = body.material
     if law.section is None:
         raise InputError(f"`bodies`: the material of {body.name} has no `section`: it is not that of a bar")
-    points = body._points()[:, 0]
+    points = body._placed().points[:, 0]
     velocity = cast("tuple[float, ...]", body.velocity)[0]
     return float(points.min()), float(np.ptp(points)), law.young, law.density, law.section, float(velocity)

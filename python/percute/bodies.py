@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from percute import _percute
 from percute.checks import instance, number, text
 from percute.errors import InputError
 from percute.mesh import Mesh
@@ -63,16 +64,9 @@ class Body:
                 raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
             object.__setattr__(self, name, made)
 
-    def _points(self) -> NDArray[np.float64]:
-        """Give the points of the mesh in their place (m)."""
-        points = np.asarray(self.mesh.points, dtype=float)
-        if self.mesh.dimension == 2:
-            angle = np.radians(self.rotation)
-            cos, sin = np.cos(angle), np.sin(angle)
-            x, y = points.T
-            points = np.column_stack((cos * x - sin * y, sin * x + cos * y))
-        placed: NDArray[np.float64] = np.asarray(self.origin, dtype=float) + points
-        return placed
+    def _placed(self) -> Mesh:
+        """Give the mesh in its place."""
+        return Mesh._of(self.mesh._data.placed(cast("Vector", self.origin), self.rotation))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,18 +103,6 @@ def join(bodies: Sequence[Body]) -> tuple[Mesh, dict[str, Elastic], NDArray[np.f
             raise InputError(f"`bodies` has the name {name!r} twice; give each body its own")
     if len({body.mesh.dimension for body in bodies}) > 1:
         raise InputError("`bodies` are bars and plane bodies; they must be all bars or all plane")
-    points, cells, velocity = [], [], []
-    edges: dict[str, NDArray[np.int64]] = {}
-    elements: dict[str, NDArray[np.int64]] = {}
-    nodes = count = 0
-    for body in bodies:
-        mesh = body.mesh
-        points.append(body._points())
-        cells.append(np.asarray(mesh.cells, dtype=np.int64) + nodes)
-        velocity.append(np.tile(np.asarray(cast("Vector", body.velocity), dtype=float), (len(mesh.points), 1)))
-        edges |= {f"{body.name}.{group}": np.asarray(each) + nodes for group, each in mesh.edge_groups.items()}
-        elements |= {f"{body.name}.{group}": np.asarray(each) + count for group, each in mesh.element_groups.items()}
-        elements[body.name] = np.arange(count, count + len(mesh.cells))
-        nodes, count = nodes + len(mesh.points), count + len(mesh.cells)
-    made = Mesh(np.concatenate(points), np.concatenate(cells), edges, elements)
+    made = Mesh._of(_percute.MeshData.joined([(body.name, body._placed()._data) for body in bodies]))
+    velocity = [np.tile(np.asarray(cast("Vector", body.velocity), dtype=float), (len(body.mesh.points), 1)) for body in bodies]
     return made, {body.name: body.material for body in bodies}, np.concatenate(velocity)

@@ -107,14 +107,23 @@ class Contact:
     """Resultants of all planes over time, and of the first side of each interface of bodies."""
     obstacles: tuple[Resultants, ...]
     """Resultants of each plane, then of both sides of each interface of bodies."""
+    surfaces: tuple[str | None, ...]
+    """For each of ``obstacles`` None if it is a plane, or the group of edges of this side of an interface of bodies."""
     mesh: Mesh = field()
     """The mesh."""
 
     @classmethod
-    def _of(cls, arrays: dict[str, Any], mesh: Mesh) -> Contact:
+    def _of(cls, arrays: dict[str, Any], mesh: Mesh, surfaces: Sequence[str | None]) -> Contact:
         resultants = Resultants(**arrays.pop("resultants"))
         obstacles = tuple(Resultants(**each) for each in arrays.pop("obstacles"))
-        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh)
+        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces))
+
+    @cached_property
+    def _names(self) -> dict[int, str]:
+        """The name of each obstacle that counts: each plane, and the first side of each interface of bodies."""
+        planes = sum(surface is None for surface in self.surfaces)
+        sides = range(planes, len(self.surfaces), 2)
+        return {k: f"plane {k}" for k in range(planes)} | {k: f"{self.surfaces[k]} with {self.surfaces[k + 1]}" for k in sides}
 
     @cached_property
     def density(self) -> NDArray[np.float64]:

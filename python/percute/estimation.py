@@ -19,6 +19,7 @@ from percute.contact import Contact
 from percute.errors import InputError
 from percute.estimate_views import EstimateViews
 from percute.history import History
+from percute.impacts import Impacts
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.rebound import Rebound
@@ -138,6 +139,11 @@ class Estimate(EstimateViews):
         """Velocities before and after contact, restitution and time in contact; None without contact."""
         return Rebound._of(self._verdict.get("rebound"))
 
+    @cached_property
+    def impacts(self) -> Impacts | None:
+        """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
+        return Impacts._of(self._verdict.get("impacts"))
+
     @property
     def kept_impulse(self) -> float | None:
         """Normal impulse of the admissible contact force over that of the simulation; None without contact."""
@@ -191,7 +197,7 @@ class Estimate(EstimateViews):
         if not isinstance(self._data, StoredEstimate):
             return None
         found = self._data.contact()
-        return None if found is None else Contact._of(found, self.mesh)
+        return None if found is None else Contact._of(found, self.mesh, self._data.surfaces())
 
     @property
     def given(self) -> Mapping[str, bool]:

@@ -18,6 +18,7 @@ from percute.checks import encodable, flag, instance, vtkhdf, warn, words
 from percute.contact import Contact
 from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
 from percute.foreign import ForeignArrays
+from percute.impacts import Impacts
 from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.true_error import TrueError
@@ -287,12 +288,23 @@ class History(HistoryViews):
     @cached_property
     def contact(self) -> Contact:
         """Contact results at each node, and their resultants; computed on first access."""
-        return Contact._of(self._data.contact(), self.problem.mesh)
+        surfaces = [None] * len(self.problem.obstacles) + [group for each in self.problem.contacts for group in each.groups]
+        return Contact._of(self._data.contact(), self.problem.mesh, surfaces)
 
     @cached_property
     def rebound(self) -> Rebound | None:
         """Velocities before and after contact, restitution and time in contact; None without contact."""
-        return Rebound._of(json.loads(self._data.rebound()))
+        return Rebound._of(self._rebounds["rebound"])
+
+    @cached_property
+    def impacts(self) -> Impacts | None:
+        """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
+        return Impacts._of(self._rebounds["impacts"])
+
+    @cached_property
+    def _rebounds(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self._data.rebound())
+        return found
 
     def error(self, reference: History) -> TrueError:
         """Return the true error of this history, measured against a finer one.

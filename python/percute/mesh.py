@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import encodable, flag, flags, integers, new_file, number, numbers, table, transposed, whole, wrong
+from percute.checks import encodable, flag, flags, integers, new_file, number, numbers, table, text, transposed, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.immutable import Immutable
@@ -144,6 +144,25 @@ class Mesh(Immutable):
             raise InputError(f"`times` is {count}, but `where` names elements of this mesh only; leave `times` out and refine the result again")
         return Mesh._of(self._data.refined_where(flags("where", where, len(self.cells), "element")))
 
+    def part(self, group: str) -> Mesh:
+        """Make a mesh of the elements of a group alone, such as one of several bodies in a file.
+
+        Parameters
+        ----------
+        group : str
+            One of its ``element_groups``.
+
+        Returns
+        -------
+        Mesh
+            With the parts of all groups that lie in it.
+        """
+        found = self._data.part_of_group(text("group", group))
+        if found is None:
+            hint = _percute.hint(group, list(self.element_groups))
+            raise InputError(f"`group` is {group!r}; the groups of elements are {', '.join(self.element_groups) or 'none'}{hint}")
+        return Mesh._of(found)
+
     @classmethod
     def read(cls, path: str | os.PathLike[str], *, scale: float = 1.0) -> Mesh:
         """Read a mesh from a file.
@@ -248,6 +267,11 @@ class Mesh(Immutable):
     def element_groups(self) -> Mapping[str, NDArray[np.int64]]:
         """Named groups of elements, by number: arrays (n,)."""
         return MappingProxyType(self._data.element_groups)
+
+    @cached_property
+    def bodies(self) -> NDArray[np.int64]:
+        """Number of the body of each element, from 0 in the order of their first nodes, shape (elements,)."""
+        return self._data.bodies
 
     @property
     def size(self) -> float:

@@ -198,7 +198,7 @@ class Problem(Immutable):
 
     def __repr__(self) -> str:
         parts = [repr(self.mesh)[len("<percute.Mesh: ") : -1]]
-        for name in ("obstacles", "supports", "tractions", "body_forces"):
+        for name in ("contacts", "obstacles", "supports", "tractions", "body_forces"):
             count = len(getattr(self, name))
             if count:
                 label = name.replace("_", " ")

@@ -157,6 +157,11 @@ class StoredEstimate:
         """Contact results, if the file has them."""
         return self._data.contact()
 
+    def surfaces(self) -> list[str | None]:
+        """The group of edges of each side of an interface of bodies; None for each plane."""
+        obstacles = json.loads(self._data.report())["problem"]["obstacles"]
+        return [each["group"] if each["point"] is None else None for each in obstacles]
+
     def verdict(self) -> str:
         """A JSON document with verdict and rebound, if the file has them."""
         return self._data.report()

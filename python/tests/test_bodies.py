@@ -1,5 +1,6 @@
 """Several bodies that strike each other: the same from Python and from a case, in memory and from a file."""
 
+import json
 import pickle
 import re
 import warnings
@@ -65,6 +66,7 @@ def test_contact_of_a_pair_is_counted_once() -> None:
     assert np.array_equal(contact.resultants.normal_force, first.normal_force)
 
 
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_bodies_that_slip_are_told_of() -> None:
     problem = blocks(0.0)
     velocity = np.array(problem.initial_velocity)
@@ -80,11 +82,30 @@ def test_bodies_that_slip_are_told_of() -> None:
     assert pc.estimate(pc.simulate(far, end=20e-6, courant=0.9)).trust == "low"
 
 
-def test_histories_of_other_programs_are_refused() -> None:
+def test_histories_of_other_programs_are_read() -> None:
+    """Displacements alone give the contact forces of both bodies, and the estimate of percute's own history."""
     problem = blocks()
-    history = pc.simulate(problem, end=10e-6, courant=0.9)
-    with pytest.raises(pc.PercuteError, match="single body"):
-        pc.History.from_arrays(problem, history.time, history.displacement, history.reaction)
+    history = pc.simulate(problem, end=20e-6, courant=0.9)
+    expected = pc.estimate(history)
+    given = pc.History.from_arrays(problem, history.time, history.displacement, history.reaction)
+    assert pc.estimate(given).sup == pytest.approx(expected.sup, rel=1e-12)
+    alone = pc.History.from_arrays(problem, history.time, history.displacement)
+    estimate = pc.estimate(alone)
+    # Second differences of displacements of 1e-4 m: 1e-16·1e-4/(1e-7)² over accelerations of 1e8.
+    assert estimate.sup == pytest.approx(expected.sup, rel=1e-6)
+    derived = np.asarray(alone.reaction)
+    half = derived.shape[1] // 2
+    assert np.array_equal(derived[:, :half], -derived[:, half:])
+    assert np.allclose(derived, history.reaction[: len(derived)], atol=1e-6 * np.abs(history.reaction).max())
+    assert np.array_equal(alone.touching, history.touching[: len(derived)])
+    one_sided = np.array(history.reaction)
+    one_sided[:, half:] = 0.0
+    with pytest.raises(pc.PercuteError, match="which touch each other, are not opposite at step"):
+        pc.History.from_arrays(problem, history.time, history.displacement, one_sided)
+    # Another friction than that of the history is named with its surface.
+    other = blocks(0.05)
+    with pytest.raises(pc.PercuteError, match=r'the surface that faces "anvil.top"|"hammer.bottom"'):
+        pc.estimate(pc.History.from_arrays(other, history.time, history.displacement, history.reaction))
 
 
 def test_bars_and_places() -> None:
@@ -147,3 +168,112 @@ def test_the_page_runs(tmp_path: Path) -> None:
     file.write_text(case + "[time]\nend = 20e-6\ncourant = 0.9\n", encoding="utf-8")
     run = pc.run(file)
     assert names["estimate"].sup == run.sup
+
+
+def test_impulses_give_the_motion_of_each_body(tmp_path: Path) -> None:
+    """Against Σ m v of the nodes; contact has ended after 20 µs."""
+    problem = blocks()
+    history = pc.simulate(problem, end=20e-6, courant=0.9)
+    alone = pc.Problem(problem.mesh.part("anvil"), material=aluminium(), initial_velocity=(1, 0))
+    assert history.rebound is None and pc.simulate(alone, end=1e-5, courant=0.9).impacts is None
+    impacts = history.impacts
+    assert impacts is not None
+    half = len(problem.mesh.points) // 2
+    for body, nodes, name in zip(impacts.bodies, (slice(half), slice(half, None)), ("anvil", "hammer"), strict=True):
+        mass, velocity = problem.mass[nodes], history.velocity[[0, -1], nodes]
+        mean = np.einsum("k,tkc->tc", mass, velocity) / mass.sum()
+        assert body.name == name and body.mass == pytest.approx(mass.sum(), rel=1e-12)
+        # Rounding of sums of some hundred impulses.
+        assert np.allclose(body.velocity_before, mean[0], atol=1e-12)
+        assert body.velocity_after is not None and np.allclose(body.velocity_after, mean[1], atol=1e-11)
+    [interface] = impacts.interfaces
+    assert interface.groups == ("anvil.top", "hammer.bottom") and interface.normal.tolist() == [0.0, -1.0]
+    assert np.copysign(1.0, interface.normal[0]) == 1.0
+    assert interface.ended and interface.normal_before == pytest.approx(-20.0, rel=1e-12)
+    after = impacts.bodies[0].velocity_after, impacts.bodies[1].velocity_after
+    assert after[0] is not None and after[1] is not None
+    # There is no contact any more, and no load: the velocities of the end are those of the release.
+    assert interface.normal_after == pytest.approx(after[1][1] - after[0][1], rel=1e-12)
+    assert interface.restitution == pytest.approx(-(interface.normal_after or 0.0) / -20.0, rel=1e-12)
+    touching = history.time[history.touching.any(axis=1)]
+    assert interface.first_touch == touching[0] and interface.release == touching[-1]
+    # The same in the estimate, in its file and in its document.
+    estimate = pc.estimate(history)
+    estimate.save(tmp_path / "e.vtkhdf")
+    document = json.loads(estimate.to_json())
+    assert document["problem"]["obstacles"][0]["normal"] == [0.0, -1.0] and "-0.0" not in json.dumps(document["problem"])
+    for other in (estimate.impacts, pc.open(tmp_path / "e.vtkhdf").impacts):
+        assert other is not None and other.interfaces[0].restitution == interface.restitution
+    assert document["impacts"]["interfaces"][0]["restitution"] == interface.restitution
+    early = pc.simulate(problem, end=8e-6, courant=0.9).impacts
+    assert early is not None and early.interfaces[0].no_restitution == "contact has not ended"
+    weight = pc.BodyForce(value=(0.0, -1e3))
+    heavy = pc.Problem(problem.mesh, material=problem.material, contacts=problem.contacts, initial_velocity=problem.initial_velocity, body_forces=[weight])
+    loaded = pc.simulate(heavy, end=20e-6, courant=0.9).impacts
+    assert loaded is not None and loaded.bodies[0].velocity_after is None
+    assert loaded.interfaces[0].no_restitution == "supports or loads change the velocities, too"
+
+
+def test_bars_exchange_their_velocities() -> None:
+    """A cradle: the first bar stops, the last one leaves. The bar in between has two contacts at once."""
+    law = pc.Elastic(young=70e9, density=2700, section=1e-4)
+    bar = pc.Mesh.bar(0.1, elements=50)
+    bodies = [pc.Body(name=name, mesh=bar, material=law, origin=k * 0.10001, velocity=10.0 * (k == 0)) for k, name in enumerate("abc")]
+    contacts = [pc.Interface(groups=("a.end", "b.start")), pc.Interface(groups=("b.end", "c.start"))]
+    impacts = pc.simulate(pc.Problem(bodies=bodies, contacts=contacts), end=1.2e-4, courant=0.9).impacts
+    assert impacts is not None
+    velocities = [float(body.velocity_after[0]) for body in impacts.bodies if body.velocity_after is not None]
+    # 0.08 m/s is what the smeared front leaves on 50 elements for one interface.
+    assert [each.no_restitution for each in impacts.interfaces] == ["another contact changes the velocities, too"] * 2
+    assert velocities == pytest.approx([0.0, 0.0, 10.0], abs=0.2) and sum(velocities) == pytest.approx(10.0, rel=1e-12)
+
+
+def test_pictures_and_tables_name_the_surfaces() -> None:
+    pytest.importorskip("matplotlib")
+    history = pc.simulate(blocks(), end=10e-6, courant=0.9)
+    assert history.contact.surfaces == ("anvil.top", "hammer.bottom")
+    axes = history.contact.plot("pressure")
+    assert [each.get_title() for each in axes] == ["", "anvil.top with hammer.bottom"]
+    assert "1 contact" in repr(history.problem)
+
+
+def test_slip_is_a_warning() -> None:
+    problem = blocks(0.0)
+    velocity = np.array(problem.initial_velocity)
+    velocity[velocity[:, 0] > 0, 0] = 150.0
+    fast = pc.Problem(problem.mesh, material=problem.material, contacts=problem.contacts, initial_velocity=velocity)
+    with pytest.warns(pc.SimulationWarning, match="slip by up to 0.18 edges"):
+        estimate = pc.estimate(pc.simulate(fast, end=20e-6, courant=0.9))
+    assert any("slip" in told for told in estimate.warnings)
+
+
+def test_bodies_of_one_file(tmp_path: Path) -> None:
+    """A Gmsh file with two bodies as groups of elements gives what two meshes give."""
+    two = blocks().mesh
+    whole = pc.Mesh(two.points, two.cells, {"below": two.edge_groups["anvil.top"], "above": two.edge_groups["hammer.bottom"]}, {
+        name: two.element_groups[name] for name in ("anvil", "hammer")
+    })
+    whole.write(tmp_path / "two.msh")
+    anvil = pc.Mesh.read(tmp_path / "two.msh").part("anvil")
+    assert np.array_equal(anvil.points, two.points[: len(two.points) // 2]) and list(anvil.edge_groups) == ["below"]
+    assert list(anvil.element_groups) == ["anvil"] and np.array_equal(two.bodies, np.repeat([0, 1], len(two.cells) // 2))
+    with pytest.raises(pc.InputError, match="`group` is 'anvl'; the groups of elements are anvil, hammer; did you mean `anvil`"):
+        whole.part("anvl")
+    text = BASE.read_text(encoding="utf-8")
+    mesh = "rectangle = { width = 0.04, height = 0.025, nx = 4, ny = 3 }"
+    assert text.count(mesh) == 2
+    for name in ("anvil", "hammer"):
+        text = text.replace(mesh, f'file = "two.msh"\ngroup = "{name}"', 1)
+    text = text.replace("origin = [0.0, 0.02505]\n", "").replace("anvil.top", "anvil.below").replace("hammer.bottom", "hammer.above")
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    assert pc.run(tmp_path / "case.toml").sup == pc.run(BASE).sup
+    (tmp_path / "case.toml").write_text(text.replace('group = "hammer"', 'group = "hamer"'), encoding="utf-8")
+    with pytest.raises(pc.InputError, match=r"group of elements \"hamer\", which is not in the mesh; it has anvil, hammer; did you mean `hammer`"):
+        pc.run(tmp_path / "case.toml")
+
+
+def test_bodies_that_overlap_are_named() -> None:
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=4, ny=3)
+    bodies = [pc.Body(name="anvil", mesh=mesh, material=steel()), pc.Body(name="hammer", mesh=mesh, material=aluminium(), origin=(0, 0.02))]
+    with pytest.raises(pc.InputError, match=r'`bodies\[1\]`: "hammer" touches or overlaps "anvil"; leave a gap'):
+        pc.Problem(bodies=bodies)

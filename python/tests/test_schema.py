@@ -56,6 +56,7 @@ BEYOND = {
     "a group that the mesh file does not have": "other files",
     "a group that the mesh does not have": "the groups of the mesh",
     "a misspelt group": "the groups of the mesh",
+    "a body of a group that is not in its mesh": "the groups of the mesh",
     "a group of the wrong case": "the groups of the mesh",
     "a group of elements where edges belong": "the groups of the mesh",
     "an empty group": "the groups of the mesh",

@@ -4,6 +4,7 @@ import itertools
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -105,3 +106,45 @@ pc.simulate(block(60, 48), end=5000 * 1e-8, step=1e-8, store={str(file)!r}, prog
     assert np.array_equal(steps[..., :2], history.displacement)
     estimate = pc.estimate(history, every=50)
     assert estimate.steps == held - 1
+
+
+def two_blocks() -> pc.Problem:
+    law = pc.Elastic(young=70e9, poisson=0.3, density=2700, plane="stress")
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=4, ny=3)
+    upper = pc.Body(name="upper", mesh=mesh, material=law, origin=(0, 0.02505), velocity=(0, -20))
+    contact = pc.Interface(groups=("lower.top", "upper.bottom"), friction=0.0)
+    return pc.Problem(bodies=[pc.Body(name="lower", mesh=mesh, material=law), upper], contacts=[contact])
+
+
+def cells_of(reader: Any) -> Any:
+    """The numbers of the bodies at the last step that VTK sees."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    reader.UpdateInformation()
+    if hasattr(reader, "GetNumberOfSteps") and reader.GetNumberOfSteps() > 1:
+        reader.SetStep(reader.GetNumberOfSteps() - 1)
+    reader.Update()
+    array = reader.GetOutput().GetCellData().GetArray("body")
+    return None if array is None else vtk_to_numpy(array).copy()
+
+
+def test_each_cell_has_the_number_of_its_body(tmp_path: Path) -> None:
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    problem = two_blocks()
+    history = pc.simulate(problem, end=4e-6, courant=0.9, store=tmp_path / "history.vtkhdf")
+    estimate = pc.estimate(history, instants=[1e-6, 2e-6])
+    estimate.save(tmp_path / "estimate.vtkhdf")
+    history.export(tmp_path / "export.vtkhdf", steps=[0, 3])
+    history.export(tmp_path / "one.vtu", steps=[3])
+    alone = pc.simulate(block(), end=4e-6, courant=0.9, store=tmp_path / "alone.vtkhdf")
+    for name in ("history.vtkhdf", "estimate.vtkhdf", "export.vtkhdf", "one.vtu"):
+        reader = vtkXMLUnstructuredGridReader() if name.endswith("vtu") else vtkHDFReader()
+        reader.SetFileName(str(tmp_path / name))
+        assert np.array_equal(cells_of(reader), np.repeat([0, 1], len(problem.mesh.cells) // 2)), name
+    assert np.array_equal(pc.open(tmp_path / "history.vtkhdf").displacement, history.displacement)
+    assert np.array_equal(pc.open(tmp_path / "estimate.vtkhdf").by_element, estimate.by_element)
+    reader = vtkHDFReader()
+    reader.SetFileName(str(tmp_path / "alone.vtkhdf"))
+    assert len(alone) > 2 and cells_of(reader) is None

@@ -12,6 +12,31 @@ use percute_core::simplex::{Element, Simplex};
 /// Numbers and names of the elements in VTK, by dimension from 1.
 pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
 
+/// Name of the field with the number of the body of each element.
+pub(crate) const BODY: &str = "body";
+/// The library's overhead of that field in its group, with its offsets (bytes), rounded up.
+const OF_BODIES: u64 = 4_000;
+
+/// The number of the body of each element, from 0, in the order of their first nodes; none of a single body.
+pub(crate) fn bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<Vec<i64>> {
+    (mesh.parts() > 1).then(|| mesh.part_of_elements().into_iter().map(|body| body as i64).collect())
+}
+
+/// Bytes of these numbers in a file with so many instants.
+pub(crate) fn bytes_of_bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>, instants: usize) -> u64 {
+    if mesh.parts() > 1 { 8 * (mesh.element_count() + instants) as u64 + OF_BODIES } else { 0 }
+}
+
+/// Writes these numbers into the group of the fields of elements; gives their name with their rows in each step, none.
+pub(crate) fn write_bodies<const D: usize, const N: usize>(
+    cell_data: &Group,
+    mesh: &Mesh<D, N>,
+) -> Result<Option<(&'static str, usize)>, FileCause> {
+    let Some(bodies) = bodies(mesh) else { return Ok(None) };
+    numbers(cell_data, BODY, &[bodies.len()], &bodies)?;
+    Ok(Some((BODY, 0)))
+}
+
 /// Nodal vectors with three components each, for ParaView.
 #[must_use]
 pub fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {

@@ -11,6 +11,8 @@ pub struct Body {
     pub(crate) dimension: usize,
     /// Coordinates of the nodes (m).
     pub(crate) points: Vec<[f64; 2]>,
+    /// For each node the first node of its part; parts have no common nodes.
+    pub(crate) part: Vec<usize>,
     /// Nodes of the elements, one element after the other.
     cells: Vec<usize>,
     /// Names of the groups of edges and of elements, and their members.
@@ -27,6 +29,7 @@ impl Body {
         Self {
             dimension: D,
             points: mesh.points().iter().map(point).collect(),
+            part: mesh.part_of_nodes().into_iter().map(NodeId::index).collect(),
             cells: mesh.cells().as_flattened().iter().copied().map(NodeId::index).collect(),
             groups: [facets.collect(), elements.collect()],
         }

@@ -1,4 +1,4 @@
-//! The deformed outline of a plane body: its rigid motion as it is, its deformation by a factor that shows it.
+//! The deformed outline of plane bodies: the rigid motion of each as it is, their deformation by a factor that shows it.
 
 use crate::body::Body;
 use crate::document::{Document, numbers};
@@ -12,10 +12,10 @@ const VISIBLE: f64 = 0.01;
 const SHOWN: f64 = 0.04;
 /// A deformation below this part is rounding.
 const ROUNDING: f64 = 1e-12;
-/// A body that has moved farther than this part of its size is drawn where it was.
+/// If a body has moved farther than this part of the size of all, all are drawn where they were.
 const FAR: f64 = 0.5;
 
-/// The outline of a body at the end of an estimate.
+/// The outline of the bodies at the end of an estimate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deformed {
     /// Closed lines (m), each with its first point at the end again.
@@ -71,21 +71,28 @@ impl Deformed {
             to.iter().all(|x| x.is_finite()).then_some((point, to))
         };
         let points: Vec<_> = nodes.iter().zip(rows).map(moved).collect::<Option<_>>()?;
+        let nodes = nodes.iter().map(|node| usize::try_from(node.as_u64()?).ok()).collect::<Option<Vec<_>>>()?;
+        let mut bodies: BTreeMap<usize, Vec<Moved>> = BTreeMap::new();
+        nodes.iter().zip(&points).for_each(|(&node, &moved)| bodies.entry(body.part[node]).or_default().push(moved));
+        let motions: BTreeMap<usize, Rigid> =
+            bodies.into_iter().map(|(part, points)| (part, Rigid::nearest(&points))).collect();
+        let motion = |node: usize| &motions[&body.part[node]];
         let mut at = BTreeMap::new();
-        let (motion, [low, high]) = (Rigid::nearest(&points), body.bounds());
+        let [low, high] = body.bounds();
         let size = (high[0] - low[0]).max(high[1] - low[1]);
         let distance = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
-        let largest = points.iter().map(|&(p, q)| distance(q, motion.place(p))).fold(0.0, f64::max);
-        let factor = factor(largest / size);
-        let far = points.iter().any(|&(p, _)| distance(p, motion.place(p)) > FAR * size);
-        for ((p, q), node) in points.iter().zip(nodes) {
+        let all = || nodes.iter().zip(&points).map(|(&node, &(p, q))| (p, q, motion(node).place(p)));
+        let factor = factor(all().map(|(_, q, rigid)| distance(q, rigid)).fold(0.0, f64::max) / size);
+        let far = all().any(|(p, _, rigid)| distance(p, rigid) > FAR * size);
+        for ((p, q), &node) in points.iter().zip(&nodes) {
+            let motion = motion(node);
             let rigid = motion.place(*p);
             let [x, y] = [0, 1].map(|c| q[c] - rigid[c]);
             // Deformation is turned back with the body.
             let [cos, sin] = if far { motion.turn } else { [1.0, 0.0] };
             let start = if far { *p } else { rigid };
             let place = [start[0] + factor * (cos * x + sin * y), start[1] + factor * (cos * y - sin * x)];
-            at.insert(node.as_u64().and_then(|n| usize::try_from(n).ok())?, place);
+            at.insert(node, place);
         }
         let line = |nodes: Vec<usize>| nodes.iter().map(|node| at.get(node).copied()).collect::<Option<Vec<_>>>();
         let lines = body.outline().into_iter().map(line).collect::<Option<Vec<_>>>()?;
@@ -167,6 +174,34 @@ mod tests {
         // Turned by a right angle and stretched along x, which was y.
         assert!(near(&far.lines[0][..4], &[[0.0, -0.1], [1.0, -0.1], [1.0, 1.1], [0.0, 1.1]]), "{far:?}");
         assert!(far.label.ends_with("deformation × 1, moved back"), "{}", far.label);
+    }
+
+    /// Two squares of a mesh, of which each turns by itself about its centre: no part of it is deformation.
+    #[test]
+    fn each_body_has_a_rigid_motion_of_its_own() {
+        let square = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
+        let beside = square.mapped(|[x, y]| [x + 1.5, *y]).unwrap();
+        let body = Body::new(&TriangleMesh::joined(&[("a", &square), ("b", &beside)]).unwrap());
+        let turned = |node: usize| {
+            let [x, y] = body.points[node];
+            let centre = if node < 4 { [0.5, 0.5] } else { [2.0, 0.5] };
+            let (sin, cos) = (if node < 4 { 0.1_f64 } else { -0.1 }).sin_cos();
+            let (a, b) = (x - centre[0], y - centre[1]);
+            [centre[0] + cos * a - sin * b, centre[1] + sin * a + cos * b]
+        };
+        let row = |node: usize| {
+            format!("[{:?}, {:?}]", turned(node)[0] - body.points[node][0], turned(node)[1] - body.points[node][1])
+        };
+        let rows = (0..8).map(row).collect::<Vec<_>>().join(", ");
+        let outline = format!(r#"{{"time": 1.0, "node": [0, 1, 2, 3, 4, 5, 6, 7], "displacement": [{rows}]}}"#);
+        let text = format!(r#"{{"error": {{"sup": 1}}, "outline": {outline}}}"#);
+        let deformed = Deformed::new(&body, &Document::parse(&text).unwrap()).unwrap();
+        assert!(deformed.label.ends_with("deformation × 1"), "{}", deformed.label);
+        let outline = body.outline();
+        assert_eq!(outline.len(), 2);
+        for (line, nodes) in deformed.lines.iter().zip(outline) {
+            assert!(near(line, &nodes.into_iter().map(turned).collect::<Vec<_>>()), "{line:?}");
+        }
     }
 
     #[test]

@@ -66,6 +66,23 @@ impl Document {
         self.list("problem.obstacles").iter().map(counts).collect()
     }
 
+    /// The names of the obstacles that count, with their places among all: "plane 0", or "anvil.top with hammer.bottom".
+    pub(crate) fn names_of_obstacles(&self) -> Vec<(usize, String)> {
+        let obstacles = self.list("problem.obstacles");
+        let group = |k: usize| obstacles.get(k).and_then(|obstacle| obstacle["group"].as_str()).unwrap_or_default();
+        let name = |k: usize| match obstacles[k]["point"].is_null() {
+            true => format!("{} with {}", group(k), group(k + 1)),
+            false => format!("plane {k}"),
+        };
+        let counted = self.counted_obstacles();
+        (0..obstacles.len()).filter(|&k| counted[k]).map(|k| (k, name(k))).collect()
+    }
+
+    /// Whether bodies may touch each other.
+    pub(crate) fn has_interfaces(&self) -> bool {
+        self.list("problem.obstacles").iter().any(|obstacle| obstacle["point"].is_null())
+    }
+
     /// A list of numbers; null, which stands for a number that is not finite, is NaN.
     pub(crate) fn column(&self, path: &str) -> Vec<f64> {
         numbers(self.at(path))

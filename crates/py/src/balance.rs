@@ -3,17 +3,18 @@
 use crate::run::Run;
 use crate::{bridge, contact, errors, view};
 use percute_core::dynamics::Balance;
-use percute_workflow::report::{ENERGIES, Named, Rebound, rebound_to_json};
+use percute_workflow::report::{ENERGIES, Impacts, Named, Rebound, rebound_to_json};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// The rebound as a JSON document; `null` without contact.
+/// The rebound and the impacts as a JSON document; `null` without contact, and without several bodies.
 pub(crate) fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<String> {
     let contact = contact::of_run(py, run)?;
     let balance = kept(py, run)?;
     let rebound = Rebound::new(&run.problem, &balance, &contact);
-    rebound_to_json(rebound.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
+    let impacts = Impacts::new(&run.problem, &contact);
+    rebound_to_json(rebound.as_ref(), impacts.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
 }
 
 /// Energies, works and momentum at each instant, computed now or before.

@@ -276,7 +276,7 @@ impl HistoryData {
         each_dimension!(&self.run, run => balance::columns(py, &balance::kept(py, run)?))
     }
 
-    /// Velocities before and after contact, as a JSON document.
+    /// Velocities before and after contact, of one body and of several, as a JSON document.
     fn rebound(&self, py: Python<'_>) -> PyResult<String> {
         each_dimension!(&self.run, run => balance::rebound(py, run))
     }

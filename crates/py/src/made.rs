@@ -112,11 +112,11 @@ impl<const D: usize, const N: usize> Made<D, N> {
     /// Warnings that only the result shows, and those that a run is told of before; none if the report was made before.
     pub(crate) fn warnings(&self) -> [Vec<Warning>; 2] {
         let Self { problem, times, options, estimate, report, checked, .. } = self;
-        let ReportSource::Now { simulation, held, .. } = report else { return Default::default() };
+        let ReportSource::Now { simulation, contact, held, .. } = report else { return Default::default() };
         // Equal steps need no critical step.
         let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
         let subject = Subject { name: "", problem, times, critical_step, held: *held, checked: checked.as_ref() };
-        warnings_of(&subject, *options, &simulation.balance, estimate)
+        warnings_of(&subject, *options, &simulation.balance, estimate, contact.slip)
     }
 
     /// A document made from the report; if that is there as a text only, this text, which has all of it.

@@ -2,7 +2,7 @@
 
 use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
-use numpy::{IntoPyArray, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
@@ -82,6 +82,42 @@ impl MeshData {
         Ok(Self { mesh })
     }
 
+    /// The meshes of several bodies as one, each with its name.
+    #[staticmethod]
+    fn joined(py: Python<'_>, bodies: Vec<(String, PyRef<'_, Self>)>) -> PyResult<Self> {
+        let (mut bars, mut plane) = (Vec::new(), Vec::new());
+        for (name, body) in bodies {
+            match &body.mesh {
+                ByDimension::Bar(mesh) => bars.push((name, mesh.clone())),
+                ByDimension::Plane(mesh) => plane.push((name, mesh.clone())),
+            }
+        }
+        Ok(Self {
+            mesh: match plane.is_empty() {
+                true => ByDimension::Bar(joined(py, bars)?),
+                false => ByDimension::Plane(joined(py, plane)?),
+            },
+        })
+    }
+
+    /// The mesh with its origin in another place, turned about it by an angle (degrees).
+    fn placed(&self, py: Python<'_>, origin: Vec<f64>, degrees: f64) -> PyResult<Self> {
+        let mesh = map_dimension!(&self.mesh, mesh => {
+            let origin = std::array::from_fn(|c| origin.get(c).copied().unwrap_or_default());
+            Arc::new(mesh.placed(&origin, degrees).map_err(|e| errors::input(py, e))?)
+        });
+        Ok(Self { mesh })
+    }
+
+    /// The elements of a group as a mesh of their own; None if there is no such group.
+    fn part_of_group(&self, py: Python<'_>, group: &str) -> PyResult<Option<Self>> {
+        let mesh = map_dimension!(&self.mesh, mesh => {
+            let Some(part) = mesh.part_of_group(group) else { return Ok(None) };
+            Arc::new(part.map_err(|e| errors::input(py, e))?)
+        });
+        Ok(Some(Self { mesh }))
+    }
+
     /// A mesh in a file of Gmsh.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
@@ -153,6 +189,13 @@ impl MeshData {
         })
     }
 
+    /// The number of the body of each element.
+    #[getter]
+    fn bodies<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        let bodies = each_dimension!(&self.mesh, mesh => mesh.part_of_elements());
+        view::column(py, &bodies, |&body| body as i64)
+    }
+
     #[getter]
     fn size(&self) -> f64 {
         each_dimension!(&self.mesh, mesh => mesh.size())
@@ -169,6 +212,23 @@ fn rows<'py>(py: Python<'py>, numbers: Vec<i64>, columns: usize) -> PyResult<Bou
     let array = array.reshape([array.len()? / columns, columns])?;
     array.readwrite().make_nonwriteable();
     Ok(array)
+}
+
+fn joined<const D: usize, const N: usize>(
+    py: Python<'_>,
+    bodies: Vec<(String, Arc<Mesh<D, N>>)>,
+) -> PyResult<Arc<Mesh<D, N>>>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    let made = bridge::blocking(py, None, move |_| {
+        let bodies: Vec<_> = bodies.iter().map(|(name, mesh)| (name.as_str(), &**mesh)).collect();
+        Mesh::joined(&bodies).map_err(|error| match Mesh::touching(&bodies, &error) {
+            Some((second, told)) => format!("`bodies[{second}]`: \"{}\" {told}", bodies[second].0),
+            None => format!("`bodies`: {error}"),
+        })
+    })?;
+    made.map(Arc::new).map_err(|told| errors::input(py, told))
 }
 
 fn from_arrays<const D: usize, const N: usize>(

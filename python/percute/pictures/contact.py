@@ -29,9 +29,9 @@ def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None, sav
     if text("colour", colour) not in known:
         raise InputError(f"`colour` is {colour!r}; it must be one of {', '.join(known)}")
     _check(contact)
-    panels = _panels(axes, 1 + len(contact.obstacles))
+    panels = _panels(axes, 1 + len(contact._names))
     _draw_forces(panels[0], contact)
-    for plane, panel in enumerate(panels[1:]):
+    for plane, panel in zip(contact._names, panels[1:], strict=True):
         _draw_zone(panel, contact, plane, colour)
     # New axes share the time; only the last one is labelled.
     for panel in panels[-1:] if axes is None else panels:
@@ -54,8 +54,7 @@ def plot_pressure(contact: Contact | None, plane: int | None, axes: Axes | None,
     """Draw the pressure along the surface over time; of a bar, the pressure of its end."""
     file, results = writable("save", save, overwrite), _check(contact)
     if plane is None:
-        peaks = [each.normal_force.max(initial=0.0) for each in results.obstacles]
-        chosen = int(np.argmax(peaks))
+        chosen = max(results._names, key=lambda k: results.obstacles[k].normal_force.max(initial=0.0))
     else:
         chosen = whole("plane", plane, least=0, most=len(results.obstacles) - 1)
     axes = new_axes(axes, (7.2, 4.0))
@@ -82,7 +81,7 @@ def _draw_ends(axes: Axes, contact: Contact, plane: int) -> None:
 def _check(contact: Contact | None) -> Contact:
     """Make sure that there is something to draw."""
     if contact is None or not contact.obstacles or len(contact.time) < 2:
-        none = "there are no contact results" if contact is None else "the problem has no planes"
+        none = "there are no contact results" if contact is None else "the problem has no planes and no interfaces"
         what = none if contact is None or not contact.obstacles else "the history has one instant only"
         raise InputError(f"there is nothing to draw: {what}")
     return contact
@@ -95,7 +94,7 @@ def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
         return list(pyplot().subplots(count, sharex=True, layout="constrained", figsize=size)[1])
     given = list(axes) if isinstance(axes, Sequence | np.ndarray) else [axes]
     if len(given) != count:
-        raise wrong("axes", axes, f"{count} axes of matplotlib: one for the forces and one for each plane")
+        raise wrong("axes", axes, f"{count} axes of matplotlib: one for the forces and one for each plane or interface")
     return [new_axes(each) for each in given]
 
 
@@ -103,14 +102,15 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
     """Draw normal and tangential resultants of each plane."""
     seconds, _ = prefixed(contact.time)
     factor, prefix = prefixed(contact.resultants.normal_force)
-    several = len(contact.obstacles) > 1
-    for plane, resultants in enumerate(contact.obstacles):
-        of, line = (f", plane {plane}" if several else ""), ("-", "--", ":")[min(plane, 2)]
+    several = len(contact._names) > 1
+    for at, (plane, name) in enumerate(contact._names.items()):
+        resultants = contact.obstacles[plane]
+        of, line = (f", {name}" if several else ""), ("-", "--", ":")[min(at, 2)]
         axes.plot(contact.time / seconds, resultants.normal_force / factor, line, color="black", label=f"normal{of}")
         if contact.mesh.dimension == 2:
-            along, name = _along(contact, plane)
+            along, axis = _along(contact, plane)
             force = resultants.force @ along / factor
-            label = f"tangential ({name}){of}" if len(name) == 1 else f"tangential{of}"
+            label = f"tangential ({axis}){of}" if len(axis) == 1 else f"tangential{of}"
             axes.plot(contact.time / seconds, force, line, color="tab:red", label=label)
     axes.set_ylabel(f"force of contact ({prefix}N)")
     axes.margins(x=0.0)
@@ -144,7 +144,7 @@ def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
         drawn = axes.pcolormesh(time, edges, shown[:, piece].T, rasterized=True, **style)
     axes.set_xlim(time[0], time[-1])
     if len(contact.obstacles) > 1:
-        axes.set_title(f"plane {plane}", fontsize="medium")
+        axes.set_title(contact._names.get(plane) or contact.surfaces[plane] or "", fontsize="medium")
     if colour == "pressure":
         axes.figure.colorbar(drawn, cax=axes.inset_axes((1.02, 0.0, 0.03, 1.0)), label=f"pressure ({prefix}Pa)")
         return

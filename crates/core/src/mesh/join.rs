@@ -1,8 +1,9 @@
-//! Several bodies as one mesh.
+//! Several bodies as one mesh, each in its place, and a body out of such a mesh.
 
 use super::{ElementGroups, FacetGroups, Mesh, MeshError};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::simplex::{Element, Simplex};
+use std::collections::BTreeMap;
 
 impl<const D: usize, const N: usize> Mesh<D, N>
 where
@@ -30,7 +31,71 @@ where
             }
             element_groups.insert((*body).to_string(), (first_element..cells.len()).collect());
         }
-        Self::new(points, &cells, &facet_groups, &element_groups)
+        let made = Self::new(points, &cells, &facet_groups, &element_groups)?;
+        let import_warnings = bodies.iter().flat_map(|(_, mesh)| mesh.import_warnings.iter().cloned()).collect();
+        Ok(Self {
+            reoriented: bodies.iter().map(|(_, mesh)| mesh.reoriented).sum(),
+            ..made.with_import_warnings(import_warnings)
+        })
+    }
+
+    /// The place of the body that touches or overlaps an earlier one, and what to say of it, if that is why
+    /// [`Mesh::joined`] refused these bodies.
+    #[must_use]
+    pub fn touching(bodies: &[(&str, &Self)], error: &MeshError) -> Option<(usize, String)> {
+        let body_of = |mut at: usize, count: fn(&Self) -> usize| {
+            bodies.iter().position(|(_, mesh)| {
+                let here = at < count(mesh);
+                at = at.wrapping_sub(count(mesh));
+                here
+            })
+        };
+        let (first, second) = match *error {
+            MeshError::PartsTouch { elements: [first, second] } => {
+                (body_of(first, Self::element_count)?, body_of(second, Self::element_count)?)
+            }
+            MeshError::DuplicateNodes { first, second, .. } => {
+                (body_of(first, Self::node_count)?, body_of(second, Self::node_count)?)
+            }
+            _ => return None,
+        };
+        let message = format!(
+            "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative speed \
+             times the first step",
+            bodies[first].0
+        );
+        Some((second, message))
+    }
+
+    /// The elements of a group as a mesh of their own, with the parts of all groups that lie in it; none if there is no
+    /// such group.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    pub fn part_of_group(&self, group: &str) -> Option<Result<Self, MeshError>> {
+        let chosen = self.element_groups.get(group)?;
+        let elements: BTreeMap<ElementId, usize> = chosen.iter().enumerate().map(|(new, &old)| (old, new)).collect();
+        let mut nodes: BTreeMap<usize, usize> =
+            chosen.iter().flat_map(|e| self.cells[e.index()]).map(|node| (node.index(), 0)).collect();
+        nodes.values_mut().enumerate().for_each(|(new, number)| *number = new);
+        let points = nodes.keys().map(|&node| self.points[node]).collect();
+        let cells: Vec<_> = chosen.iter().map(|e| self.cells[e.index()].map(|node| nodes[&node.index()])).collect();
+        let of_chosen = |facet: &&FacetId| {
+            let facet = &self.facets[facet.index()];
+            elements.contains_key(&facet.owner) || facet.neighbour.is_some_and(|e| elements.contains_key(&e))
+        };
+        let along = |facet: &FacetId| self.facets[facet.index()].nodes.map(|node| nodes[&node.index()]);
+        let facets = self
+            .facet_groups
+            .iter()
+            .map(|(name, all)| (name.clone(), all.iter().filter(of_chosen).map(along).collect::<Vec<_>>()));
+        let inside = self
+            .element_groups
+            .iter()
+            .map(|(name, all)| (name.clone(), all.iter().filter_map(|e| elements.get(e).copied()).collect::<Vec<_>>()));
+        let (facets, inside) = (facets.filter(|(_, all)| !all.is_empty()), inside.filter(|(_, all)| !all.is_empty()));
+        let made = Self::new(points, &cells, &facets.collect(), &inside.collect());
+        Some(made.map(|mesh| mesh.with_import_warnings(self.import_warnings.clone())))
     }
 
     /// The mesh with its points mapped: moved, or turned.
@@ -40,7 +105,25 @@ where
     pub fn mapped(&self, map: impl Fn(&[f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
         let cells: Vec<_> = self.plain_cells().collect();
         let points = self.points().iter().map(map).collect();
-        Self::new(points, &cells, &self.plain_facet_groups(), &self.plain_element_groups())
+        let made = Self::new(points, &cells, &self.plain_facet_groups(), &self.plain_element_groups())?;
+        Ok(Self { reoriented: self.reoriented, ..made.with_import_warnings(self.import_warnings.clone()) })
+    }
+
+    /// The mesh with its origin in another place (m), turned about it by an angle (degrees, counterclockwise); a bar is
+    /// not turned.
+    ///
+    /// # Errors
+    /// As [`Mesh::mapped`].
+    pub fn placed(&self, origin: &[f64; D], degrees: f64) -> Result<Self, MeshError> {
+        // A body that is not turned keeps the bits of its mesh.
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        self.mapped(|p| {
+            let mut turned = *p;
+            if let [x, y] = turned.as_mut_slice() {
+                (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);
+            }
+            std::array::from_fn(|c| origin[c] + turned[c])
+        })
     }
 
     fn plain_cells(&self) -> impl Iterator<Item = [usize; N]> + '_ {

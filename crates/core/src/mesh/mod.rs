@@ -179,6 +179,21 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         parts::part_of_nodes(self.points.len(), &self.cells)
     }
 
+    /// For each element the number of its part, from 0, in the order of their first nodes.
+    #[must_use]
+    pub fn part_of_elements(&self) -> Vec<usize> {
+        let part = self.part_of_nodes();
+        let mut number = vec![0; part.len()];
+        let mut count = 0;
+        for (node, first) in part.iter().enumerate() {
+            if first.index() == node {
+                number[node] = count;
+                count += 1;
+            }
+        }
+        self.cells.iter().map(|cell| number[part[cell[0].index()].index()]).collect()
+    }
+
     /// Number of separate parts; elements that share a node belong to one part.
     #[must_use]
     pub fn parts(&self) -> usize {

@@ -6,7 +6,7 @@ use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::library::refused;
-use crate::mesh::{in_space, write_grid, write_groups};
+use crate::mesh::{bytes_of_bodies, in_space, write_bodies, write_grid, write_groups};
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
@@ -99,7 +99,8 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         let groups = (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
         let contact = self.contact().map_or(0, |(results, _)| contact::bytes(results, instants, nodes));
         let arrays = grid + facets + elements + texts + contact + 48 * self.estimate.over_time.len();
-        (instants as u64) * (40 * cells + fields + 136) as u64 + arrays as u64 + LIBRARY + PER_GROUP * groups
+        let maps = instants as u64 * (40 * cells + fields + 136) as u64;
+        maps + arrays as u64 + LIBRARY + PER_GROUP * groups + bytes_of_bodies(mesh, instants)
     }
 
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<(), FileCause> {
@@ -138,10 +139,11 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         let (nodes, cells) = (mesh.node_count(), mesh.element_count());
         let data = group(vtk, "CellData")?;
         unit(&numbers(&data, "by_element", &[cells], &self.estimate.by_element)?, "J^(1/2)")?;
+        let bodies = write_bodies(&data, mesh)?;
         if maps.is_empty() {
             return Ok(());
         }
-        let mut cell_offsets = vec![("by_element", 0)];
+        let mut cell_offsets: Vec<_> = std::iter::once(("by_element", 0)).chain(bodies).collect();
         self.fields(&data, cells, self.cell_fields(), &mut cell_offsets)?;
         let mut point_offsets = Vec::new();
         if self.has_fields() || self.contact().is_some() {

@@ -4,7 +4,7 @@ use super::{Contents, Place};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::library::refused;
-use crate::mesh::write_grid;
+use crate::mesh::{bytes_of_bodies, write_bodies, write_grid};
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Texts, group, offset, room, unit};
 use hdf5::Group;
@@ -56,7 +56,8 @@ fn bytes<const D: usize, const N: usize>(contents: &Contents<'_, D, N>) -> u64 {
     let (nodes, cells) = (contents.rows(Place::Nodes), contents.rows(Place::Elements));
     let grid = 24 * nodes + 8 * N * cells + 8 * (cells + 1) + cells;
     let fields: usize = contents.fields.iter().map(|field| 8 * field.components * contents.rows(field.place) + 8).sum();
-    (grid + contents.instants.len() * (fields + 56)) as u64 + LIBRARY
+    let instants = contents.instants.len();
+    (grid + instants * (fields + 56)) as u64 + LIBRARY + bytes_of_bodies(contents.mesh, instants)
 }
 
 /// Creates the grid, the instants and room for the fields; returns the place of each field.
@@ -68,10 +69,11 @@ fn fill<const D: usize, const N: usize>(
     let of = |place: Place| contents.fields.iter().filter(move |field| field.place == place);
     let mut groups: [Option<Group>; 2] = [None, None];
     for (to, (place, name)) in groups.iter_mut().zip([(Place::Nodes, "PointData"), (Place::Elements, "CellData")]) {
-        if of(place).next().is_some() {
+        if of(place).next().is_some() || (place == Place::Elements && contents.mesh.parts() > 1) {
             *to = Some(group(&vtk, name)?);
         }
     }
+    let bodies = groups[1].as_ref().map(|cells| write_bodies(cells, contents.mesh)).transpose()?.flatten();
     let mut places = Vec::new();
     for field in contents.fields {
         let [points, cells] = &groups;
@@ -84,7 +86,8 @@ fn fill<const D: usize, const N: usize>(
     }
     let starts = |place: Place| of(place).map(|field| (field.name, contents.rows(place))).collect::<Vec<_>>();
     let times: Vec<f64> = contents.instants.iter().map(|(_, time)| *time).collect();
-    write_steps(&vtk, &times, &starts(Place::Nodes), &starts(Place::Elements))?;
+    let of_elements: Vec<_> = starts(Place::Elements).into_iter().chain(bodies).collect();
+    write_steps(&vtk, &times, &starts(Place::Nodes), &of_elements)?;
     give_steps(&vtk, &times).and_then(|()| note_steps(&vtk, times.len())).map_err(|error| refused(&error))?;
     Ok(places)
 }

@@ -2,7 +2,7 @@
 
 use super::base64::encode;
 use super::{Contents, Place};
-use crate::mesh::{VTK_TYPES, in_space};
+use crate::mesh::{BODY, VTK_TYPES, bodies, in_space};
 
 /// The text of a file.
 pub(super) fn text<const D: usize, const N: usize>(
@@ -33,6 +33,10 @@ pub(super) fn text<const D: usize, const N: usize>(
         line(&mut to, &format!("<{name}>"));
         for (field, values) in contents.fields.iter().zip(values).filter(|(field, _)| field.place == place) {
             floats(&mut to, field.name, field.components, values);
+        }
+        if let Some(bodies) = bodies(mesh).filter(|_| place == Place::Elements) {
+            let bytes = bodies.into_iter().flat_map(i64::to_le_bytes).collect();
+            array(&mut to, "Int64", &format!("Name=\"{BODY}\""), bytes);
         }
         line(&mut to, &format!("</{name}>"));
     }

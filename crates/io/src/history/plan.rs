@@ -10,7 +10,7 @@ use super::writer::{Begun, Target, Writer};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
-use crate::mesh::{write_grid, write_groups};
+use crate::mesh::{bytes_of_bodies, write_bodies, write_grid, write_groups};
 use crate::steps::write_steps;
 use crate::write::{Case, Texts, attribute, group, numbers, offset, ours, room, statement, unit};
 use hdf5::Group;
@@ -108,6 +108,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             + elsewhere
             + run
             + checkpoints
+            + bytes_of_bodies(mesh, self.instants())
             + LIBRARY;
         instants.saturating_mul(step + steps).saturating_add(fixed)
     }
@@ -196,7 +197,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             *place = Some(offset(&set)?);
             names.push((name, mesh.node_count()));
         }
-        write_steps(&vtk, instants, &names, &[])?;
+        write_steps(&vtk, instants, &names, self.bodies(&vtk)?.as_slice())?;
         Ok(Places {
             displacement: places[0].unwrap_or_default(),
             velocity: places[1],
@@ -212,6 +213,12 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             has_contact: self.has_contact(),
             had: 0,
         })
+    }
+
+    /// The numbers of the bodies of the elements, of several bodies.
+    fn bodies(&self, vtk: &Group) -> Result<Option<(&'static str, usize)>, FileCause> {
+        let mesh = self.problem.mesh();
+        if mesh.parts() > 1 { write_bodies(&group(vtk, "CellData")?, mesh) } else { Ok(None) }
     }
 
     /// The steps of a thinned history in its run; and whether motion comes from the scheme, as it does if any is kept.

@@ -5,12 +5,9 @@ use super::html::{
     Named, Table, figure, members, number, paragraph, quantity, remark, section, share, together, vector,
 };
 use crate::chart::{Line, OverTime, space_time};
-use crate::document::Document;
+use crate::document::{Document, numbers};
 use crate::scale::vector_quantity;
-
-/// Chart names of the first contacts or planes; more are left out of the chart.
-const CONTACTS: [&str; 5] = ["contact 0", "contact 1", "contact 2", "contact 3", "contact 4"];
-const PLANES: [&str; 5] = ["plane 0", "plane 1", "plane 2", "plane 3", "plane 4"];
+use serde_json::Value;
 
 pub(super) fn section_of(contents: &Contents<'_>) -> String {
     let document = contents.document;
@@ -18,9 +15,11 @@ pub(super) fn section_of(contents: &Contents<'_>) -> String {
         return String::new();
     }
     if document.number("contact.first_touch").is_none() {
-        return section("Contact", &paragraph("No node touches a plane."));
+        let what = if document.has_interfaces() { "another body" } else { "a plane" };
+        return section("Contact", &paragraph(&format!("No node touches {what}.")));
     }
-    let all = [facts(document), force(document), zone(document), pressure(contents), rebound(document)];
+    let all =
+        [facts(document), force(document), zone(document), pressure(contents), rebound(document), impacts(document)];
     section("Contact", &all.join(""))
 }
 
@@ -33,8 +32,18 @@ fn facts(document: &Document) -> String {
     row("time of the peak", quantity(value("contact.time_of_peak"), "s"));
     row("largest pressure at a node", quantity(value("contact.peak_pressure"), "Pa"));
     row("at node", number(value("contact.node_of_peak_pressure")));
-    if let Some(impulse) = document.list("contact.total.impulse").last() {
-        row("impulse on the body", together(&vector_quantity(&crate::document::numbers(impulse), "N s", 5)));
+    let shown = |impulse: &Value| together(&vector_quantity(&numbers(impulse), "N s", 5));
+    if document.has_interfaces() {
+        for (k, name) in document.names_of_obstacles() {
+            let impulse =
+                document.list("contact.obstacles").get(k).and_then(|over_time| over_time["impulse"].as_array());
+            let (first, second) = name.split_once(" with ").unwrap_or(("the bodies", &name));
+            if let Some(impulse) = impulse.and_then(|impulse| impulse.last()) {
+                row(&format!("impulse on {first}, from {second}"), shown(impulse));
+            }
+        }
+    } else if let Some(impulse) = document.list("contact.total.impulse").last() {
+        row("impulse on the body", shown(impulse));
     }
     let friction = document.column("contact.total.friction_energy").last().copied();
     row("energy dissipated by friction", quantity(friction, "J"));
@@ -43,14 +52,13 @@ fn facts(document: &Document) -> String {
 }
 
 fn force(document: &Document) -> String {
-    let counted = document.list("contact.obstacles").iter().zip(document.counted_obstacles());
-    let planes: Vec<_> = counted.filter(|(_, counted)| *counted).map(|(plane, _)| plane).collect();
-    let bodies = document.list("problem.obstacles").iter().any(|obstacle| obstacle["point"].is_null());
-    let (all, names) = if bodies { ("all contacts", CONTACTS) } else { ("all planes", PLANES) };
+    let names = document.names_of_obstacles();
+    let all = if document.has_interfaces() { "all contacts" } else { "all planes" };
     let mut lines = vec![Line { name: all, values: document.column("contact.total.normal_force") }];
-    if planes.len() > 1 {
-        let normal = |plane: &serde_json::Value| crate::document::numbers(&plane["normal_force"]);
-        lines.extend(planes.into_iter().zip(names).map(|(plane, name)| Line { name, values: normal(plane) }));
+    if names.len() > 1 {
+        let over_time = document.list("contact.obstacles");
+        let normal = |k: usize| over_time.get(k).map_or_else(Vec::new, |each| numbers(&each["normal_force"]));
+        lines.extend(names.iter().map(|(k, name)| Line { name, values: normal(*k) }));
     }
     let mark = document.number("contact.time_of_peak").map(|time| (time, "peak"));
     let time = document.column("contact.time");
@@ -100,6 +108,40 @@ fn rebound(document: &Document) -> String {
     };
     let reason = remark(&format!("There is no coefficient of restitution: {reason}."));
     members("centre of mass", &rebound, &REBOUND) + &reason
+}
+
+/// What contact did to several bodies: the velocity of each centre of mass, and the rebound at each interface.
+fn impacts(document: &Document) -> String {
+    if document.list("impacts.bodies").is_empty() {
+        return String::new();
+    }
+    let velocity = |v: &Value| match v.is_null() {
+        true => "–".to_string(),
+        false => together(&vector_quantity(&numbers(v), "m/s", 5)),
+    };
+    let mut bodies = Table::new(&["centre of mass", "#at the start", "#at the end"]);
+    for body in document.list("impacts.bodies") {
+        let name = body["name"].as_str().unwrap_or_default().to_string();
+        bodies.row(&[name, velocity(&body["velocity_before"]), velocity(&body["velocity_after"])]);
+    }
+    let titles =
+        ["interface", "#relative normal velocity before", "#after", "#restitution", "#first touch", "#time in contact"];
+    let mut interfaces = Table::new(&titles);
+    let mut reasons = Vec::new();
+    for each in document.list("impacts.interfaces") {
+        let name = each["groups"].as_array().into_iter().flatten().filter_map(Value::as_str).collect::<Vec<_>>();
+        let name = name.join(" with ");
+        let of = |key: &str, unit: &str| quantity(each[key].as_f64(), unit);
+        let restitution = number(each["restitution"].as_f64());
+        let [before, after] = ["normal_before", "normal_after"].map(|key| of(key, "m/s"));
+        let [touch, time] = ["first_touch", "time_in_contact"].map(|key| of(key, "s"));
+        if let Some(reason) = each["no_restitution"].as_str() {
+            reasons.push(format!("{name} has no coefficient of restitution: {reason}."));
+        }
+        interfaces.row(&[name, before, after, restitution, touch, time]);
+    }
+    let reasons = if reasons.is_empty() { String::new() } else { remark(&reasons.join(" ")) };
+    bodies.html() + &interfaces.html() + &reasons
 }
 
 /// The rebound; V is the velocity of the centre of mass, n the normal of the plane.

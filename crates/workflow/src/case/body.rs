@@ -4,12 +4,13 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use super::{material, mesh};
+use crate::message::hint;
 use percute_core::material::Elastic;
 use percute_core::mesh::{AnyMesh, Mesh, MeshError};
 use percute_core::simplex::{Element, Shape, Simplex};
 use std::path::PathBuf;
 
-const KEYS: [&str; 5] = ["name", "origin", "rotation", "material", "velocity"];
+const KEYS: [&str; 6] = ["name", "group", "origin", "rotation", "material", "velocity"];
 const MATERIAL: &str = "{ young = 70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }";
 const BAR: &str = "{ young = 70e9, density = 2700.0, section = 1e-4 }";
 /// What stands in each body instead.
@@ -59,16 +60,16 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<AnyBodies>, CaseError> {
         }
         names.push(name.1);
         match mesh::one_way(&table)? {
-            AnyMesh::Bar(mesh) => bars.push(Stated { table, name: name.1, mesh }),
-            AnyMesh::Plane(mesh) => plane.push(Stated { table, name: name.1, mesh }),
+            AnyMesh::Bar(mesh) => bars.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 }),
+            AnyMesh::Plane(mesh) => plane.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 }),
         }
     }
     if let (Some(bar), Some(_)) = (bars.first(), plane.first()) {
         return Err(bar.table.error("is a bar, but another body is plane; bodies of a case are all bars or all plane"));
     }
     Ok(Some(match plane.is_empty() {
-        true => AnyBodies::Bars(Box::new(joined(root, &bars, placed_bar)?)),
-        false => AnyBodies::Plane(Box::new(joined(root, &plane, placed_plane)?)),
+        true => AnyBodies::Bars(Box::new(joined(root, &bars)?)),
+        false => AnyBodies::Plane(Box::new(joined(root, &plane)?)),
     }))
 }
 
@@ -85,14 +86,13 @@ fn name<'a>(table: &Table<'a>) -> Result<(Value<'a>, &'a str), CaseError> {
 fn joined<const D: usize, const N: usize>(
     root: &Table<'_>,
     bodies: &[Stated<'_, D, N>],
-    place: impl Fn(&Table<'_>, &Mesh<D, N>) -> Result<Mesh<D, N>, CaseError>,
 ) -> Result<Bodies<D, N>, CaseError>
 where
     Element<D, N>: Simplex<D, N>,
 {
     let (mut materials, mut velocity, mut placed) = (Vec::new(), Vec::new(), Vec::new());
     for Stated { table, name, mesh } in bodies {
-        placed.push((*name, place(table, mesh)?));
+        placed.push((*name, placed_mesh(table, mesh)?));
         materials.push(((*name).to_string(), law(table, mesh.simplex().shape())?));
         let uniform = table.get("velocity").map_or(Ok([0.0; D]), |value| value.vector("m/s"))?;
         velocity.extend(vec![uniform; mesh.node_count()]);
@@ -110,23 +110,35 @@ fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
     material::law(&table, shape)
 }
 
-fn placed_bar(table: &Table<'_>, mesh: &Mesh<1, 2>) -> Result<Mesh<1, 2>, CaseError> {
-    table.refuse("rotation", "does not apply to a bar")?;
-    let [origin] = origin(table)?;
-    mesh.mapped(|point| [origin + point[0]]).map_err(|error| table.error(error.to_string()))
-}
-
-fn placed_plane(table: &Table<'_>, mesh: &Mesh<2, 3>) -> Result<Mesh<2, 3>, CaseError> {
-    let [x, y] = origin(table)?;
+/// The mesh in its place.
+fn placed_mesh<const D: usize, const N: usize>(table: &Table<'_>, mesh: &Mesh<D, N>) -> Result<Mesh<D, N>, CaseError>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    if D == 1 {
+        table.refuse("rotation", "does not apply to a bar")?;
+    }
+    let origin = table.get("origin").map_or(Ok([0.0; D]), |value| value.vector("m"))?;
     let angle = table.get("rotation").map_or(Ok(0.0), |value| value.number("degrees"))?;
-    // A body that is not turned keeps the bits of its mesh.
-    let (sin, cos) = angle.to_radians().sin_cos();
-    let place = |p: &[f64; 2]| [x + (cos * p[0] - sin * p[1]), y + (sin * p[0] + cos * p[1])];
-    mesh.mapped(place).map_err(|error| table.error(error.to_string()))
+    mesh.placed(&origin, angle).map_err(|error| table.error(error.to_string()))
 }
 
-fn origin<const D: usize>(table: &Table<'_>) -> Result<[f64; D], CaseError> {
-    table.get("origin").map_or(Ok([0.0; D]), |value| value.vector("m"))
+/// The elements of the group that is named, if one is: one of several bodies in a file.
+fn of_group<const D: usize, const N: usize>(table: &Table<'_>, mesh: Mesh<D, N>) -> Result<Mesh<D, N>, CaseError>
+where
+    Element<D, N>: Simplex<D, N>,
+{
+    let Some(value) = table.get("group") else { return Ok(mesh) };
+    let group = value.text("a group of elements")?;
+    let part = mesh.part_of_group(group).ok_or_else(|| {
+        let names: Vec<&str> = mesh.element_groups().keys().map(String::as_str).collect();
+        let known = if names.is_empty() { "none".to_string() } else { names.join(", ") };
+        value.error(format!(
+            "names the group of elements \"{group}\", which is not in the mesh; it has {known}{}",
+            hint(group, names)
+        ))
+    })?;
+    part.map_err(|error| table.error(error.to_string()))
 }
 
 /// Bodies that touch or overlap, by their names.
@@ -134,32 +146,11 @@ fn apart<const D: usize, const N: usize>(
     root: &Table<'_>,
     bodies: &[(&str, &Mesh<D, N>)],
     error: &MeshError,
-) -> CaseError {
-    let body_of = |mut at: usize, count: fn(&Mesh<D, N>) -> usize| {
-        let here = |(_, mesh): &(&str, &Mesh<D, N>)| {
-            let before = at;
-            at = at.wrapping_sub(count(mesh));
-            before < count(mesh)
-        };
-        bodies.iter().position(here).unwrap_or(0)
-    };
+) -> CaseError
+where
+    Element<D, N>: Simplex<D, N>,
+{
     let tables = root.tables("body").unwrap_or_default();
-    match error {
-        MeshError::PartsTouch { .. } | MeshError::DuplicateNodes { .. } => {
-            let [first, second] = match *error {
-                MeshError::PartsTouch { elements } => elements.map(|element| body_of(element, Mesh::element_count)),
-                MeshError::DuplicateNodes { first, second, .. } => {
-                    [first, second].map(|node| body_of(node, Mesh::node_count))
-                }
-                _ => [0, 0],
-            };
-            let message = format!(
-                "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative \
-                 speed times the first step",
-                bodies[first].0
-            );
-            tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))
-        }
-        _ => root.error(error.to_string()),
-    }
+    let Some((second, message)) = Mesh::touching(bodies, error) else { return root.error(error.to_string()) };
+    tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))
 }

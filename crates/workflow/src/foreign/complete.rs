@@ -1,7 +1,8 @@
 //! What a history of another program lacks, derived from the rest of it.
 
 use super::derive::Derivation;
-use super::window::windows;
+use super::pairs;
+use super::window::{Held, windows};
 use crate::message::counted;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
@@ -58,14 +59,9 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// Several bodies that may touch; a node that may touch two planes; steps that cannot be read; fewer than three instants of which the last is not
-    /// known.
+    /// A node that may touch two planes; steps that cannot be read; forces on two nodes of different bodies that are not
+    /// opposite; fewer than three instants of which the last is not known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
-        if !problem.statement().interfaces.is_empty() {
-            let told = "histories of other programs are read for a single body on planes, and this problem has several \
-                        bodies that may touch";
-            return Err(told.into());
-        }
         if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
@@ -110,6 +106,22 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     pub fn left_out(&self) -> Option<f64> {
         let last = self.source.count().checked_sub(1)?;
         (self.count <= last).then(|| self.source.times().instants()[last])
+    }
+
+    /// The contact forces of an instant as they are given, opposite on two nodes of different bodies.
+    fn given(&self, now: &Held<D>) -> Result<Vec<[f64; D]>, SinkError> {
+        let surface = self.derivation.surface();
+        if let Some([first, second]) = pairs::not_opposite(surface, &now.reaction) {
+            return Err(format!(
+                "`reaction`: the forces on nodes {first} and {second}, which touch each other, are not opposite at step \
+                 {}; give the force on each node, or leave `reaction` out, and it is derived",
+                now.index
+            )
+            .into());
+        }
+        let mut reaction = now.reaction.clone();
+        pairs::make_opposite(surface, &mut reaction);
+        Ok(reaction)
     }
 
     fn leave_out_the_last(&mut self) -> Result<(), SinkError> {
@@ -161,11 +173,12 @@ impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
             if now.index >= self.count {
                 return Ok(());
             }
-            let mut reaction = None;
-            if self.lacks.reaction {
-                reaction = Some(derivation.reactions(window).unwrap_or_else(|| vec![[0.0; D]; now.reaction.len()]));
-            }
-            let reaction = reaction.as_ref().unwrap_or(&now.reaction);
+            let reaction = if self.lacks.reaction {
+                derivation.reactions(window).unwrap_or_else(|| vec![[0.0; D]; now.reaction.len()])
+            } else {
+                self.given(now)?
+            };
+            let reaction = &reaction;
             let next = derivation.touching(window, reaction);
             let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(reaction));
             let touching = if self.lacks.touching { &touching } else { &now.touching };

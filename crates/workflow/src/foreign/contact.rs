@@ -88,12 +88,13 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             self.forced[at] |= now.reaction[at] != [0.0; D];
             self.press(at, contact, &frame, now);
             let (Some(after), Some(motion)) = (window.after, motion) else { continue };
-            let gap = problem.surface().gap(at, &after.displacement[node]);
+            let gap = problem.surface().gap(at, &problem.surface().against_obstacle(at, &after.displacement));
             let along = along(&frame, problem.surface().point(at), &after.displacement[node]);
             self.gap(at, (&frame, [gap, along]), (&now.reaction[at], terms.map(|terms| terms.rest(node))));
             if contact.free {
                 self.status(window, after, at, faint * problem.mass()[node]);
-                self.slide(contact, &frame, (&now.reaction[at], &motion.forward[node]), [dt, least]);
+                let velocity = problem.surface().against_obstacle(at, &motion.forward);
+                self.slide(contact, &frame, (&now.reaction[at], &velocity), [dt, least]);
             }
         }
     }
@@ -107,7 +108,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         self.largest[0] = self.largest[0].max(normal);
         self.largest[1] = self.largest[1].max(slip).max(tension);
         if contact.free && now.index > 0 {
-            let gap = self.problem.surface().gap(at, &now.displacement[contact.node.index()]);
+            let surface = self.problem.surface();
+            let gap = surface.gap(at, &surface.against_obstacle(at, &now.displacement));
             self.largest[3] = self.largest[3].max(-gap);
             if normal > 0.0 {
                 let terms = [-gap * normal, normal * normal, gap * gap];

@@ -3,7 +3,7 @@
 use super::balance::{Balance, Terms, norm};
 use super::nearness::{ADDED, Nearness, rounding, unsure};
 use super::window::{Held, Window, windows};
-use percute_core::contact::ContactNode;
+use percute_core::contact::{ContactNode, ContactSurface};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
@@ -31,6 +31,11 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         let (critical, nearness) = (critical_time_step(problem), Nearness::new(problem));
         let stiffest = 4.0 / (critical * critical);
         Self { balance: Balance::new(problem, source.times()), nearness, stiffest, noise: [f64::INFINITY, 0.0] }
+    }
+
+    /// The surface that may touch.
+    pub(super) fn surface(&self) -> &ContactSurface<D> {
+        self.balance.problem().surface()
     }
 
     /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. Whether it
@@ -83,21 +88,24 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
             let acts = contact.free && self.near(at, window, unsure) && norm(&force) > noise * problem.mass()[node];
             if acts { force } else { [0.0; D] }
         };
-        Some(problem.surface().nodes().iter().enumerate().map(of).collect())
+        let mut all: Vec<_> = problem.surface().nodes().iter().enumerate().map(of).collect();
+        super::pairs::make_opposite(problem.surface(), &mut all);
+        Some(all)
     }
 
     /// Whether a node is on its plane at t_n or t_{n+1}. The step of the solver after a sample is at most the critical
     /// one.
     fn near(&self, at: usize, window: Window<'_, D>, unsure: f64) -> bool {
         let surface = self.balance.problem().surface();
-        let (node, now, critical) = (surface.nodes()[at].node.index(), window.now, 2.0 / self.stiffest.sqrt());
+        let (now, critical) = (window.now, 2.0 / self.stiffest.sqrt());
         let sampled = !is_stable(self.balance.times().step(now.index), critical);
         let on_its_way = now.velocity.as_ref().filter(|_| sampled).map(|velocity| {
-            let next = std::array::from_fn(|c| now.displacement[node][c] + critical * velocity[node][c]);
-            surface.gap(at, &next)
+            let [u, v] = [&now.displacement, velocity].map(|field| surface.against_obstacle(at, field));
+            surface.gap(at, &std::array::from_fn(|c| u[c] + critical * v[c]))
         });
         let held = [Some(now), window.after].into_iter().flatten();
-        let gaps = held.map(|held| surface.gap(at, &held.displacement[node])).chain(on_its_way);
+        let gaps =
+            held.map(|held| surface.gap(at, &surface.against_obstacle(at, &held.displacement))).chain(on_its_way);
         gaps.into_iter().any(|gap| gap <= self.nearness.tolerance(unsure))
     }
 
@@ -126,12 +134,19 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         let terms = self.balance.terms(now, &vec![[0.0; D]; now.displacement.len()]);
         let (back, dt, h) = (times.step(n - 1), times.step(n), times.velocity_step(n));
         let tolerance = problem.contact_tolerance().max(ADDED * rounding(&now.displacement));
-        problem.surface().nodes().iter().enumerate().filter(|(_, contact)| contact.free).any(|(at, contact)| {
-            let node = contact.node.index();
+        let next = |node: usize| -> [f64; D] {
             let (u, earlier, rest) = (&now.displacement[node], &before.displacement[node], terms.rest(node));
             let speed = |c: usize| (u[c] - earlier[c]) / back - h * rest[c] / problem.mass()[node];
-            let next = std::array::from_fn(|c| u[c] + dt * speed(c));
-            problem.surface().gap(at, &next) < -tolerance
+            std::array::from_fn(|c| u[c] + dt * speed(c))
+        };
+        let surface = problem.surface();
+        surface.nodes().iter().enumerate().filter(|(_, contact)| contact.free).any(|(at, contact)| {
+            let mut u = next(contact.node.index());
+            if let Some(opposite) = contact.opposite {
+                let other = next(surface.nodes()[opposite].node.index());
+                (0..D).for_each(|c| u[c] -= other[c]);
+            }
+            surface.gap(at, &u) < -tolerance
         })
     }
 }

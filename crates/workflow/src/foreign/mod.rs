@@ -20,6 +20,7 @@ mod moduli;
 mod nearness;
 mod of_balance;
 mod orders;
+mod pairs;
 mod planes;
 mod quantity;
 mod residual;

@@ -51,7 +51,12 @@ fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> S
 
 /// A plane, for messages.
 fn which<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize) -> String {
-    if suspect.problem.obstacles().len() > 1 { format!("plane {k} (from 0)") } else { "the plane".to_string() }
+    let obstacle = &suspect.problem.obstacles()[k];
+    match obstacle.group().filter(|_| obstacle.as_plane().is_none()) {
+        Some(group) => format!("the surface that faces \"{group}\""),
+        None if suspect.problem.obstacles().len() > 1 => format!("plane {k} (from 0)"),
+        None => "the plane".to_string(),
+    }
 }
 
 /// Another coefficient of friction, or something else.

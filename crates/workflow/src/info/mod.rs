@@ -73,6 +73,7 @@ pub struct HistoryInfo {
     pub checksums: bool,
     pub case: Option<String>,
     pub problem: ProblemSummary,
+    pub planes: Vec<PlaneInfo>,
     pub time: TimeInfo,
     pub steps: Option<usize>,
     pub complete: bool,
@@ -185,6 +186,7 @@ pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info
         checksums: file.has_checksums(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
+        planes: setting::planes(problem),
         time: TimeInfo::new(file.kept().map_or(file.times(), |kept| &kept.times), subject.critical_step),
         steps: file.count().checked_sub(1).map(|last| file.kept().map_or(last, |kept| kept.steps[last])),
         kept: file.kept().map(|_| kept(stored)),
@@ -253,6 +255,7 @@ impl HistoryInfo {
         }
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", body(&self.problem)));
+        lines.extend(self.planes.iter().map(PlaneInfo::line));
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| counted(steps, "step"));
         let ended = match (self.complete, self.steps == Some(self.time.steps_planned)) {

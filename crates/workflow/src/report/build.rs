@@ -5,8 +5,8 @@ use super::flat::FlatElements;
 use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, found, reported};
 use super::{
-    ADMISSIBLE, ContactReport, FORMAT, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report, SourceReport,
-    Subject, Verdict, Versions, WorstElement, meaning, verdict,
+    ADMISSIBLE, ContactReport, FORMAT, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report,
+    SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::outline::Outline;
 use percute_core::contact::ContactResults;
@@ -33,10 +33,10 @@ impl Report {
         outline: Option<&Outline>,
         seconds: f64,
     ) -> Self {
-        let Subject { name, times, critical_step, held, checked, .. } = *subject;
+        let Subject { name, times, critical_step, held, checked, problem: problem_of } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
-        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate);
+        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate, contact.slip);
         warnings.extend(told_before);
         Self {
             format: FORMAT,
@@ -73,6 +73,7 @@ impl Report {
             own_contacts: estimate.own_contacts,
             contact: ContactReport::new(contact),
             rebound,
+            impacts: Impacts::new(problem_of, contact),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             outline: outline.cloned(),
@@ -108,12 +109,14 @@ fn foreseen<const D: usize, const N: usize>(
     all
 }
 
-/// The warnings of a result: those that only the result shows, and those that a run is told of before.
+/// The warnings of a result: those that only the result shows, and those that a run is told of before. `slip` is that
+/// of [`ContactResults`].
 pub fn warnings_of<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
     balance: &Balance,
     estimate: &Estimate<D>,
+    slip: f64,
 ) -> [Vec<Warning>; 2] {
     let Subject { times, checked, critical_step, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
@@ -129,6 +132,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         reconstruction: options.reconstruction,
         kept_impulse: estimate.kept_impulse,
         own_contacts: estimate.own_contacts,
+        slip,
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),
         critical_step,
@@ -148,7 +152,8 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
         |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
     let obstacle = |obstacle: &percute_core::contact::Obstacle<D>| ObstacleSummary {
         point: obstacle.as_plane().map(|plane| plane.point().to_vec()),
-        normal: obstacle.flat_frame().normal().to_vec(),
+        // Without negative zeros.
+        normal: obstacle.flat_frame().normal().map(|x| x + 0.0).to_vec(),
         friction: obstacle.law().friction(),
         group: obstacle.group().map(str::to_string),
     };

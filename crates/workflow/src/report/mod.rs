@@ -5,6 +5,7 @@ pub(crate) mod build;
 mod columns;
 mod contact;
 mod flat;
+mod impacts;
 mod meaning;
 mod rebound;
 mod simulated;
@@ -17,6 +18,7 @@ mod warnings;
 pub use build::warnings_of;
 pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants};
+pub use impacts::{BodyMotion, Impacts, InterfaceRebound};
 pub use meaning::meaning;
 pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
@@ -97,6 +99,7 @@ pub struct Report {
     pub own_contacts: usize,
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,
+    pub impacts: Option<Impacts>,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
     pub outline: Option<Outline>,
@@ -175,9 +178,10 @@ impl Report {
     /// # Errors
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
-        let Self { verdict, rebound, warnings, .. } = self;
-        serde_json::to_string(&serde_json::json!({ "verdict": verdict, "rebound": rebound, "warnings": warnings }))
-            .map_err(std::io::Error::from)
+        let Self { verdict, rebound, impacts, warnings, .. } = self;
+        let document =
+            serde_json::json!({ "verdict": verdict, "rebound": rebound, "impacts": impacts, "warnings": warnings });
+        serde_json::to_string(&document).map_err(std::io::Error::from)
     }
 
     /// The document for files: without the duration of the work, so that identical runs make identical files.

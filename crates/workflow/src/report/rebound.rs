@@ -1,5 +1,6 @@
 //! The rebound of the body: the velocities of its centre of mass before the first contact and after the last.
 
+use super::Impacts;
 use percute_core::contact::{ContactResults, Frame, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
@@ -90,12 +91,13 @@ impl Rebound {
     }
 }
 
-/// A rebound as a JSON document; `null` if there is none.
+/// The rebound of one body and the impacts of several as a JSON document; `null` where there is none.
 ///
 /// # Errors
 /// None that is known; whatever the serialiser reports.
-pub fn rebound_to_json(rebound: Option<&Rebound>) -> Result<String, std::io::Error> {
-    serde_json::to_string(&rebound).map_err(std::io::Error::from)
+pub fn rebound_to_json(rebound: Option<&Rebound>, impacts: Option<&Impacts>) -> Result<String, std::io::Error> {
+    let document = serde_json::json!({ "rebound": rebound, "impacts": impacts });
+    serde_json::to_string(&document).map_err(std::io::Error::from)
 }
 
 /// The frame of the plane that gives the largest normal impulse.

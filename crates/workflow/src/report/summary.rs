@@ -1,6 +1,6 @@
 //! The summary of a run: at most 28 lines of 80 columns.
 
-use super::{ADMISSIBLE, ProblemSummary, Rebound, Report, SOURCES, meaning};
+use super::{ADMISSIBLE, InterfaceRebound, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, printable, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
@@ -50,6 +50,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(contact(report).map(|line| ("contact", line)));
     let label = |rebound: &Rebound| if rebound.is_rebound() { "rebound" } else { "motion" };
     lines.extend(report.rebound.as_ref().map(|rebound| (label(rebound), returned(rebound))));
+    lines.extend(impacts(report));
     lines.extend(warnings(report));
     lines
 }
@@ -234,6 +235,27 @@ fn returned(rebound: &Rebound) -> String {
         }
         _ => format!("contact has not ended after {time} s; it began with {before} m/s"),
     }
+}
+
+/// The rebound at each interface: two at most, and how many more.
+fn impacts(report: &Report) -> Vec<(&'static str, String)> {
+    let interfaces = report.impacts.as_ref().map_or(&[][..], |impacts| &impacts.interfaces);
+    let line = |interface: &InterfaceRebound| {
+        let [first, second] = &interface.groups;
+        let time = trimmed(interface.time_in_contact, 4);
+        let [before, after] = [interface.normal_before, interface.normal_after].map(|v| v.map(|v| trimmed(v, 4)));
+        let told = match (before, after, interface.restitution) {
+            (Some(before), Some(after), Some(restitution)) => {
+                let restitution = trimmed(restitution, 3);
+                format!("from {before} to {after} m/s, restitution {restitution}, {time} s in contact")
+            }
+            _ => format!("no restitution: {}", interface.no_restitution.unwrap_or_default()),
+        };
+        ("rebound", format!("{first} with {second}: {told}"))
+    };
+    let most = if interfaces.len() > 2 { 1 } else { 2 };
+    let more = (interfaces.len() > most).then(|| ("", format!("and {} more interfaces", interfaces.len() - most)));
+    interfaces.iter().take(most).map(line).chain(more).collect()
 }
 
 /// One line each if there are two at most; else the first and how many more.

@@ -1,0 +1,75 @@
+"""What contact did to several bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["BodyMotion", "Impacts", "InterfaceRebound"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BodyMotion:
+    """The motion of the centre of mass of a body, V = Σ m v / Σ m."""
+
+    name: str
+    """Its name."""
+    mass: float
+    """Its mass (kg)."""
+    velocity_before: NDArray[np.float64]
+    """V at the start (m/s), shape (dimension,)."""
+    velocity_after: NDArray[np.float64] | None
+    """V at the last instant (m/s); None with supports or loads, which change it, too."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class InterfaceRebound:
+    """How two bodies come together and part: the relative velocity of their centres of mass along the normal."""
+
+    groups: tuple[str, str]
+    """The groups of edges of both bodies."""
+    normal: NDArray[np.float64]
+    """The normal, from the second body to the first one, shape (dimension,)."""
+    normal_before: float | None
+    """(V₁ - V₂)·n at the last instant before the first contact force (m/s), negative while they come nearer."""
+    normal_after: float | None
+    """The same at the first instant after the last one (m/s); None if contact has not ended."""
+    restitution: float | None
+    """Coefficient of restitution, the latter over the former, negative."""
+    no_restitution: str | None
+    """Why there is none."""
+    first_touch: float | None
+    """The first instant at which a pair of nodes touches (s); None without contact."""
+    release: float | None
+    """The last instant at which a pair touches (s); None if contact has not ended."""
+    time_in_contact: float
+    """From the first touch to the release, or to the end of the run (s)."""
+    ended: bool
+    """Whether contact has ended."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Impacts:
+    """What contact did to several bodies."""
+
+    bodies: tuple[BodyMotion, ...]
+    """The bodies, in the order of their first nodes."""
+    interfaces: tuple[InterfaceRebound, ...]
+    """The interfaces, in the order of ``problem.contacts``."""
+
+    @classmethod
+    def _of(cls, found: Mapping[str, Any] | None) -> Impacts | None:
+        """Make it from its JSON object."""
+        if found is None:
+            return None
+        bodies = [BodyMotion(**{**body, **_vectors(body, "velocity_before", "velocity_after")}) for body in found["bodies"]]
+        interfaces = [InterfaceRebound(**{**each, **_vectors(each, "normal"), "groups": tuple(each["groups"])}) for each in found["interfaces"]]
+        return cls(bodies=tuple(bodies), interfaces=tuple(interfaces))
+
+
+def _vectors(found: Mapping[str, Any], *names: str) -> dict[str, NDArray[np.float64] | None]:
+    return {name: None if found[name] is None else np.array(found[name]) for name in names}
