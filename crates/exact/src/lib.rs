@@ -2,7 +2,8 @@
 //! of their errors.
 //!
 //! [`BarImpact`] is the impact of a bar on a rigid plane, [`BouncingBar`] the periodic impact under gravity,
-//! [`ClampedRod`] a rod that springs back against an obstacle; [`BarRow`] are bars that strike each other; [`BarRamp`] is a bar under a growing traction;
+//! [`ClampedRod`] a rod that springs back against an obstacle; [`BarRow`] are bars that strike each other;
+//! [`BarRamp`] is a bar under a growing traction;
 //! [`BarMode`] and [`BlockMode`] are standing waves of a bar and of a rectangle on rollers; [`RigidSlide`] is a rigid
 //! block with dry friction. All units are SI. The crate has no dependencies, so it shares no error with the simulation.
 

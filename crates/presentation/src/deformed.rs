@@ -1,4 +1,5 @@
-//! The deformed outline of plane bodies: the rigid motion of each as it is, their deformation by a factor that shows it.
+//! The deformed outline of plane bodies: the rigid motion of each as it is, their deformation by a factor that shows
+//! it.
 
 use crate::body::Body;
 use crate::document::{Document, numbers};

@@ -66,7 +66,8 @@ impl Document {
         self.list("problem.obstacles").iter().map(counts).collect()
     }
 
-    /// The names of the obstacles that count, with their places among all: "plane 0", or "anvil.top with hammer.bottom".
+    /// The names of the obstacles that count, with their places among all: "plane 0", or "anvil.top with
+    /// hammer.bottom".
     pub(crate) fn names_of_obstacles(&self) -> Vec<(usize, String)> {
         let obstacles = self.list("problem.obstacles");
         let group = |k: usize| obstacles.get(k).and_then(|obstacle| obstacle["group"].as_str()).unwrap_or_default();

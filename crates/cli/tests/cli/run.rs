@@ -115,6 +115,8 @@ fn only_what_may_be_absent_is_null() {
             ".simulated_by",
             // A bar has none.
             ".outline",
+            // Of several bodies only.
+            ".impacts",
             // Contact goes on at the end.
             ".rebound.velocity_after",
             ".rebound.normal_after",

@@ -113,8 +113,8 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         let surface = self.derivation.surface();
         if let Some([first, second]) = pairs::not_opposite(surface, &now.reaction) {
             return Err(format!(
-                "`reaction`: the forces on nodes {first} and {second}, which touch each other, are not opposite at step \
-                 {}; give the force on each node, or leave `reaction` out, and it is derived",
+                "`reaction`: the forces on nodes {first} and {second}, which touch each other, are not opposite at \
+                 step {}; give the force on each node, or leave `reaction` out, and it is derived",
                 now.index
             )
             .into());
