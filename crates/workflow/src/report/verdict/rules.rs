@@ -43,7 +43,7 @@ const LONGEST: f64 = 10.0;
 const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 21] = [
+pub(super) const RULES: [Rule; 22] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
