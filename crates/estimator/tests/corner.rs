@@ -86,9 +86,9 @@ const ROWS: [Row; 10] = [
     },
 ];
 
-/// Percute has hats at the edges that leave a plane first, which lower the index, and other diagonals at 60 degrees, whose
-/// triangles of 120 degrees raise it: against the same reference it was 0.18 below to 0.1 above the prototype. One of
-/// 80×64 cells raises the index by up to 0.05 more.
+/// Percute has hats at the edges that leave a plane first, which lower the index. At 60 degrees it has other
+/// diagonals, whose triangles of 120 degrees raise it. Against the same reference the index was 0.18 below to 0.1 above
+/// that of the prototype. A reference of 80×64 cells raises it by up to 0.05 more.
 const BELOW: f64 = 0.2;
 const ABOVE: f64 = 0.15;
 

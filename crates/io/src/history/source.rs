@@ -60,8 +60,8 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         for (row, &node) in file.contact_nodes().iter().enumerate() {
             rows_of.entry(node).or_default().push_back(row);
         }
-        // Rows of surface nodes are removed, those of a node at two planes in their order; the remaining nodes can touch
-        // no obstacle.
+        // Rows of surface nodes are removed, those of a node at two planes in their order; the remaining nodes can
+        // touch no obstacle.
         let take = |contact: &ContactNode| rows_of.get_mut(&contact.node.index())?.pop_front();
         let rows = problem.surface().nodes().iter().map(take).collect();
         let mut strange = Vec::new();

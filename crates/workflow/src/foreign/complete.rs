@@ -59,8 +59,8 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// A node that may touch two planes; steps that cannot be read; forces on two nodes of different bodies that are not
-    /// opposite; fewer than three instants of which the last is not known.
+    /// A node that may touch two planes; steps that cannot be read; forces on two nodes of different bodies that are
+    /// not opposite; fewer than three instants of which the last is not known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
         if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
             let told = format!(
