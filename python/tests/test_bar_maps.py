@@ -8,7 +8,8 @@ from percute.verification.bar_maps import Summary
 def test_a_summary_of_four_runs() -> None:
     """Effectivities of 0.5, 1, 2 and 0.7: from 0.5 to 2, half of them within 0.7 to 1.8."""
     settings = [Setting(elements, 0.5, 0.1, 2.0) for elements in (1, 2, 3, 4)]
-    outcomes = [Outcome((2.0, 1.0), [(sup, 0.0)], [pc.Effectivity(sup=sup / 2.0, mean=0.0)]) for sup in (1.0, 2.0, 4.0, 1.4)]
+    index = [pc.Effectivity(sup=sup, mean=0.0) for sup in (0.5, 1.0, 2.0, 0.7)]
+    outcomes = [Outcome((2.0, 1.0), [(2.0 * each.sup, 0.0)], [each], [True]) for each in index]
     summary = Summary((outcome.effectivity(0)[0], setting) for outcome, setting in zip(outcomes, settings, strict=True))
     assert (summary.low, summary.low_at.elements) == (0.5, 1) and (summary.high, summary.high_at.elements) == (2.0, 3)
     assert (summary.count, summary.within, summary.ratio) == (4, 0.5, 4.0)

@@ -48,6 +48,6 @@ def test_files_give_the_same_estimate(problem, tmp_path):
 
 
 def test_histories_of_other_programs_are_refused(problem):
-    history = pc.simulate(problem, end=2e-6, courant=0.9)
+    history = pc.simulate(problem, end=20e-6, courant=0.9)
     with pytest.raises(InputError, match="node 0 may touch two"):
         pc.estimate(pc.History.from_arrays(problem, history.time, history.displacement, reaction=history.reaction))

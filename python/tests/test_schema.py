@@ -68,6 +68,7 @@ BEYOND = {
     "bodies that touch at the start": "the geometry of the bodies",
     "bodies in plane stress and plane strain": "values of two tables",
     "two bodies of one name": "values of two tables",
+    "a body that jams in a corner": "values of two tables",
     "a contact with a body that is not there": "the groups of the mesh",
     "a contact of a body with itself": "the groups of the mesh",
     "a contact without friction": "the kind of the bodies",
