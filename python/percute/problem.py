@@ -61,7 +61,7 @@ class Problem(Immutable):
     contacts : sequence of Interface, default: ()
         Surfaces of different bodies that may touch.
     obstacles : sequence of Plane, default: ()
-        Planes that the body may touch; a node may touch one only.
+        Planes that the body may touch, a node one with each of its edges.
     supports : sequence of Support, default: ()
         Where the motion is prescribed, eq. [4].
     tractions : sequence of Traction, default: ()

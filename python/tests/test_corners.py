@@ -51,3 +51,15 @@ def test_histories_of_other_programs_are_refused(problem):
     history = pc.simulate(problem, end=20e-6, courant=0.9)
     with pytest.raises(InputError, match="node 0 may touch two"):
         pc.estimate(pc.History.from_arrays(problem, history.time, history.displacement, reaction=history.reaction))
+
+
+def test_the_verdict_knows_corners(problem):
+    estimates = [pc.estimate(pc.simulate(problem, end=end, courant=0.9)) for end in (4e-6, 20e-6)]
+    for estimate, expected in zip(estimates, ("0.9 to 3.5", "0.98 to 1.7"), strict=True):
+        assert expected in estimate.verdict
+
+
+def test_two_planes_have_no_restitution(problem):
+    rebound = pc.simulate(problem, end=60e-6, courant=0.9).rebound
+    assert rebound.restitution is None
+    assert rebound.no_restitution == "several planes change the velocity"

@@ -73,9 +73,17 @@ fn a_killed_run_ends_as_one_that_was_not() {
 /// Ctrl-C in a run that goes on gives no estimate: it would be one of all steps from the first one on.
 #[test]
 fn a_run_that_goes_on_and_is_stopped_tells_how_to_estimate_it() {
-    let bench = Bench::new(&case());
+    // Four times as long: a busy machine may look at the file late.
+    let bench = Bench::new(&case().replace("end = 1.5e-4", "end = 6e-4"));
     kill(running(&bench, &RUN, FILE, 200));
-    let output = send_interrupt(running(&bench, &RUN, FILE, 400));
+    // Not opened: a reader would keep the run from its file.
+    let changed = || std::fs::metadata(bench.path(FILE)).unwrap().modified().unwrap();
+    let (before, began, mut child) = (changed(), std::time::Instant::now(), start(&bench, &RUN));
+    while changed() == before {
+        assert!(began.elapsed().as_secs() < 120 && child.try_wait().unwrap().is_none(), "it does not go on");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let output = send_interrupt(child);
     let told = stderr(&output);
     assert!(output.status.code() == Some(130) && stdout(&output).is_empty(), "{told}");
     assert!(

@@ -34,6 +34,8 @@ pub struct Rebound {
     pub ended: bool,
 }
 
+/// The velocity along the normal of one plane is not its alone.
+const SEVERAL_PLANES: &str = "several planes change the velocity";
 /// The reason that a longer run takes away.
 const NOT_ENDED: &str = "contact has not ended";
 
@@ -41,7 +43,7 @@ impl Rebound {
     /// Whether it is the rebound of a body, be it complete or not: else contact is not all that moves the body.
     #[must_use]
     pub fn is_rebound(&self) -> bool {
-        self.no_restitution.is_none_or(|reason| reason == NOT_ENDED)
+        self.no_restitution.is_none_or(|reason| [NOT_ENDED, SEVERAL_PLANES].contains(&reason))
     }
 
     /// The rebound of a run from rigid planes; none without contact.
@@ -67,11 +69,14 @@ impl Rebound {
         let time = |n: usize| contact.instants[n.min(steps - 1)];
         let after = ended.then(|| velocity(last + 1));
         let (normal_before, normal_after) = (frame.split(&before).0, after.map(|v| frame.split(&v).0));
+        let pushes = |over_time: &Vec<Resultant<D>>| over_time.last().is_some_and(|last| last.impulse != [0.0; D]);
+        let planes = contact.obstacles.iter().filter(|over_time| pushes(over_time)).count();
         let no_restitution = match normal_after {
             _ if !problem.prescribed().is_empty() => Some("supports change the velocity, too"),
             None => Some(NOT_ENDED),
             _ if normal_before >= 0.0 => Some("the body does not fly towards the plane"),
             Some(after) if after < 0.0 => Some("the body still moves towards the plane, which it will touch again"),
+            _ if planes > 1 => Some(SEVERAL_PLANES),
             Some(_) => None,
         };
         let restitution = normal_after.filter(|_| no_restitution.is_none()).map(|v| -v / normal_before);

@@ -38,8 +38,8 @@ pub(in crate::report) struct Facts {
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
     pub(super) largest_friction: f64,
-    /// Whether a node touches two planes.
-    pub(super) corner: bool,
+    /// The least angle between two planes that one node touches (degrees).
+    pub(super) corner: Option<f64>,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
@@ -116,7 +116,7 @@ impl Facts {
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
-            corner: touches_two_planes(problem, results),
+            corner: corner(problem, results),
             bodies,
             slip: results.slip,
             supported: !problem.prescribed().is_empty(),
@@ -183,11 +183,16 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
     count
 }
 
-/// Whether a node touches both of two planes in the course of time.
-fn touches_two_planes<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> bool {
+/// The least angle between two planes that one node touches in the course of time (degrees).
+fn corner<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Option<f64> {
     let touched = |at: usize| results.summary[at].first_touch.is_some();
-    let entries = problem.surface().nodes().iter().enumerate();
-    entries.filter_map(|(at, contact)| Some((at, contact.beside?))).any(|(at, beside)| touched(at) && touched(beside))
+    let nodes = problem.surface().nodes();
+    let both = nodes.iter().enumerate().filter_map(|(at, contact)| Some([at, contact.beside?]));
+    let opening = |entries: [usize; 2]| {
+        let [one, two] = entries.map(|at| problem.obstacles()[nodes[at].obstacle].flat_frame());
+        (-one.split(two.normal()).0).clamp(-1.0, 1.0).acos().to_degrees()
+    };
+    both.filter(|entries| entries.iter().all(|&at| touched(at))).map(opening).min_by(f64::total_cmp)
 }
 
 /// The largest speed at which two nodes of different bodies approach each other at the start (m/s).
