@@ -90,7 +90,7 @@ def test_vtk_sees_the_start_of_a_killed_run_and_all_of_it_once_recovered(tmp_pat
 import os, signal, percute as pc
 from conftest import block
 def told(progress):
-    if progress.done > 20:
+    if progress.done > 400:  # after the first contact
         os.kill(os.getpid(), signal.SIGKILL)
 pc.simulate(block(60, 48), end=5000 * 1e-8, step=1e-8, store={str(file)!r}, progress=told)
 """
