@@ -16,10 +16,15 @@ pub(crate) fn case() -> String {
 
 /// Starts a command and waits until `count` steps are in its file.
 pub(crate) fn running(bench: &Bench, arguments: &[&str], file: &str, count: usize) -> Child {
-    let mut child = start(bench, arguments);
     let written = || each_dimension!(open(bench.path(file)).ok()?, file => Some(file.count()));
+    started(bench, arguments, || written() >= Some(count))
+}
+
+/// Starts a command and waits until it has got somewhere.
+fn started(bench: &Bench, arguments: &[&str], there: impl Fn() -> bool) -> Child {
+    let mut child = start(bench, arguments);
     let began = std::time::Instant::now();
-    while written() < Some(count) {
+    while !there() {
         assert!(began.elapsed().as_secs() < 120 && child.try_wait().unwrap().is_none(), "it has not got there");
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
@@ -78,12 +83,8 @@ fn a_run_that_goes_on_and_is_stopped_tells_how_to_estimate_it() {
     kill(running(&bench, &RUN, FILE, 200));
     // Not opened: a reader would keep the run from its file.
     let changed = || std::fs::metadata(bench.path(FILE)).unwrap().modified().unwrap();
-    let (before, began, mut child) = (changed(), std::time::Instant::now(), start(&bench, &RUN));
-    while changed() == before {
-        assert!(began.elapsed().as_secs() < 120 && child.try_wait().unwrap().is_none(), "it does not go on");
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    let output = send_interrupt(child);
+    let before = changed();
+    let output = send_interrupt(started(&bench, &RUN, || changed() != before));
     let told = stderr(&output);
     assert!(output.status.code() == Some(130) && stdout(&output).is_empty(), "{told}");
     assert!(
