@@ -78,8 +78,8 @@ impl<const D: usize> OwnForces<D> {
         for (at, node) in surface.nodes().iter().enumerate().filter(|&(at, node)| node.free && surface.leads(at)) {
             match node.beside {
                 None => {
-                    let (last, simulated) = (self.contacts[at].take(), known.contact[at]);
-                    self.contacts[at] = self.replace((at, &simulated), last, approach(at), &mut known);
+                    let last = self.contacts[at].take();
+                    self.contacts[at] = self.replace(at, last, approach(at), &mut known);
                 }
                 Some(beside) if at < beside => self.replace_both([at, beside], &approach, &mut known),
                 Some(_) => {}
@@ -104,7 +104,7 @@ impl<const D: usize> OwnForces<D> {
                 let frame = known.problem.obstacles()[nodes[at].obstacle].flat_frame();
                 let under = approach(at).under(&frame, &other);
                 known.contact[at] = simulated[k];
-                self.contacts[at] = self.replace((at, &simulated[k]), last[k], under, known);
+                self.contacts[at] = self.replace(at, last[k], under, known);
             }
             let after = entries.map(|at| known.contact[at]);
             let size = after.as_flattened().iter().fold(0.0_f64, |m, f| m.max(f.abs()));
@@ -119,7 +119,7 @@ impl<const D: usize> OwnForces<D> {
     /// is returned.
     fn replace<const N: usize>(
         &mut self,
-        (at, simulated): (usize, &[f64; D]),
+        at: usize,
         last: Option<OwnContact<D>>,
         approach: Approach<D>,
         known: &mut Known<'_, D, N>,
@@ -128,7 +128,7 @@ impl<const D: usize> OwnForces<D> {
         let node = &problem.surface().nodes()[at];
         let obstacle = &problem.obstacles()[node.obstacle];
         // Reactions of a foreign history need not be in the cone.
-        let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(simulated)).0;
+        let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(&contact[at])).0;
         let depth = last.map_or((-approach.gap_now).max(0.0), |last| last.depth);
         let depth = depth * (1.0 - steps(at).min(1.0).powi(2));
         let largest = (-(approach.gap + depth) / approach.mobility).max(0.0);
