@@ -54,11 +54,11 @@ class BarRow(Compared):
         return self._evaluate("displacement", body, x, t)
 
     def velocity(self, body: str, x: ArrayLike, t: ArrayLike) -> Floats:
-        """Velocity (m/s), likewise."""
+        """Velocity at places and instants as in `displacement` (m/s)."""
         return self._evaluate("velocity", body, x, t)
 
     def normal_force(self, body: str, x: ArrayLike, t: ArrayLike) -> Floats:
-        """Normal force (N), tension positive, likewise."""
+        """Normal force at places and instants as in `displacement` (N), tension positive."""
         return self._evaluate("normal_force", body, x, t)
 
     def contact_force(self, first: int, t: ArrayLike) -> Floats:

@@ -118,14 +118,14 @@ impl BarRow {
         self.waves(bar, x).map(since).iter().sum()
     }
 
-    /// Velocity (m/s), likewise.
+    /// Velocity at a place and an instant, as [`BarRow::displacement`] (m/s).
     #[must_use]
     pub fn velocity(&self, bar: usize, x: f64, t: f64) -> f64 {
         let [p, q] = self.arrived(bar, x, t);
         p + q
     }
 
-    /// Normal force (N), tension positive, likewise.
+    /// Normal force at a place and an instant, as [`BarRow::displacement`] (N), tension positive.
     #[must_use]
     pub fn normal_force(&self, bar: usize, x: f64, t: f64) -> f64 {
         let [p, q] = self.arrived(bar, x, t);
