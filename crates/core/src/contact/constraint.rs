@@ -36,6 +36,8 @@ impl<const D: usize> Constraint<D> {
 /// The constraints of a step, in the order of the contact surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints<const D: usize> {
+    /// The nodes that may have one, by their position. Those of surfaces that slide have none here.
+    candidates: Vec<usize>,
     /// Those that are violated.
     pub(super) single: Vec<Constraint<D>>,
     /// Both of nodes at two planes, of which at least one is violated.
@@ -63,50 +65,78 @@ pub(crate) struct Prediction<'a, const D: usize> {
 impl<const D: usize> Prediction<'_, D> {
     /// v_{n+½} of a node (m/s), h after v_{n−½}.
     #[inline]
-    fn velocity_after(&self, node: NodeId, h: f64) -> [f64; D] {
+    pub(super) fn velocity_after(&self, node: NodeId, h: f64) -> [f64; D] {
         let node = node.index();
         let mut velocity = self.velocity[node];
         (0..D).for_each(|c| velocity[c] += h * self.inverse_mass[node] * self.force[node][c]);
         velocity
     }
 
-    /// The constraint of a node of the contact surface.
+    /// The motion of a node of the contact surface against its obstacle.
     #[inline]
-    fn constraint(&self, surface: &ContactSurface<D>, at: usize) -> Constraint<D> {
-        let ([dt, h], nodes) = (self.steps, surface.nodes());
+    fn motion(&self, surface: &ContactSurface<D>, at: usize) -> Motion<D> {
+        let ([dt, h], contact) = (self.steps, &surface.nodes()[at]);
         let displacement = surface.against_obstacle(at, self.displacement);
         let frame = surface.frame(at, &displacement);
-        let mut velocity = self.velocity_after(nodes[at].node, h);
-        if let Some(opposite) = nodes[at].opposite {
-            let other = self.velocity_after(nodes[opposite].node, h);
+        let mut velocity = self.velocity_after(contact.node, h);
+        if let Some(opposite) = contact.opposite {
+            let other = self.velocity_after(surface.nodes()[opposite].node, h);
             (0..D).for_each(|c| velocity[c] -= other[c]);
         }
         let gap = surface.gap(at, &displacement) + dt * frame.split(&velocity).0;
+        Motion { frame, gap, velocity }
+    }
+
+    /// The constraint of a node with this motion.
+    #[inline]
+    fn constraint(&self, surface: &ContactSurface<D>, at: usize, motion: Motion<D>) -> Constraint<D> {
+        let Motion { frame, gap, velocity } = motion;
         let (law, mass) = (surface.law(at), surface.moved_mass(at, self.mass));
         Constraint { at, frame, law, mass, gap, velocity }
     }
+
+    fn is_violated(&self, motion: &Motion<D>) -> bool {
+        motion.gap < -self.tolerance
+    }
+}
+
+/// The motion of a node against its obstacle without its reaction: the frame, the gap at t_{n+1} (m) and v_{n+½} (m/s).
+#[derive(Clone, Copy)]
+struct Motion<const D: usize> {
+    frame: Frame<D>,
+    gap: f64,
+    velocity: [f64; D],
 }
 
 impl<const D: usize> Constraints<D> {
-    pub(crate) const NONE: Self = Self { single: Vec::new(), corners: Vec::new() };
+    pub(crate) fn new(surface: &ContactSurface<D>) -> Self {
+        let nodes = surface.nodes();
+        let has = |at: &usize| nodes[*at].free && surface.leads(*at) && surface.sliding_of(*at).is_none();
+        Self { candidates: (0..nodes.len()).filter(has).collect(), single: Vec::new(), corners: Vec::new() }
+    }
 
     /// Collects those of a step.
     pub(crate) fn collect(&mut self, surface: &ContactSurface<D>, prediction: &Prediction<'_, D>) {
-        self.single.clear();
-        self.corners.clear();
+        let Self { candidates, single, corners } = self;
+        single.clear();
+        corners.clear();
         let nodes = surface.nodes();
-        let violated = |constraint: &Constraint<D>| constraint.gap < -prediction.tolerance;
-        for at in (0..nodes.len()).filter(|&at| nodes[at].free && surface.leads(at)) {
-            let own = prediction.constraint(surface, at);
-            match nodes[at].beside.filter(|&beside| nodes[beside].free) {
-                None if violated(&own) => self.single.push(own),
-                Some(beside) if at < beside => {
-                    let both = [own, prediction.constraint(surface, beside)];
-                    if both.iter().any(violated) {
-                        self.corners.push(both);
-                    }
+        for &at in &*candidates {
+            let beside = nodes[at].beside.filter(|&beside| nodes[beside].free);
+            if beside.is_some_and(|beside| beside < at) {
+                continue;
+            }
+            let own = prediction.motion(surface, at);
+            let violated = prediction.is_violated(&own);
+            if let Some(beside) = beside {
+                let other = prediction.motion(surface, beside);
+                if violated || prediction.is_violated(&other) {
+                    corners.push(
+                        [(at, own), (beside, other)].map(|(at, motion)| prediction.constraint(surface, at, motion)),
+                    );
                 }
-                _ => {}
+            } else if violated {
+                single.push(prediction.constraint(surface, at, own));
             }
         }
     }

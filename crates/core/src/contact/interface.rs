@@ -3,17 +3,18 @@
 use super::coulomb::Coulomb;
 use super::obstacle::{ObstacleError, coulomb};
 
-/// Two groups of facets, of different bodies, that may touch with Coulomb friction. The nodes of the two face each
-/// other in pairs: they differ by a gap along one common normal only, and each pair stays one during the run.
+/// Two groups of facets, of different bodies, that may touch with Coulomb friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
     groups: [String; 2],
     law: Coulomb,
+    matching: bool,
 }
 
 impl Interface {
-    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The normal is the mean one of the first
-    /// group or, if the nodes do not face each other along it, of the second one.
+    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The nodes of the two face each other in pairs:
+    /// they differ by a gap along one common normal only, and each pair stays one during the run. The normal is the mean
+    /// one of the first group or, if the nodes do not face each other along it, of the second one.
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.
@@ -22,7 +23,27 @@ impl Interface {
         second: impl Into<String>,
         friction: f64,
     ) -> Result<Self, ObstacleError> {
-        Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)? })
+        Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)?, matching: true })
+    }
+
+    /// The same for two groups of edges of any nodes, which may slide along each other. The normal is the mean one of the
+    /// group that sticks out less beyond the other one along the interface, or of that with the shorter edges. Ends of bars
+    /// are always matching.
+    ///
+    /// # Errors
+    /// As [`Interface::matching`].
+    pub fn sliding<const D: usize>(
+        first: impl Into<String>,
+        second: impl Into<String>,
+        friction: f64,
+    ) -> Result<Self, ObstacleError> {
+        Ok(Self { matching: D == 1, ..Self::matching::<D>(first, second, friction)? })
+    }
+
+    /// Whether the nodes face each other in pairs.
+    #[must_use]
+    pub fn is_matching(&self) -> bool {
+        self.matching
     }
 
     /// The names of the two groups.

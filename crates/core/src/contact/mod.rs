@@ -8,6 +8,7 @@ mod corner;
 mod coulomb;
 mod frame;
 mod interface;
+mod mortar;
 mod obstacle;
 mod plane;
 mod results;
@@ -20,6 +21,8 @@ pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;
 pub(crate) use frame::dot;
 pub use interface::Interface;
+pub use mortar::{Coupling, DualShape, Facing, Segment, Side, SlidingSurfaces};
+pub(crate) use mortar::{SlidingContact, tangent};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
 pub use results::{

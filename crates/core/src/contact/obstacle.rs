@@ -46,8 +46,9 @@ pub struct Obstacle<const D: usize> {
 #[derive(Clone, Debug, PartialEq)]
 enum Shape<const D: usize> {
     Plane(Plane<D>),
-    /// The surface of another body, which moves; its frame does not turn.
-    Surface(Frame<D>),
+    /// The surface of another body, which moves; its frame does not turn. With the index of the surfaces that slide, if
+    /// they do.
+    Surface(Frame<D>, Option<usize>),
 }
 
 impl<const D: usize> Obstacle<D> {
@@ -70,8 +71,18 @@ impl<const D: usize> Obstacle<D> {
     }
 
     /// The surface of another body, as a group of facets meets it; `normal` is the unit normal from there to the group.
-    pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String) -> Self {
-        Self { shape: Shape::Surface(Frame::new(normal)), law, group: Some(group) }
+    /// With `sliding`, the two slide along each other: it is their index in the contact surface.
+    pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, sliding: Option<usize>) -> Self {
+        Self { shape: Shape::Surface(Frame::new(normal), sliding), law, group: Some(group) }
+    }
+
+    /// The index of the surfaces that slide, if it is one of them.
+    #[inline]
+    pub(super) fn sliding(&self) -> Option<usize> {
+        match self.shape {
+            Shape::Plane(_) => None,
+            Shape::Surface(_, sliding) => sliding,
+        }
     }
 
     /// The plane, if it is one.
@@ -79,7 +90,7 @@ impl<const D: usize> Obstacle<D> {
     pub fn as_plane(&self) -> Option<&Plane<D>> {
         match &self.shape {
             Shape::Plane(plane) => Some(plane),
-            Shape::Surface(_) => None,
+            Shape::Surface(..) => None,
         }
     }
 
@@ -123,7 +134,7 @@ impl<const D: usize> Obstacle<D> {
     pub fn flat_frame(&self) -> Frame<D> {
         match &self.shape {
             Shape::Plane(plane) => plane.frame(),
-            Shape::Surface(frame) => *frame,
+            Shape::Surface(frame, _) => *frame,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::coulomb::Coulomb;
 use super::frame::Frame;
+use super::mortar::{Facing, SlidingSurfaces};
 use super::obstacle::Obstacle;
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::{Mesh, NewNumbers};
@@ -13,7 +14,8 @@ pub struct ContactNode {
     pub node: NodeId,
     /// The obstacle it may touch.
     pub obstacle: usize,
-    /// Gap of its place in the undeformed mesh (m).
+    /// Gap of its place in the undeformed mesh (m); infinite if it may touch all of a surface that slides along, of which
+    /// [`Facing::gap`] has the gap.
     pub undeformed_gap: f64,
     /// Whether it is a candidate: its normal motion is not prescribed.
     pub free: bool,
@@ -50,6 +52,7 @@ pub struct ContactSurface<const D: usize> {
     /// Places of the nodes in the undeformed mesh (m).
     points: Vec<[f64; D]>,
     facets: Vec<ContactFacet<D>>,
+    sliding: Vec<SlidingSurfaces<D>>,
 }
 
 impl<const D: usize> ContactSurface<D> {
@@ -77,6 +80,26 @@ impl<const D: usize> ContactSurface<D> {
         &self.facets
     }
 
+    /// All pairs of surfaces that slide along each other.
+    #[inline]
+    #[must_use]
+    pub fn sliding(&self) -> &[SlidingSurfaces<D>] {
+        &self.sliding
+    }
+
+    /// Which of [`ContactSurface::sliding`] a node belongs to.
+    #[inline]
+    #[must_use]
+    pub fn sliding_of(&self, at: usize) -> Option<usize> {
+        self.obstacles[self.nodes[at].obstacle].sliding()
+    }
+
+    /// What each node faces with these displacements of all nodes of the mesh (m).
+    #[must_use]
+    pub fn facing(&self, displacement: &[[f64; D]]) -> Facing<'_, D> {
+        Facing::new(self, displacement)
+    }
+
     /// Tributary area (m²) of each node: its share of the candidate facets, ℓ_k of eq. \[45\].
     #[must_use]
     pub fn tributary_areas(&self) -> Vec<f64> {
@@ -88,7 +111,7 @@ impl<const D: usize> ContactSurface<D> {
     }
 
     /// The value of a nodal field at a node less that at the node that it may touch, if there is one: displacement or
-    /// velocity against the obstacle.
+    /// velocity against the obstacle. [`Facing::relative`] has it for surfaces that slide, too.
     #[inline]
     #[must_use]
     pub fn against_obstacle(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
@@ -99,11 +122,28 @@ impl<const D: usize> ContactSurface<D> {
         std::array::from_fn(|c| own[c] - other[c])
     }
 
-    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one.
+    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one; of surfaces that slide, on
+    /// the slave.
     #[inline]
     #[must_use]
     pub fn leads(&self, at: usize) -> bool {
-        self.nodes[at].opposite.is_none_or(|opposite| at < opposite)
+        match self.sliding_of(at) {
+            Some(index) => self.sliding[index].slave().node_at(at).is_some(),
+            None => self.nodes[at].opposite.is_none_or(|opposite| at < opposite),
+        }
+    }
+
+    /// Whether a node is at a plane, or on the first one of two surfaces that may touch.
+    #[inline]
+    #[must_use]
+    pub fn is_of_first(&self, at: usize) -> bool {
+        match self.sliding_of(at) {
+            Some(index) => {
+                let [slave, master] = [self.sliding[index].slave(), self.sliding[index].master()];
+                at < slave.position(0).max(master.position(0))
+            }
+            None => self.leads(at),
+        }
     }
 
     /// The mass that a force between a node and its obstacle moves (kg), from those of all nodes: 1/(1/m + 1/m') of two
@@ -169,7 +209,8 @@ impl<const D: usize> ContactSurface<D> {
     /// The gaps of its nodes (m), with these displacements of all nodes of the mesh.
     #[must_use]
     pub fn gaps(&self, displacement: &[[f64; D]]) -> Vec<f64> {
-        (0..self.nodes.len()).map(|at| self.gap(at, &self.against_obstacle(at, displacement))).collect()
+        let facing = self.facing(displacement);
+        (0..self.nodes.len()).map(|at| facing.gap(at, displacement)).collect()
     }
 
     /// The frame at a node with this displacement.
@@ -199,7 +240,13 @@ impl<const D: usize> ContactSurface<D> {
             nodes: self.nodes.iter().map(node).collect(),
             points: self.points.clone(),
             facets: self.facets.iter().map(facet).collect(),
+            sliding: self.sliding.clone(),
         }
+    }
+
+    /// Adds two surfaces that slide along each other, of which the nodes and facets have been added.
+    pub(crate) fn add_sliding(&mut self, sliding: SlidingSurfaces<D>) {
+        self.sliding.push(sliding);
     }
 
     /// Adds an obstacle with its candidates. The facets have positions in `nodes`.

@@ -99,7 +99,7 @@ fn run<const D: usize, const N: usize>(
 ) -> Result<Simulation, SimulationError> {
     let Dynamics { problem, times, .. } = *dynamics;
     let mut body = MovingBody::new(dynamics);
-    let mut contact = Contact::new(problem.surface().nodes().len());
+    let mut contact = Contact::new(dynamics);
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let (mut done, mut interrupted) = (0, false);

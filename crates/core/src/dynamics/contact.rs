@@ -1,7 +1,7 @@
 //! Reactions and touching status along the steps.
 
 use super::Dynamics;
-use crate::contact::{Constraints, Prediction, solve};
+use crate::contact::{Constraints, ContactSurface, Prediction, SlidingContact, solve};
 
 /// Contact at one step.
 #[derive(Clone, Debug)]
@@ -13,15 +13,21 @@ pub(super) struct Contact<const D: usize> {
     /// Touching status at t_{n+1}.
     pub(super) touching_next: Vec<bool>,
     constraints: Constraints<D>,
+    /// One for each two surfaces that slide along each other.
+    sliding: Vec<SlidingContact>,
 }
 
 impl<const D: usize> Contact<D> {
-    pub(super) fn new(count: usize) -> Self {
+    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
+        let surface = dynamics.problem.surface();
+        let count = surface.nodes().len();
+        let sliding = |index| SlidingContact::new(surface, index, &dynamics.inverse_mass);
         Self {
             reaction: vec![[0.0; D]; count],
             touching: vec![false; count],
             touching_next: vec![false; count],
-            constraints: Constraints::NONE,
+            constraints: Constraints::new(surface),
+            sliding: (0..surface.sliding().len()).map(sliding).collect(),
         }
     }
 
@@ -50,6 +56,7 @@ impl<const D: usize> Contact<D> {
         std::mem::swap(&mut self.touching, &mut self.touching_next);
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
+        self.slide(problem.surface(), &prediction);
         solve(&self.constraints, steps, problem.contact_tolerance(), |at, reaction| {
             let nodes = problem.surface().nodes();
             let mut act = |at: usize, reaction: [f64; D]| {
@@ -63,17 +70,35 @@ impl<const D: usize> Contact<D> {
                 act(opposite, reaction.map(|r| -r));
             }
         });
+        for sliding in problem.surface().sliding() {
+            for (at, contact) in sliding.positions().map(|at| (at, &problem.surface().nodes()[at])) {
+                (0..D).for_each(|c| force[contact.node.index()][c] += self.reaction[at][c]);
+            }
+        }
+    }
+
+    /// Reactions and touching status on surfaces that slide.
+    fn slide(&mut self, surface: &ContactSurface<D>, prediction: &Prediction<'_, D>) {
+        let Self { reaction, touching_next, sliding, .. } = self;
+        for sliding in sliding {
+            sliding.react(surface, prediction, |at, force| match force {
+                Some(force) => reaction[at] = force,
+                None => touching_next[at] = true,
+            });
+        }
     }
 
     /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is
     /// active.
     pub(super) fn settle_start<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>) {
         let problem = dynamics.problem;
-        for at in 0..self.touching.len() {
-            let (gap, normal) = problem.start_of_contact(at);
+        for (at, (gap, normal)) in problem.starts_of_contact().into_iter().enumerate() {
             self.touching[at] = self.touching_next[at]
                 && gap <= problem.contact_tolerance()
                 && normal.abs() <= problem.speed_tolerance();
+        }
+        for sliding in &self.sliding {
+            sliding.settle_master(problem.surface(), &mut self.touching);
         }
     }
 }

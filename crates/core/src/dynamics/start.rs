@@ -51,7 +51,7 @@ pub fn check_start<const D: usize, const N: usize>(
     times: &TimeGrid,
 ) -> Result<(), SimulationError> {
     let dynamics = &Dynamics::new(problem, times);
-    start(dynamics, &mut MovingBody::new(dynamics), &mut Contact::new(problem.surface().nodes().len()))
+    start(dynamics, &mut MovingBody::new(dynamics), &mut Contact::new(dynamics))
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at
@@ -62,11 +62,12 @@ fn refuse_a_start_too_near<const D: usize, const N: usize>(
 ) -> Result<(), SimulationError> {
     let problem = dynamics.problem;
     let step = dynamics.times.step(0);
-    for (at, node) in problem.surface().nodes().iter().enumerate() {
-        if contact.touching[at] || !contact.touching_next[at] {
+    let surface = problem.surface();
+    for (at, (gap, normal)) in problem.starts_of_contact().into_iter().enumerate() {
+        if contact.touching[at] || !contact.touching_next[at] || !surface.leads(at) {
             continue;
         }
-        let (gap, normal) = problem.start_of_contact(at);
+        let node = &surface.nodes()[at];
         let speed = -normal;
         let smallest_gap = 0.25 * speed * step;
         if gap < smallest_gap {

@@ -1,8 +1,8 @@
 //! From what the user states to a checked problem.
 
 use super::boundary::{self, Supports};
-use super::pairs::Bodies;
-use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs};
+use super::sides::Bodies;
+use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs, sliding};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -230,8 +230,13 @@ fn contact_surface<const D: usize, const N: usize>(
         let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
         candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
     }
-    for interface in interfaces.iter().enumerate() {
-        pairs::add(&mut surface, bodies, interface)?;
+    for (index, interface) in interfaces.iter().enumerate() {
+        let added = if interface.is_matching() {
+            pairs::add(&mut surface, bodies, interface)
+        } else {
+            sliding::add(&mut surface, bodies, interface, displacement)
+        };
+        added.map_err(|cause| cause.at("contact", Some(index), "groups"))?;
     }
     Ok(surface)
 }
@@ -339,18 +344,19 @@ fn start_with_supports<const D: usize, const N: usize>(problem: &mut Problem<D, 
 fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
     let tolerance = problem.contact_tolerance();
     let nodes = problem.surface.nodes();
-    let gap = |at: usize| problem.start_of_contact(at).0;
-    let deeper = |a: usize, b: usize| if gap(b) < gap(a) { b } else { a };
-    if let Some(at) = (0..nodes.len()).reduce(deeper).filter(|&at| gap(at) < -tolerance) {
-        let (obstacle, depth, node) = (nodes[at].obstacle, -gap(at), nodes[at].node.index());
+    let starts = problem.starts_of_contact();
+    let decides = |&at: &usize| problem.surface.leads(at);
+    let deeper = |a: usize, b: usize| if starts[b].0 < starts[a].0 { b } else { a };
+    if let Some(at) = (0..nodes.len()).filter(decides).reduce(deeper).filter(|&at| starts[at].0 < -tolerance) {
+        let (obstacle, depth, node) = (nodes[at].obstacle, -starts[at].0, nodes[at].node.index());
         let cause = match problem.obstacles()[obstacle].as_plane() {
             Some(plane) => Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() },
             None => Cause::Overlaps { node, depth },
         };
         return Err(InputError { place: problem.place_of_obstacle(obstacle), cause });
     }
-    for (at, contact) in nodes.iter().enumerate() {
-        let (gap, normal) = problem.start_of_contact(at);
+    for at in (0..nodes.len()).filter(decides) {
+        let ((gap, normal), contact) = (starts[at], &nodes[at]);
         if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
             let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
             return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });

@@ -251,6 +251,18 @@ pub enum Cause {
          same motion along the interface, and none across it, at the node that it faces"
     )]
     HeldPair { node: usize },
+    /// A node that may slide along another body, and that a support holds or moves across the interface.
+    #[error(
+        "a support prescribes the motion of node {node} across the interface with another body; leave it free, or \
+         prescribe its motion along the interface alone"
+    )]
+    HeldAcross { node: usize },
+    /// Edges of one side of an interface that cover each other.
+    #[error(
+        "the {} and the {} of one group lie one above the other along the interface; take one of them out of the group",
+        facet(&.nodes[0]), facet(&.nodes[1])
+    )]
+    Covered { nodes: Box<[Vec<usize>; 2]> },
     /// A node of an interface that may touch something else.
     #[error(
         "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by \

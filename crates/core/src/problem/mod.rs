@@ -7,12 +7,14 @@ mod error;
 mod pairs;
 mod plausibility;
 mod renumber;
+mod sides;
+mod sliding;
 
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub use plausibility::{PlausibilityWarning, cause_of_refused_start, plausibility_warnings};
 
-use crate::contact::{ContactSurface, Obstacle};
+use crate::contact::{ContactSurface, Facing, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
@@ -225,7 +227,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     pub fn leads_interface(&self, obstacle: usize) -> bool {
         let nodes = self.surface.nodes();
         let first = nodes.iter().position(|contact| contact.obstacle == obstacle);
-        first.is_none_or(|at| self.surface.leads(at))
+        first.is_none_or(|at| self.surface.is_of_first(at))
     }
 
     /// Where an obstacle is stated: a plane, or two surfaces of different bodies.
@@ -248,19 +250,31 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Gap (m), eq. \[3\], and normal velocity (m/s) of a node of the contact surface at the start.
     #[must_use]
     pub fn start_of_contact(&self, at: usize) -> (f64, f64) {
-        let displacement = self.surface.against_obstacle(at, &self.initial_displacement);
-        let velocity = self.surface.against_obstacle(at, &self.initial_velocity);
+        self.start_of(at, &self.surface.facing(&self.initial_displacement))
+    }
+
+    /// The same of all its nodes.
+    #[must_use]
+    pub fn starts_of_contact(&self) -> Vec<(f64, f64)> {
+        let facing = self.surface.facing(&self.initial_displacement);
+        (0..self.surface.nodes().len()).map(|at| self.start_of(at, &facing)).collect()
+    }
+
+    fn start_of(&self, at: usize, facing: &Facing<'_, D>) -> (f64, f64) {
+        let displacement = facing.relative(at, &self.initial_displacement);
+        let velocity = facing.relative(at, &self.initial_velocity);
         let normal = self.surface.frame(at, &displacement).split(&velocity).0;
-        (self.surface.gap(at, &displacement), normal)
+        (facing.gap(at, &self.initial_displacement), normal)
     }
 
     /// The candidate node of an obstacle with the smallest gap at the start, as its position in the surface, and that
     /// gap (m). None without candidates.
     #[must_use]
     pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
+        let facing = self.surface.facing(&self.initial_displacement);
         let nodes = self.surface.nodes().iter().enumerate();
         let candidates = nodes.filter(|(_, c)| c.obstacle == obstacle && c.free);
-        candidates.map(|(at, _)| (at, self.start_of_contact(at).0)).min_by(|a, b| a.1.total_cmp(&b.1))
+        candidates.map(|(at, _)| (at, self.start_of(at, &facing).0)).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The smallest gap of the candidate nodes of an obstacle at the start (m), eq. \[3\].

@@ -1,39 +1,13 @@
 //! Pairs of nodes of two bodies that face each other across an interface.
 
-use super::candidates::along_the_boundary;
-use super::{Cause, HeldBy, InputError, boundary};
+use super::Cause;
+use super::sides::{Bodies, Side, check_nodes, unit};
 use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FacetId, NodeId};
-use crate::material::{Elastic, Law};
-use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
 /// Nodes of a pair differ by less than this part of the shortest edge, but for a gap along the normal.
 const MATCHING: f64 = 1e-9;
-/// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
-const FACES: f64 = 0.5;
-
-/// The data of a problem that pairs need.
-pub(super) struct Bodies<'m, const D: usize, const N: usize> {
-    pub(super) mesh: &'m Mesh<D, N>,
-    /// For each node the first node of its body; empty without interfaces.
-    pub(super) body: Vec<NodeId>,
-    pub(super) held: Vec<Option<HeldBy>>,
-    pub(super) fixed: Vec<[bool; D]>,
-    /// The law of the element that a facet belongs to.
-    pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
-}
-
-/// One side of an interface.
-struct Side<const D: usize> {
-    facets: Vec<FacetId>,
-    /// Nodes along the boundary.
-    nodes: Vec<NodeId>,
-    /// Σ of outward normals times areas (m² or 1).
-    outward: [f64; D],
-    body: NodeId,
-}
-
 /// The two sides of an interface, the common normal from the second one to the first, and the node of the second side
 /// that faces each node of the first one.
 type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
@@ -43,10 +17,9 @@ type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
 pub(super) fn add<const D: usize, const N: usize>(
     surface: &mut ContactSurface<D>,
     bodies: &Bodies<'_, D, N>,
-    (index, interface): (usize, &Interface),
-) -> Result<(), InputError> {
-    let fail = |cause: Cause| cause.at("contact", Some(index), "groups");
-    let (sides, normal, partners) = bodies.facing(surface, interface).map_err(fail)?;
+    interface: &Interface,
+) -> Result<(), Cause> {
+    let (sides, normal, partners) = bodies.facing(surface, interface)?;
     let away = normal.map(|n| -n);
     let ordered = [sides[0].nodes.clone(), partners];
     let start = surface.nodes().len();
@@ -57,43 +30,29 @@ pub(super) fn add<const D: usize, const N: usize>(
         let contact = |(at, node): (usize, &NodeId)| {
             let facing = ordered[1 - k][at];
             let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);
-            let guided = bodies.guided(&frame, [*node, facing]).map_err(fail)?;
+            let guided = bodies.guided(&frame, [*node, facing])?;
             let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
             let undeformed_gap = dot(&apart, &frame);
             let contact =
                 ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, opposite, beside: None };
             Ok((contact, points[node.index()]))
         };
-        let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, InputError>>()?;
+        let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
         let facets = side.facets.iter().map(|&facet| {
             let nodes = bodies.mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
             ContactFacet { facet, nodes, area: bodies.area(facet), obstacle }
         });
-        let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string());
+        let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string(), None);
         surface.add(facing, contacts, facets);
     }
     Ok(())
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Area of a facet with section or thickness (m²).
-    pub(super) fn area(&self, facet: FacetId) -> f64 {
-        self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
-    }
-
-    /// Both sides of an interface, which are of different bodies and face each other in pairs.
+    /// Both sides of an interface, which face each other in pairs.
     fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<Facing<D>, Cause> {
-        let [first, second] = interface.groups();
-        let of_one_body = || Cause::SameBody { groups: interface.groups().map(str::to_string) };
-        let sides = [self.side(first)?, self.side(second)?];
-        if sides[0].body == sides[1].body {
-            return Err(of_one_body());
-        }
-        let [first, second] = sides.each_ref().map(|side| (self.law)(side.facets[0]).hypothesis());
-        if first != second {
-            return Err(Cause::PlanesDiffer);
-        }
+        let sides = self.sides(interface)?;
         let outward = sides.each_ref().map(|side| unit(&side.outward));
         // The surface of either body may be the one that the normal stands on.
         let mut normal = outward[0].map(|n| -n);
@@ -103,46 +62,10 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         {
             (normal, partners) = (outward[1], Ok(found));
         }
-        let away = normal.map(|n| -n);
-        for (side, outward) in [(&sides[0], away), (&sides[1], normal)] {
-            let faces = |&facet: &FacetId| dot(&self.mesh.facet_normal(facet).0, &outward) >= FACES;
-            if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
-                let nodes = self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
-                let outward = Box::new([away.to_vec(), normal.to_vec()]);
-                return Err(Cause::TurnedAway { nodes, outward });
-            }
-        }
+        self.check_directions([&sides[0], &sides[1]], &normal)?;
         let partners = partners?;
-        for node in sides.iter().flat_map(|side| &side.nodes) {
-            if surface.nodes().iter().any(|contact| contact.node == *node) {
-                return Err(Cause::TwoContacts { node: node.index() });
-            }
-        }
+        check_nodes(surface, &sides)?;
         Ok((sides, normal, partners))
-    }
-
-    /// The facets of a group, which are free and of one body.
-    fn side(&self, group: &str) -> Result<Side<D>, Cause> {
-        let facets = boundary::facet_group(self.mesh, group)?.to_vec();
-        let nodes_of = |facet: FacetId| self.mesh.facets()[facet.index()].nodes;
-        let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
-        if let Some(&facet) = facets.iter().find(|facet| self.mesh.facets()[facet.index()].neighbour.is_some()) {
-            return Err(Cause::InnerFacet { nodes: shown(facet) });
-        }
-        if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
-            return Err(Cause::NotFree { nodes: shown(facet), by });
-        }
-        let body_of = |facet: FacetId| self.body[nodes_of(facet)[0].index()];
-        let body = body_of(facets[0]);
-        if facets.iter().any(|&facet| body_of(facet) != body) {
-            return Err(Cause::SeveralBodies { group: group.to_string() });
-        }
-        let mut outward = [0.0; D];
-        for &facet in &facets {
-            let (normal, area) = self.mesh.facet_normal(facet);
-            (0..D).for_each(|c| outward[c] += area * normal[c]);
-        }
-        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, body })
     }
 
     /// The node of the second side that faces each node of the first one.
@@ -195,10 +118,4 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         }
         Ok(held[0] != [false; D])
     }
-}
-
-/// A vector of length 1.
-fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
-    let length = dot(vector, vector).sqrt();
-    vector.map(|x| x / length)
 }

@@ -4,6 +4,7 @@ use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
+use crate::contact::mortar::Facing;
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -32,6 +33,8 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     times: &'p TimeGrid,
     laws: Vec<TangentialLaw>,
     now: Vec<NodeState<D>>,
+    /// What the nodes face at the instant that is recorded.
+    facing: Facing<'p, D>,
     /// The shortest edge of each node of a pair (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
     results: ContactResults<D>,
@@ -62,7 +65,8 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
-        Self { problem, times, laws, now, shortest: shortest_edges(problem), results }
+        let facing = problem.surface().facing(problem.initial_displacement());
+        Self { problem, times, laws, now, facing, shortest: shortest_edges(problem), results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -90,7 +94,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         let ContactPoint { node, area, point, .. } = self.results.nodes[at];
         let (displacement, force) = (step.displacement[node.index()], step.reaction[at]);
         let surface = self.problem.surface();
-        let relative = surface.against_obstacle(at, step.displacement);
+        let relative = self.facing.relative(at, step.displacement);
         let frame = surface.frame(at, &relative);
         let status = self.laws[at].status(&frame, &force);
         let normal_force = frame.split(&force).0;
@@ -120,7 +124,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
                 steps.sliding_velocity[row] = slides(before.status);
             }
             steps.force.push(force);
-            steps.gap.push(surface.gap(at, &relative));
+            steps.gap.push(self.facing.gap(at, step.displacement));
             steps.sliding_velocity.push(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);
@@ -156,11 +160,12 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
     fn record(&mut self, step: &Step<'_, D>) {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
+        self.facing.update(step.displacement);
         for at in 0..self.now.len() {
             let share = self.node(at, step);
             sums[self.results.nodes[at].obstacle].add(&share);
-            // Two nodes that touch have one contact, that of the first one.
-            if self.problem.surface().leads(at) {
+            // Two bodies that touch have one contact, that of the first one.
+            if self.problem.surface().is_of_first(at) {
                 total.add(&share);
             }
         }

@@ -1,7 +1,7 @@
 //! A body that cannot touch before the end, does not move at all, or moves faster than waves.
 
 use super::{PlausibilityWarning, at, plausibility_warning};
-use crate::contact::dot;
+use crate::contact::{ContactNode, dot};
 use crate::material::Law;
 use crate::message::short;
 use crate::problem::Problem;
@@ -54,7 +54,8 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     }
     let part = problem.mesh().part_of_nodes();
     let mut touches = vec![false; part.len()];
-    for contact in problem.surface().nodes().iter().filter(|contact| contact.opposite.is_some()) {
+    let is_plane = |contact: &&ContactNode| problem.obstacles()[contact.obstacle].as_plane().is_some();
+    for contact in problem.surface().nodes().iter().filter(|contact| !is_plane(contact)) {
         touches[part[contact.node.index()].index()] = true;
     }
     let velocity = problem.initial_velocity();

@@ -1,0 +1,233 @@
+//! The matrices D and M of an instant.
+
+use super::dual::{DualShape, Moments};
+use super::partition::{Segment, place, segments};
+use super::side::Side;
+
+/// A multiplier with a smaller part of the largest weight does not act.
+const LEAST_WEIGHT: f64 = 1e-9;
+/// A force smaller than this part of the one that causes it is rounding.
+const LEAST_PART: f64 = 1e-9;
+
+/// D = ∫ψφ, M = ∫ψN and the weights w = ∫ψ of the multipliers (m), on the partition at an instant. The multipliers are
+/// those of the nodes of the slave; N are the hats of the master.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coupling {
+    segments: Vec<Segment>,
+    /// Segments of the edges before each edge of the slave, and of all.
+    before: Vec<usize>,
+    shapes: Vec<DualShape>,
+    /// ξ of the nodes of the master (m), as that of the slave in the undeformed mesh.
+    places: Vec<f64>,
+    /// Rows of D: the values at the node before, at the node and at the node after it.
+    slave: Vec<[f64; 3]>,
+    /// The columns of each row of M, from the first one to before the last one.
+    columns: Vec<[usize; 2]>,
+    /// Where the values of each row begin.
+    start: Vec<usize>,
+    master: Vec<f64>,
+    weights: Vec<f64>,
+    least: f64,
+}
+
+impl Coupling {
+    /// Computes all anew, in the same memory: the slave has moved by `shift` (m) along the tangent against the master.
+    /// Nodes nearer than `tolerance` (m) are at one place.
+    pub(super) fn update(&mut self, [slave, master]: [&Side; 2], shift: f64, tolerance: f64) {
+        place(slave, master, shift, tolerance, &mut self.places);
+        segments(slave, master, &self.places, &mut self.segments);
+        self.arrange(slave, master);
+        for (edge, &first) in slave.edges().iter().enumerate() {
+            self.add_edge([slave.xi()[first], slave.xi()[first + 1]], edge, first, master);
+        }
+        for (weight, row) in self.weights.iter_mut().zip(&self.slave) {
+            *weight = row[0] + row[1] + row[2];
+        }
+        self.least = LEAST_WEIGHT * self.weights.iter().copied().fold(0.0, f64::max);
+    }
+
+    /// Counts the segments of each edge and makes room for the rows.
+    fn arrange(&mut self, slave: &Side, master: &Side) {
+        let Self { segments, before, columns, .. } = self;
+        before.clear();
+        columns.clear();
+        columns.resize(slave.len(), [usize::MAX, 0]);
+        let mut next = 0;
+        for (edge, &first) in slave.edges().iter().enumerate() {
+            before.push(next);
+            while let Some(segment) = segments.get(next).filter(|segment| segment.slave == edge) {
+                let low = master.edges()[segment.master];
+                for columns in &mut columns[first..first + 2] {
+                    *columns = [columns[0].min(low), columns[1].max(low + 2)];
+                }
+                next += 1;
+            }
+        }
+        before.push(next);
+        self.start.clear();
+        let mut size = 0;
+        for columns in columns {
+            self.start.push(size);
+            columns[0] = columns[0].min(columns[1]);
+            size += columns[1] - columns[0];
+        }
+        self.start.push(size);
+        self.master.clear();
+        self.master.resize(size, 0.0);
+        self.slave.clear();
+        self.slave.resize(slave.len(), [0.0; 3]);
+        self.weights.resize(slave.len(), 0.0);
+        self.shapes.clear();
+    }
+
+    /// Adds the part of one edge of the slave, from `ends[0]` to `ends[1]`.
+    fn add_edge(&mut self, ends: [f64; 2], edge: usize, first: usize, master: &Side) {
+        let segments = self.before[edge]..self.before[edge + 1];
+        let moments = Moments::of(ends, &self.segments[segments.clone()]);
+        let shape = moments.shape(ends[1] - ends[0]);
+        self.shapes.push(shape);
+        let [one, two] = moments.hats;
+        match shape {
+            DualShape::None => return,
+            DualShape::Both(_) => {
+                self.slave[first][1] += one;
+                self.slave[first + 1][1] += two;
+            }
+            DualShape::One(0) => {
+                self.slave[first][1] += one;
+                self.slave[first][2] += two;
+            }
+            DualShape::One(_) => {
+                self.slave[first + 1][0] += one;
+                self.slave[first + 1][1] += two;
+            }
+        }
+        let inverse = 1.0 / (ends[1] - ends[0]);
+        for segment in &self.segments[segments] {
+            let low = master.edges()[segment.master];
+            let [a, b] = [self.places[low], self.places[low + 1]];
+            let scale = 1.0 / (b - a);
+            let hat = segment.ends.map(|end| (end - a) * scale);
+            let dual = segment.ends.map(|end| shape.dual((end - ends[0]) * inverse));
+            let sixth = (segment.ends[1] - segment.ends[0]) / 6.0;
+            for k in 0..2 {
+                let [f, g] = [dual[0][k], dual[1][k]];
+                // Both factors are linear: exact.
+                let second = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
+                let at = self.start[first + k] + low - self.columns[first + k][0];
+                self.master[at] += 3.0 * sixth * (f + g) - second;
+                self.master[at + 1] += second;
+            }
+        }
+    }
+
+    /// Number of multipliers, one for each node of the slave.
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.weights.is_empty()
+    }
+
+    /// The weight w_k of a multiplier (m), ∫ψ_k = ∫χ_k.
+    #[inline]
+    #[must_use]
+    pub fn weight(&self, node: usize) -> f64 {
+        self.weights[node]
+    }
+
+    /// Whether the multiplier of a node acts: the master covers enough of its edges.
+    #[inline]
+    #[must_use]
+    pub fn is_active(&self, node: usize) -> bool {
+        self.weights[node] > self.least
+    }
+
+    /// The segments, in ascending order of ξ.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// The segments on an edge of the slave.
+    #[must_use]
+    pub fn segments_of(&self, edge: usize) -> &[Segment] {
+        &self.segments[self.before[edge]..self.before[edge + 1]]
+    }
+
+    /// The shape functions of the multipliers on an edge of the slave.
+    #[must_use]
+    pub fn shape(&self, edge: usize) -> DualShape {
+        self.shapes[edge]
+    }
+
+    /// ξ of the nodes of the master (m), as that of the slave in the undeformed mesh.
+    #[must_use]
+    pub fn places(&self) -> &[f64] {
+        &self.places
+    }
+
+    /// The row of D of a multiplier (m): its values at the node before, at the node itself and at the one after it. Where
+    /// the master ends on an edge, one of its neighbours may have a value that is not 0.
+    #[inline]
+    #[must_use]
+    pub fn slave_row(&self, node: usize) -> [f64; 3] {
+        self.slave[node]
+    }
+
+    /// The row of M of a multiplier (m): the node of the master that its first value belongs to, and the values.
+    #[inline]
+    #[must_use]
+    pub fn master_row(&self, node: usize) -> (usize, &[f64]) {
+        (self.columns[node][0], &self.master[self.start[node]..self.start[node + 1]])
+    }
+
+    /// The nodes of the master on which a multiplier acts, but for rounding.
+    pub(super) fn acts_on(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        let ((first, row), least) = (self.master_row(node), LEAST_PART * self.weights[node]);
+        row.iter().enumerate().filter(move |(_, value)| value.abs() > least).map(move |(at, _)| first + at)
+    }
+
+    /// (D f − M f')_k of a field on the slave and one on the master.
+    #[inline]
+    #[must_use]
+    pub fn difference(&self, node: usize, slave: impl Fn(usize) -> f64, master: impl Fn(usize) -> f64) -> f64 {
+        let [before, own, after] = self.slave[node];
+        let mut sum = own * slave(node);
+        if before != 0.0 {
+            sum += before * slave(node - 1);
+        }
+        if after != 0.0 {
+            sum += after * slave(node + 1);
+        }
+        let (first, row) = self.master_row(node);
+        row.iter().enumerate().fold(sum, |sum, (at, value)| sum - value * master(first + at))
+    }
+
+    /// The multipliers λ (N/m) of forces Dᵀλ on the nodes of the slave (N), one component of each. Those that do not act
+    /// are 0.
+    #[must_use]
+    pub fn multipliers(&self, force: &[f64]) -> Vec<f64> {
+        let mut rest = force.to_vec();
+        let active = |node: usize| self.is_active(node);
+        // An edge joins two multipliers one way only: no multiplier waits for itself.
+        for node in 1..rest.len() {
+            let after = self.slave[node - 1][2];
+            if after != 0.0 && active(node - 1) {
+                rest[node] -= after * rest[node - 1] / self.slave[node - 1][1];
+            }
+        }
+        for node in (0..rest.len()).rev() {
+            if node + 1 < rest.len() && self.slave[node + 1][0] != 0.0 && active(node + 1) {
+                rest[node] -= self.slave[node + 1][0] * rest[node + 1];
+            }
+            rest[node] = if active(node) { rest[node] / self.slave[node][1] } else { 0.0 };
+        }
+        rest
+    }
+}

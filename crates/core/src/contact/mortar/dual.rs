@@ -1,0 +1,79 @@
+//! The dual basis on the covered part of an edge.
+
+use super::partition::Segment;
+
+/// The shape functions of the multipliers on the covered part of an edge of the slave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DualShape {
+    /// Nothing of the edge is covered.
+    None,
+    /// At least half of it is: ψ_k = Σ_i c_ki φ_i, biorthogonal to the hats φ on the covered part, and χ = φ.
+    Both([[f64; 2]; 2]),
+    /// Less than half of it is: ψ = χ = 1 of this node, and nothing of the other one.
+    One(usize),
+}
+
+/// ∫φ_i and ∫φ_2² over the covered part of an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moments {
+    pub(super) hats: [f64; 2],
+    square: f64,
+    covered: f64,
+}
+
+impl Moments {
+    /// Over segments of an edge from `ends[0]` to `ends[1]`.
+    pub(super) fn of(ends: [f64; 2], segments: &[Segment]) -> Self {
+        let inverse = 1.0 / (ends[1] - ends[0]);
+        let (mut second, mut square, mut covered) = (0.0, 0.0, 0.0);
+        for segment in segments {
+            let hat = segment.ends.map(|end| (end - ends[0]) * inverse);
+            let length = segment.ends[1] - segment.ends[0];
+            covered += length;
+            second += 0.5 * length * (hat[0] + hat[1]);
+            square += length / 3.0 * (hat[0] * hat[0] + hat[0] * hat[1] + hat[1] * hat[1]);
+        }
+        Self { hats: [covered - second, second], square, covered }
+    }
+
+    /// The shape functions on an edge of this length.
+    pub(super) fn shape(&self, length: f64) -> DualShape {
+        let Self { hats: [first, second], square, covered } = *self;
+        if covered <= 0.0 {
+            return DualShape::None;
+        }
+        // All of an edge in two halves must not hang on rounding.
+        if covered < 0.5 * length * (1.0 - 1e-12) {
+            return DualShape::One(usize::from(second > first));
+        }
+        // D B⁻¹ with B = ∫φφᵀ.
+        let mixed = second - square;
+        let own = covered - 2.0 * second + square;
+        let inverse = 1.0 / (own * square - mixed * mixed);
+        let (one, two) = (first * inverse, second * inverse);
+        DualShape::Both([[one * square, -one * mixed], [-two * mixed, two * own]])
+    }
+}
+
+impl DualShape {
+    /// ψ of both nodes where the second hat has this value.
+    #[inline]
+    #[must_use]
+    pub fn dual(&self, second: f64) -> [f64; 2] {
+        match self {
+            Self::None => [0.0; 2],
+            Self::Both(c) => [0, 1].map(|k| c[k][0] + (c[k][1] - c[k][0]) * second),
+            Self::One(node) => [0, 1].map(|k| f64::from(u8::from(k == *node))),
+        }
+    }
+
+    /// χ of both nodes, the shape of the density, where the second hat has this value.
+    #[inline]
+    #[must_use]
+    pub fn density(&self, second: f64) -> [f64; 2] {
+        match self {
+            Self::Both(_) => [1.0 - second, second],
+            other => other.dual(second),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What the nodes of the contact surface face at an instant.
+
+use super::coupling::Coupling;
+use super::side::Side;
+use super::surfaces::SlidingSurfaces;
+use crate::contact::frame::dot;
+use crate::contact::surface::ContactSurface;
+
+/// What each node of the contact surface faces with some displacements of the mesh: a plane, a node, or the surface of
+/// another body that slides along.
+///
+/// A node of a slave whose multiplier acts has weighted values against the master, those of its contact condition. Other
+/// nodes of two surfaces that slide have the value against the point of the other surface at the same ξ, or against the
+/// nearest one if there is none.
+#[derive(Clone, Debug)]
+pub struct Facing<'a, const D: usize> {
+    surface: &'a ContactSurface<D>,
+    couplings: Vec<Coupling>,
+}
+
+/// A node of two surfaces that slide.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Slave(usize),
+    Master(usize),
+}
+
+impl<'a, const D: usize> Facing<'a, D> {
+    pub(crate) fn new(surface: &'a ContactSurface<D>, displacement: &[[f64; D]]) -> Self {
+        let mut facing = Self { surface, couplings: vec![Coupling::default(); surface.sliding().len()] };
+        facing.update(displacement);
+        facing
+    }
+
+    /// The same with other displacements (m).
+    pub fn update(&mut self, displacement: &[[f64; D]]) {
+        for (coupling, sliding) in self.couplings.iter_mut().zip(self.surface.sliding()) {
+            *coupling = sliding.coupling(self.surface, displacement);
+        }
+    }
+
+    /// A nodal field at a node of the contact surface less that at what it faces: displacement or velocity against the
+    /// obstacle.
+    #[must_use]
+    pub fn relative(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
+        let Some((sliding, coupling, place)) = self.place(at) else {
+            return self.surface.against_obstacle(at, field);
+        };
+        let value = |side: &Side, node: usize, c: usize| field[self.node(side, node)][c];
+        std::array::from_fn(|c| {
+            let values = (|node| value(sliding.slave(), node, c), |node| value(sliding.master(), node, c));
+            difference(sliding, coupling, place, values)
+        })
+    }
+
+    /// The gap of a node (m), eq. \[3\], with these displacements of all nodes of the mesh; infinite at a node that faces
+    /// nothing.
+    #[must_use]
+    pub fn gap(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
+        let Some((sliding, coupling, place)) = self.place(at) else {
+            return self.surface.gap(at, &self.surface.against_obstacle(at, displacement));
+        };
+        if !faces(sliding, coupling, place) {
+            return f64::INFINITY;
+        }
+        let eta = |side: &Side, node: usize| {
+            side.eta()[node] + dot(&displacement[self.node(side, node)], sliding.frame().normal())
+        };
+        let gap = difference(
+            sliding,
+            coupling,
+            place,
+            (|node| eta(sliding.slave(), node), |node| eta(sliding.master(), node)),
+        );
+        if matches!(place, Place::Slave(_)) { gap } else { -gap }
+    }
+
+    fn node(&self, side: &Side, node: usize) -> usize {
+        self.surface.nodes()[side.position(node)].node.index()
+    }
+
+    fn place(&self, at: usize) -> Option<(&'a SlidingSurfaces<D>, &Coupling, Place)> {
+        let index = self.surface.sliding_of(at)?;
+        let sliding = &self.surface.sliding()[index];
+        let slave = sliding.slave().node_at(at).map(Place::Slave);
+        let place = slave.or_else(|| sliding.master().node_at(at).map(Place::Master))?;
+        Some((sliding, &self.couplings[index], place))
+    }
+}
+
+/// Whether a node faces the other surface.
+fn faces<const D: usize>(sliding: &SlidingSurfaces<D>, coupling: &Coupling, place: Place) -> bool {
+    match place {
+        Place::Slave(node) => coupling.is_active(node),
+        Place::Master(node) => {
+            let (place, xi) = (coupling.places()[node], sliding.slave().xi());
+            let edges = sliding.slave().edges();
+            let after = edges.partition_point(|&first| xi[first] <= place);
+            after.checked_sub(1).is_some_and(|edge| place <= xi[edges[edge] + 1])
+        }
+    }
+}
+
+/// The value at a node less that at what it faces, of a field on the slave and one on the master.
+fn difference<const D: usize>(
+    sliding: &SlidingSurfaces<D>,
+    coupling: &Coupling,
+    place: Place,
+    (slave, master): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
+) -> f64 {
+    match place {
+        Place::Slave(node) if coupling.is_active(node) => {
+            coupling.difference(node, slave, master) / coupling.weight(node)
+        }
+        Place::Slave(node) => slave(node) - interpolated(coupling.places(), sliding.slave().xi()[node], master),
+        Place::Master(node) => master(node) - interpolated(sliding.slave().xi(), coupling.places()[node], slave),
+    }
+}
+
+/// The value at a place of a field that is linear between nodes at these places, and constant beyond.
+fn interpolated(places: &[f64], place: f64, field: impl Fn(usize) -> f64) -> f64 {
+    let after = places.partition_point(|&other| other <= place);
+    if after == 0 || after == places.len() {
+        return field(after.saturating_sub(1));
+    }
+    let part = (place - places[after - 1]) / (places[after] - places[after - 1]);
+    field(after - 1) + part * (field(after) - field(after - 1))
+}

@@ -1,0 +1,32 @@
+//! Surfaces of two bodies that slide along each other: dual mortar multipliers on the nodes of one of them, the slave.
+//!
+//! Places on both surfaces have a coordinate ξ along one constant tangent t. It moves with the body as a whole, so that
+//! lengths in ξ stay those of the undeformed mesh. The [`Coupling`] at an instant has the matrices D and M of the
+//! multipliers λ (N/m): the forces on the slave are Dᵀλ, those on the master −Mᵀλ, and (D f − M f')_k / w_k is the
+//! weighted value of a field f on the slave less a field f' on the master.
+//!
+//! Wohlmuth, *A mortar finite element method using dual spaces for the Lagrange multiplier*; the part of an edge that the
+//! other surface covers has a dual basis of its own.
+
+mod coupling;
+mod dual;
+mod facing;
+mod friction;
+mod gram;
+mod normal;
+mod partition;
+mod side;
+mod skyline;
+mod step;
+mod surfaces;
+#[cfg(test)]
+mod tests;
+
+pub use coupling::Coupling;
+pub use dual::DualShape;
+pub use facing::Facing;
+pub use partition::Segment;
+pub use side::Side;
+pub(crate) use step::SlidingContact;
+pub use surfaces::SlidingSurfaces;
+pub(crate) use surfaces::tangent;

@@ -1,0 +1,126 @@
+//! Symmetric matrices with few entries beside the diagonal.
+
+/// The lower half of a symmetric matrix, row by row: from the first column that is not 0 to the diagonal. First columns
+/// never fall from row to row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Skyline {
+    first: Vec<usize>,
+    start: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Skyline {
+    /// Removes all rows.
+    pub(super) fn clear(&mut self) {
+        self.first.clear();
+        self.start.clear();
+        self.values.clear();
+    }
+
+    /// Adds a row from its first column on; its values are 0.
+    pub(super) fn add_row(&mut self, first: usize) -> &mut [f64] {
+        let (row, start) = (self.first.len(), self.values.len());
+        self.first.push(first);
+        self.start.push(start);
+        self.values.resize(start + row + 1 - first, 0.0);
+        &mut self.values[start..]
+    }
+
+    #[inline]
+    pub(super) fn first(&self, row: usize) -> usize {
+        self.first[row]
+    }
+
+    /// From the first column to the diagonal.
+    #[inline]
+    fn row(&self, row: usize) -> &[f64] {
+        let start = self.start[row];
+        &self.values[start..start + row + 1 - self.first[row]]
+    }
+
+    #[inline]
+    pub(super) fn diagonal(&self, row: usize) -> f64 {
+        self.values[self.start[row] + row - self.first[row]]
+    }
+
+    /// One component of the product with a vector.
+    #[inline]
+    pub(super) fn product(&self, row: usize, vector: &[f64]) -> f64 {
+        let first = self.first[row];
+        let mut sum: f64 = self.row(row).iter().zip(&vector[first..]).map(|(a, x)| a * x).sum();
+        let below = (row + 1..self.first.len()).take_while(|&other| self.first[other] <= row);
+        for other in below {
+            sum += self.values[self.start[other] + row - self.first[other]] * vector[other];
+        }
+        sum
+    }
+}
+
+/// The factors L D Lᵀ of some rows and columns of a positive definite matrix.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Factors {
+    lower: Skyline,
+    /// 1/D.
+    inverse: Vec<f64>,
+}
+
+impl Factors {
+    /// Factorises the rows and columns of a set, in ascending order. Whether the part is positive definite.
+    pub(super) fn factorise(&mut self, matrix: &Skyline, set: &[usize]) -> bool {
+        self.lower.clear();
+        self.inverse.clear();
+        let mut left = 0;
+        for (row, &of) in set.iter().enumerate() {
+            while set[left] < matrix.first(of) {
+                left += 1;
+            }
+            let begin = self.lower.values.len();
+            self.lower.add_row(left);
+            let (done, now) = self.lower.values.split_at_mut(begin);
+            let given = matrix.row(of);
+            let mut pivot = 0.0;
+            for column in left..=row {
+                let mut value = given[set[column] - matrix.first(of)];
+                if column == row {
+                    pivot += value;
+                    now[column - left] = 1.0;
+                    continue;
+                }
+                let (first, start) = (self.lower.first[column], self.lower.start[column]);
+                for at in first.max(left)..column {
+                    value -= now[at - left] * done[start + at - first];
+                }
+                now[column - left] = value;
+            }
+            for column in left..row {
+                let scaled = now[column - left] * self.inverse[column];
+                pivot -= now[column - left] * scaled;
+                now[column - left] = scaled;
+            }
+            if pivot.is_nan() || pivot <= 0.0 {
+                return false;
+            }
+            self.inverse.push(1.0 / pivot);
+        }
+        true
+    }
+
+    /// Solves for a right-hand side, in its place.
+    pub(super) fn solve(&self, vector: &mut [f64]) {
+        let count = self.inverse.len();
+        for row in 0..count {
+            let first = self.lower.first[row];
+            let sum: f64 = self.lower.row(row)[..row - first].iter().zip(&vector[first..row]).map(|(l, x)| l * x).sum();
+            vector[row] -= sum;
+        }
+        for (value, inverse) in vector.iter_mut().zip(&self.inverse) {
+            *value *= inverse;
+        }
+        for row in (0..count).rev() {
+            let (first, value) = (self.lower.first[row], vector[row]);
+            for (x, l) in vector[first..row].iter_mut().zip(self.lower.row(row)) {
+                *x -= l * value;
+            }
+        }
+    }
+}

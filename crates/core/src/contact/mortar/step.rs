@@ -1,0 +1,217 @@
+//! Two surfaces that slide along each other at one step.
+
+use super::coupling::Coupling;
+use super::friction;
+use super::gram::gram;
+use super::normal::NormalProblem;
+use super::side::Side;
+use super::skyline::Skyline;
+use super::surfaces::SlidingSurfaces;
+use crate::contact::constraint::Prediction;
+use crate::contact::frame::dot;
+use crate::contact::surface::ContactSurface;
+
+/// Where all of the slave is farther from the master than this times the height of the master, no weighted gap is
+/// negative: ∫|ψ| is at most 4.6 ∫ψ.
+const FAR: f64 = 4.0;
+
+/// The contact of two surfaces that slide, solved anew at each step in the same memory. It depends on the prediction of
+/// the step alone.
+#[derive(Clone, Debug)]
+pub(crate) struct SlidingContact {
+    /// Among [`ContactSurface::sliding`].
+    index: usize,
+    coupling: Coupling,
+    normal_matrix: Skyline,
+    /// Another one only if the tangential motion of some node is prescribed.
+    tangential_matrix: Option<Skyline>,
+    scaled: Vec<f64>,
+    normal: NormalProblem,
+    /// Tangential multipliers (N/m), and their limits.
+    tangential: Vec<f64>,
+    limit: Vec<f64>,
+    right: Vec<f64>,
+    sides: [State; 2],
+}
+
+/// One side at a step, node by node.
+#[derive(Clone, Debug)]
+struct State {
+    /// 1/m (1/kg), for forces along n and along t.
+    inverse_mass: [Vec<f64>; 2],
+    guided: Vec<bool>,
+    /// η (m), the tangential displacement (m) at t_{n+1} and the tangential part of v_{n+½} (m/s), without contact.
+    eta: Vec<f64>,
+    along: Vec<f64>,
+    speed: Vec<f64>,
+    /// Normal and tangential force (N).
+    force: Vec<[f64; 2]>,
+}
+
+impl State {
+    fn new<const D: usize>(surface: &ContactSurface<D>, side: &Side, inverse_mass: &[f64]) -> Self {
+        let entries = || (0..side.len()).map(|node| &surface.nodes()[side.position(node)]);
+        let normal: Vec<f64> = entries().map(|contact| inverse_mass[contact.node.index()]).collect();
+        let guided: Vec<bool> = entries().map(|contact| contact.guided).collect();
+        let tangential = normal.iter().zip(&guided).map(|(inverse, guided)| if *guided { 0.0 } else { *inverse });
+        let zero = vec![0.0; side.len()];
+        Self {
+            inverse_mass: [normal.clone(), tangential.collect()],
+            guided,
+            eta: zero.clone(),
+            along: zero.clone(),
+            speed: zero,
+            force: vec![[0.0; 2]; side.len()],
+        }
+    }
+
+    /// The motion of a step without contact.
+    fn predict<const D: usize>(
+        &mut self,
+        (surface, side): (&ContactSurface<D>, &Side),
+        (normal, tangent): (&[f64; D], &[f64; D]),
+        prediction: &Prediction<'_, D>,
+    ) {
+        let [dt, h] = prediction.steps;
+        for (node, eta) in side.eta().iter().enumerate() {
+            let of = surface.nodes()[side.position(node)].node;
+            let velocity = prediction.velocity_after(of, h);
+            let (u, speed) = (&prediction.displacement[of.index()], dot(&velocity, tangent));
+            self.eta[node] = eta + dot(u, normal) + dt * dot(&velocity, normal);
+            self.along[node] = dot(u, tangent) + dt * speed;
+            self.speed[node] = speed;
+        }
+    }
+
+    /// The least and the largest η.
+    fn range(&self) -> [f64; 2] {
+        self.eta.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], eta| [low.min(*eta), high.max(*eta)])
+    }
+}
+
+impl SlidingContact {
+    /// Makes room for the surfaces of an index, with 1/m of all nodes (1/kg).
+    pub(crate) fn new<const D: usize>(surface: &ContactSurface<D>, index: usize, inverse_mass: &[f64]) -> Self {
+        let sliding = &surface.sliding()[index];
+        let sides = [sliding.slave(), sliding.master()].map(|side| State::new(surface, side, inverse_mass));
+        let guided = sides.iter().any(|side| side.guided.contains(&true));
+        Self {
+            index,
+            coupling: Coupling::default(),
+            normal_matrix: Skyline::default(),
+            tangential_matrix: guided.then(Skyline::default),
+            scaled: Vec::new(),
+            normal: NormalProblem::default(),
+            tangential: Vec::new(),
+            limit: Vec::new(),
+            right: Vec::new(),
+            sides,
+        }
+    }
+
+    /// Hands on the forces of a step on nodes of the contact surface (N), and then, without a force, the nodes that touch
+    /// at t_{n+1}.
+    pub(crate) fn react<const D: usize>(
+        &mut self,
+        surface: &ContactSurface<D>,
+        prediction: &Prediction<'_, D>,
+        mut act: impl FnMut(usize, Option<[f64; D]>),
+    ) {
+        let sliding = &surface.sliding()[self.index];
+        let (normal, tangent) = (sliding.frame().normal(), sliding.tangent());
+        for (state, side) in self.sides.iter_mut().zip([sliding.slave(), sliding.master()]) {
+            state.predict((surface, side), (normal, tangent), prediction);
+        }
+        if !self.touches(sliding, prediction) {
+            return;
+        }
+        self.solve(sliding, prediction.steps[1]);
+        self.add_up();
+        for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
+            for (node, &[press, along]) in state.force.iter().enumerate().filter(|(_, force)| **force != [0.0; 2]) {
+                let along = if state.guided[node] { 0.0 } else { along };
+                let force = std::array::from_fn(|c| press * normal[c] + along * tangent[c]);
+                act(side.position(node), Some(force));
+            }
+        }
+        for &k in self.normal.pressed() {
+            act(sliding.slave().position(k), None);
+            self.coupling.acts_on(k).for_each(|node| act(sliding.master().position(node), None));
+        }
+    }
+
+    /// Computes the coupling and b_n. Whether any weighted gap is negative.
+    fn touches<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
+        let [slave, master] = &self.sides;
+        let (low, [bottom, top]) = (slave.range()[0], master.range());
+        let shift = sliding.shift(|node| slave.along[node], |node| master.along[node]);
+        if !shift.is_finite() || low - top > FAR * (top - bottom) {
+            return false;
+        }
+        sliding.update(&mut self.coupling, shift);
+        let (coupling, [dt, h]) = (&self.coupling, prediction.steps);
+        let gap = |k: usize| coupling.difference(k, |node| slave.eta[node], |node| master.eta[node]);
+        self.right.clear();
+        self.right.extend((0..coupling.len()).map(gap));
+        let below =
+            |(k, gap): (usize, &f64)| coupling.is_active(k) && *gap < -prediction.tolerance * coupling.weight(k);
+        let touches = self.right.iter().enumerate().any(below);
+        self.right.iter_mut().for_each(|b| *b /= dt * h);
+        touches
+    }
+
+    /// Solves for the multipliers.
+    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, h: f64) {
+        let Self { coupling, sides: [slave, master], normal, right, .. } = self;
+        let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
+        gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.scaled);
+        normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
+        self.tangential.clear();
+        if sliding.law().friction() == 0.0 {
+            self.tangential.resize(coupling.len(), 0.0);
+            return;
+        }
+        let limit = |(k, force): (usize, &f64)| if slave.guided[k] { 0.0 } else { sliding.law().limit(*force) };
+        self.limit.clear();
+        self.limit.extend(normal.force().iter().enumerate().map(limit));
+        right.clear();
+        let slip = |k: usize| coupling.difference(k, |node| slave.speed[node], |node| master.speed[node]) / h;
+        right.extend((0..coupling.len()).map(slip));
+        let (matrix, start) = match &mut self.tangential_matrix {
+            Some(matrix) => {
+                gram(matrix, coupling, inverse(1), &mut self.scaled);
+                (&*matrix, None)
+            }
+            None => (&self.normal_matrix, Some(&*normal)),
+        };
+        friction::solve(matrix, right, &self.limit, start, (&mut self.tangential, &mut self.scaled));
+    }
+
+    /// Forces Dᵀλ on the slave and −Mᵀλ on the master.
+    fn add_up(&mut self) {
+        let Self { coupling, sides: [slave, master], normal, tangential, .. } = self;
+        slave.force.fill([0.0; 2]);
+        master.force.fill([0.0; 2]);
+        for &k in normal.pressed() {
+            let multipliers = [normal.force()[k], tangential[k]];
+            let add = |force: &mut [f64; 2], part: f64| (0..2).for_each(|c| force[c] += part * multipliers[c]);
+            for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
+                add(&mut slave.force[k + at - 1], part);
+            }
+            let (first, row) = coupling.master_row(k);
+            row.iter().zip(&mut master.force[first..]).for_each(|(part, force)| add(force, -part));
+        }
+    }
+
+    /// The master touches where a node of the slave that touches acts on it.
+    pub(crate) fn settle_master<const D: usize>(&self, surface: &ContactSurface<D>, touching: &mut [bool]) {
+        let sliding = &surface.sliding()[self.index];
+        let (slave, master) = (sliding.slave(), sliding.master());
+        (0..master.len()).for_each(|node| touching[master.position(node)] = false);
+        for k in 0..self.coupling.len() {
+            if touching[slave.position(k)] {
+                self.coupling.acts_on(k).for_each(|node| touching[master.position(node)] = true);
+            }
+        }
+    }
+}

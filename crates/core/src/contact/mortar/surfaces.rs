@@ -1,0 +1,119 @@
+//! Two surfaces that slide along each other.
+
+use super::coupling::Coupling;
+use super::side::Side;
+use crate::contact::coulomb::Coulomb;
+use crate::contact::frame::{Frame, dot};
+use crate::contact::surface::ContactSurface;
+
+/// What of two surfaces that slide along each other does not change: the slave, whose nodes have the multipliers, the
+/// master, and the constant frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlidingSurfaces<const D: usize> {
+    sides: [Side; 2],
+    frame: Frame<D>,
+    tangent: [f64; D],
+    law: Coulomb,
+    tolerance: f64,
+}
+
+/// The tangent of an interface: its normal, turned by a quarter.
+pub(crate) fn tangent<const D: usize>(normal: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|c| if c == 0 { normal[D - 1] } else { -normal[D - 1 - c] })
+}
+
+impl<const D: usize> SlidingSurfaces<D> {
+    /// From slave and master, with the unit normal from the master to the slave. Nodes nearer than `tolerance` (m) along
+    /// the interface are at one place.
+    pub(crate) fn new(sides: [Side; 2], normal: [f64; D], law: Coulomb, tolerance: f64) -> Self {
+        Self { sides, frame: Frame::new(normal), tangent: tangent(&normal), law, tolerance }
+    }
+
+    /// The slave: its nodes have the multipliers.
+    #[inline]
+    #[must_use]
+    pub fn slave(&self) -> &Side {
+        &self.sides[0]
+    }
+
+    /// The master.
+    #[inline]
+    #[must_use]
+    pub fn master(&self) -> &Side {
+        &self.sides[1]
+    }
+
+    /// The positions of all nodes in the contact surface: first those of the slave.
+    pub fn positions(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sides.iter().flat_map(|side| (0..side.len()).map(|node| side.position(node)))
+    }
+
+    /// The frame: its normal n points from the master to the slave.
+    #[inline]
+    #[must_use]
+    pub fn frame(&self) -> &Frame<D> {
+        &self.frame
+    }
+
+    /// The unit tangent t, along which ξ grows.
+    #[inline]
+    #[must_use]
+    pub fn tangent(&self) -> &[f64; D] {
+        &self.tangent
+    }
+
+    /// The law of contact.
+    #[inline]
+    #[must_use]
+    pub fn law(&self) -> Coulomb {
+        self.law
+    }
+
+    /// How far the slave has moved along the tangent against the master (m), from the tangential displacements of their
+    /// nodes: the difference of the means over both surfaces, by length.
+    ///
+    /// The mean over the body would need all its nodes at each step, and would turn with the body.
+    #[inline]
+    #[must_use]
+    pub fn shift(&self, slave: impl Fn(usize) -> f64, master: impl Fn(usize) -> f64) -> f64 {
+        self.slave().mean(slave) - self.master().mean(master)
+    }
+
+    /// D, M and the weights where the slave has moved so far against the master (m).
+    #[must_use]
+    pub fn coupling_at(&self, shift: f64) -> Coupling {
+        let mut coupling = Coupling::default();
+        self.update(&mut coupling, shift);
+        coupling
+    }
+
+    /// The same with these displacements of all nodes of the mesh (m). Those of the step after t_n are the predicted ones,
+    /// u_n + Δt_n (v_{n−½} + h_n M⁻¹(F_n − K u_n)), without contact.
+    #[must_use]
+    pub fn coupling(&self, surface: &ContactSurface<D>, displacement: &[[f64; D]]) -> Coupling {
+        let along = |side: &Side, node| self.along(surface, side, node, displacement);
+        self.coupling_at(self.shift(|node| along(self.slave(), node), |node| along(self.master(), node)))
+    }
+
+    /// The multipliers λ (N/m) of a step, in global axes, from the rows of the slave among the forces on the nodes of the
+    /// contact surface (N). `coupling` is that of the predicted displacements.
+    #[must_use]
+    pub fn multipliers(&self, coupling: &Coupling, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+        let slave = self.slave();
+        let component = |c: usize| {
+            let force: Vec<f64> = (0..slave.len()).map(|node| reaction[slave.position(node)][c]).collect();
+            coupling.multipliers(&force)
+        };
+        let components: [Vec<f64>; D] = std::array::from_fn(component);
+        (0..slave.len()).map(|node| std::array::from_fn(|c| components[c][node])).collect()
+    }
+
+    /// The tangential component of a field at a node of a side.
+    pub(super) fn along(&self, surface: &ContactSurface<D>, side: &Side, node: usize, field: &[[f64; D]]) -> f64 {
+        dot(&field[surface.nodes()[side.position(node)].node.index()], &self.tangent)
+    }
+
+    pub(super) fn update(&self, coupling: &mut Coupling, shift: f64) {
+        coupling.update(self.sides.each_ref(), shift, self.tolerance);
+    }
+}

@@ -1,0 +1,271 @@
+//! The matrices of the multipliers against what defines them.
+
+use super::coupling::Coupling;
+use super::gram::gram;
+use super::normal::{NormalProblem, relax};
+use super::side::Side;
+use super::skyline::{Factors, Skyline};
+use super::{DualShape, Segment};
+use proptest::prelude::*;
+
+/// Nodes nearer than this are at one place; lengths are of order 1.
+const ONE_PLACE: f64 = 1e-12;
+
+/// A side in one piece, from the ξ of its nodes.
+fn side(xi: &[f64]) -> Side {
+    Side::new(0, xi.to_vec(), vec![0.0; xi.len()], (0..xi.len() - 1).collect())
+}
+
+fn coupling(slave: &Side, master: &Side, shift: f64) -> Coupling {
+    let mut coupling = Coupling::default();
+    coupling.update([slave, master], shift, ONE_PLACE);
+    coupling
+}
+
+/// ∫fg over a segment, from f and g at both ends.
+fn integral(segment: &Segment, f: [f64; 2], g: [f64; 2]) -> f64 {
+    let length = segment.ends[1] - segment.ends[0];
+    // Simpson's rule, exact to the third degree.
+    length / 6.0 * (f[0] * g[0] + (f[0] + f[1]) * (g[0] + g[1]) + f[1] * g[1])
+}
+
+/// The second hat of an edge at the ends of a segment.
+fn hat(ends: [f64; 2], segment: &Segment) -> [f64; 2] {
+    segment.ends.map(|xi| (xi - ends[0]) / (ends[1] - ends[0]))
+}
+
+/// All that holds for any two surfaces.
+fn check(slave: &Side, master: &Side, shift: f64) {
+    let coupling = coupling(slave, master, shift);
+    let (xi, places) = (slave.xi(), coupling.places());
+    let covered: f64 = coupling.segments().iter().map(|s| s.ends[1] - s.ends[0]).sum();
+    let common = xi[xi.len() - 1].min(places[places.len() - 1]) - xi[0].max(places[0]);
+    // Rounding of some ten sums of lengths of order 1 to 10.
+    let rounding = 1e-13;
+    assert!((covered - common.max(0.0)).abs() < rounding, "{covered} of {common}");
+    let (mut weights, mut density) = (vec![0.0; slave.len()], vec![0.0; slave.len()]);
+    let mut hats = vec![0.0; slave.len()];
+    let mut biorthogonal = vec![[0.0; 2]; slave.edges().len()];
+    for segment in coupling.segments() {
+        let first = slave.edges()[segment.slave];
+        let second = hat([xi[first], xi[first + 1]], segment);
+        let shape = coupling.shape(segment.slave);
+        let dual = second.map(|hat| shape.dual(hat));
+        let chi = second.map(|hat| shape.density(hat));
+        for k in 0..2 {
+            // χ and ψ are partitions of unity on all that is covered, and χ ≥ 0.
+            assert!((dual[k][0] + dual[k][1] - 1.0).abs() < 1e-12 && (chi[k][0] + chi[k][1] - 1.0).abs() < 1e-12);
+            assert!(chi[k].iter().all(|x| *x > -1e-12));
+            weights[first + k] += integral(segment, [dual[0][k], dual[1][k]], [1.0; 2]);
+            density[first + k] += integral(segment, [chi[0][k], chi[1][k]], [1.0; 2]);
+        }
+        hats[first] += integral(segment, [1.0 - second[0], 1.0 - second[1]], [1.0; 2]);
+        hats[first + 1] += integral(segment, second, [1.0; 2]);
+        if matches!(shape, DualShape::Both(_)) {
+            biorthogonal[segment.slave][0] += integral(segment, [dual[0][0], dual[1][0]], second);
+            biorthogonal[segment.slave][1] +=
+                integral(segment, [dual[0][1], dual[1][1]], [1.0 - second[0], 1.0 - second[1]]);
+        }
+    }
+    assert!(biorthogonal.iter().flatten().all(|x| x.abs() < rounding), "{biorthogonal:?}");
+    let mut columns = [vec![0.0; slave.len()], vec![0.0; master.len()]];
+    for k in 0..slave.len() {
+        let (first, row) = coupling.master_row(k);
+        let w = coupling.weight(k);
+        assert!((w - weights[k]).abs() < rounding && (w - density[k]).abs() < rounding, "{k}");
+        assert!((row.iter().sum::<f64>() - w).abs() < rounding, "{k}");
+        row.iter().enumerate().for_each(|(at, value)| columns[1][first + at] += value);
+        for (at, value) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0) {
+            columns[0][k + at - 1] += value;
+        }
+    }
+    // A uniform pressure is that of the hats of both sides.
+    for (found, expected) in columns[0].iter().zip(&hats) {
+        assert!((found - expected).abs() < rounding, "{found} {expected}");
+    }
+    let back = self::coupling(master, slave, -shift);
+    for (j, found) in columns[1].iter().enumerate() {
+        let expected = back.slave_row(j)[1]
+            + if j > 0 { back.slave_row(j - 1)[2] } else { 0.0 }
+            + if j + 1 < back.len() { back.slave_row(j + 1)[0] } else { 0.0 };
+        assert!((found - expected).abs() < rounding, "{found} {expected}");
+    }
+    check_linear_fields(&coupling, slave);
+    check_multipliers(&coupling);
+}
+
+/// The weighted difference of one linear field on both sides is that on the nodes: 0.
+fn check_linear_fields(coupling: &Coupling, slave: &Side) {
+    let linear = |xi: f64| 3.0 - 2.0 * xi;
+    for k in 0..coupling.len() {
+        let difference =
+            coupling.difference(k, |node| linear(slave.xi()[node]), |node| linear(coupling.places()[node]));
+        assert!(difference.abs() < 1e-12, "{k}: {difference}");
+    }
+}
+
+/// Multipliers come back from their forces on the slave.
+fn check_multipliers(coupling: &Coupling) {
+    let given: Vec<f64> =
+        (0..coupling.len()).map(|k| if coupling.is_active(k) { 1.0 + (k as f64).sin() } else { 0.0 }).collect();
+    let mut force = vec![0.0; coupling.len()];
+    for (k, multiplier) in given.iter().enumerate() {
+        for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
+            force[k + at - 1] += part * multiplier;
+        }
+    }
+    for (k, (found, expected)) in coupling.multipliers(&force).iter().zip(&given).enumerate() {
+        // Rounding of forces of order 1 over weights down to 1e-9 of the largest.
+        let scale = coupling.weight(k).max(1e-300);
+        assert!((found - expected).abs() * scale < 1e-13, "{k}: {found} {expected}");
+    }
+}
+
+#[test]
+fn matching_surfaces_are_pairs() {
+    let xi = [0.0, 0.3, 0.5, 1.1, 1.15];
+    let (slave, master) = (side(&xi), side(&xi.map(|x| x + 7.0)));
+    let coupling = coupling(&slave, &master, 7.0);
+    let lengths = [0.15, 0.25, 0.4, 0.325, 0.025];
+    for k in 0..5 {
+        assert!((coupling.weight(k) - lengths[k]).abs() < 1e-15);
+        assert_eq!(coupling.slave_row(k)[0], 0.0);
+        assert_eq!(coupling.slave_row(k)[2], 0.0);
+        let (first, row) = coupling.master_row(k);
+        for (at, value) in row.iter().enumerate() {
+            let expected = if first + at == k { lengths[k] } else { 0.0 };
+            assert!((value - expected).abs() < 1e-15, "{k}: {row:?}");
+        }
+        assert_eq!(coupling.acts_on(k).collect::<Vec<_>>(), [k]);
+    }
+}
+
+/// A narrow master inside one edge, inside two, a narrow slave, and a master that leaves.
+#[test]
+fn one_side_may_be_narrower() {
+    let wide = side(&[0.0, 1.0, 2.0, 3.0]);
+    check(&wide, &side(&[1.2, 1.5]), 0.0);
+    check(&wide, &side(&[1.6, 1.7, 1.9]), 0.0);
+    check(&side(&[1.2, 1.5]), &wide, 0.0);
+    check(&wide, &side(&[0.6, 0.8, 1.3]), 0.0);
+    for step in 0..=50 {
+        check(&wide, &side(&[0.0, 0.7, 1.4, 2.2, 3.1]), 0.07 * f64::from(step));
+    }
+    let apart = coupling(&wide, &side(&[0.0, 0.7, 1.4]), 1.5);
+    assert!(apart.segments().is_empty() && (0..4).all(|k| !apart.is_active(k)));
+}
+
+/// The node inside the overlap, and in the middle of an edge the nearer one, has the multiplier.
+#[test]
+fn an_edge_that_is_covered_in_part_has_one_multiplier() {
+    let slave = side(&[0.0, 1.0, 2.0]);
+    let shape = |from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(0);
+    assert_eq!(shape(0.6, 3.0), DualShape::One(1));
+    assert_eq!(shape(-1.0, 0.45), DualShape::One(0));
+    assert_eq!(shape(0.55, 0.8), DualShape::One(1));
+    assert!(matches!(shape(0.5, 3.0), DualShape::Both(_)));
+    assert_eq!(shape(1.5, 3.0), DualShape::None);
+}
+
+/// A surface in two pieces: nothing acts in the hole.
+#[test]
+fn a_surface_may_have_a_hole() {
+    let pieces = Side::new(0, vec![0.0, 1.0, 2.0, 3.0], vec![0.0; 4], vec![0, 2]);
+    let whole = side(&[0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 3.0]);
+    for (slave, master) in [(&pieces, &whole), (&whole, &pieces)] {
+        let coupling = coupling(slave, master, 0.0);
+        let covered: f64 = coupling.segments().iter().map(|s| s.ends[1] - s.ends[0]).sum();
+        assert!((covered - 2.0).abs() < 1e-14);
+        assert!(coupling.segments().iter().all(|s| s.ends[1] <= 1.0 || s.ends[0] >= 2.0));
+        check_linear_fields(&coupling, slave);
+        check_multipliers(&coupling);
+    }
+}
+
+/// Nodes with distances of 0.05 to 1.
+fn nodes() -> impl Strategy<Value = Vec<f64>> {
+    proptest::collection::vec(0.05..1.0_f64, 1..9).prop_map(|steps| {
+        let mut xi = vec![0.0];
+        steps.iter().for_each(|step| xi.push(xi[xi.len() - 1] + step));
+        xi
+    })
+}
+
+/// A as a full matrix, from its definition.
+fn dense(coupling: &Coupling, masses: [&[f64]; 2]) -> Vec<Vec<f64>> {
+    let count = coupling.len();
+    let mut rows = vec![vec![0.0; masses[0].len() + masses[1].len()]; count];
+    for (k, row) in rows.iter_mut().enumerate() {
+        let unit = |at: usize| move |node: usize| f64::from(u8::from(node == at));
+        for at in 0..masses[0].len() {
+            row[at] = coupling.difference(k, unit(at), |_| 0.0);
+        }
+        for at in 0..masses[1].len() {
+            row[masses[0].len() + at] = coupling.difference(k, |_| 0.0, unit(at));
+        }
+    }
+    let inverse: Vec<f64> = masses.concat();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&inverse).map(|((a, b), m)| a * b * m).sum::<f64>();
+    (0..count).map(|k| (0..count).map(|l| product(&rows[k], &rows[l])).collect()).collect()
+}
+
+proptest! {
+    #[test]
+    fn any_partition(slave in nodes(), master in nodes(), part in -0.2..1.2_f64) {
+        let shift = part * (slave[slave.len() - 1] + master[master.len() - 1]) - slave[slave.len() - 1];
+        check(&side(&slave), &side(&master), -shift);
+    }
+
+    /// The matrix is that of its definition; the normal problem is solved; relaxation finds the same.
+    #[test]
+    fn the_normal_problem(
+        slave in nodes(), master in nodes(), part in 0.2..0.8_f64,
+        given in proptest::collection::vec(-1.0..0.5_f64, 9), light in 0.1..1.0_f64,
+    ) {
+        let shift = part * (slave[slave.len() - 1] + master[master.len() - 1]) - slave[slave.len() - 1];
+        let coupling = coupling(&side(&slave), &side(&master), -shift);
+        let inverse: [Vec<f64>; 2] = [slave.iter().map(|x| light + x.fract()).collect(), vec![1.0; master.len()]];
+        let mut matrix = Skyline::default();
+        gram(&mut matrix, &coupling, inverse.each_ref().map(|m| &m[..]), &mut Vec::new());
+        let full = dense(&coupling, inverse.each_ref().map(|m| &m[..]));
+        let right: Vec<f64> = (0..slave.len()).map(|k| given[k] * coupling.weight(k)).collect();
+        let mut problem = NormalProblem::default();
+        problem.solve(&matrix, &right, |k| coupling.is_active(k));
+        let mut relaxed = vec![0.0; slave.len()];
+        relax(&matrix, &right, &mut relaxed, |k, f| if coupling.is_active(k) { f.max(0.0) } else { 0.0 });
+        for k in (0..slave.len()).filter(|&k| coupling.is_active(k)) {
+            let product: f64 = full[k].iter().zip(problem.force()).map(|(a, x)| a * x).sum();
+            prop_assert!((matrix.product(k, problem.force()) - product).abs() < 1e-12 * (1.0 + product.abs()));
+            let (force, residual) = (problem.force()[k], product + right[k]);
+            prop_assert!(force >= 0.0 && residual > -1e-12 && (force == 0.0 || residual.abs() < 1e-12));
+            // Both are forces of order 1 on the node.
+            prop_assert!((force - relaxed[k]).abs() * coupling.weight(k) < 1e-9, "{} {}", force, relaxed[k]);
+        }
+    }
+}
+
+/// A set of rows of a band of width 3, against the product.
+#[test]
+fn factors_solve_a_part_of_the_matrix() {
+    let mut matrix = Skyline::default();
+    for row in 0..12_usize {
+        let first = row.saturating_sub(3);
+        for (value, column) in matrix.add_row(first).iter_mut().zip(first..) {
+            *value = if row == column { 4.0 } else { 1.0 / (1 + row - column) as f64 };
+        }
+    }
+    let set = [0, 1, 3, 4, 5, 8, 9, 11];
+    let mut factors = Factors::default();
+    assert!(factors.factorise(&matrix, &set));
+    let mut solution: Vec<f64> = (0..set.len()).map(|k| (k as f64).cos()).collect();
+    factors.solve(&mut solution);
+    let mut all = vec![0.0; 12];
+    set.iter().zip(&solution).for_each(|(&k, x)| all[k] = *x);
+    for (row, &k) in set.iter().enumerate() {
+        assert!((matrix.product(k, &all) - (row as f64).cos()).abs() < 1e-14);
+    }
+    let mut indefinite = Skyline::default();
+    indefinite.add_row(0)[0] = 1.0;
+    indefinite.add_row(0).copy_from_slice(&[2.0, 1.0]);
+    assert!(!factors.factorise(&indefinite, &[0, 1]));
+}

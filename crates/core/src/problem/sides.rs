@@ -1,0 +1,104 @@
+//! The two sides of an interface.
+
+use super::candidates::along_the_boundary;
+use super::{Cause, HeldBy, boundary};
+use crate::contact::{ContactSurface, Interface, dot};
+use crate::ids::{FacetId, NodeId};
+use crate::material::{Elastic, Law};
+use crate::mesh::Mesh;
+
+/// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
+const FACES: f64 = 0.5;
+
+/// The data of a problem that interfaces need.
+pub(super) struct Bodies<'m, const D: usize, const N: usize> {
+    pub(super) mesh: &'m Mesh<D, N>,
+    /// For each node the first node of its body; empty without interfaces.
+    pub(super) body: Vec<NodeId>,
+    pub(super) held: Vec<Option<HeldBy>>,
+    pub(super) fixed: Vec<[bool; D]>,
+    /// The law of the element that a facet belongs to.
+    pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
+}
+
+/// One side of an interface.
+pub(super) struct Side<const D: usize> {
+    pub(super) facets: Vec<FacetId>,
+    /// Nodes along the boundary.
+    pub(super) nodes: Vec<NodeId>,
+    /// Σ of outward normals times areas (m² or 1).
+    pub(super) outward: [f64; D],
+    body: NodeId,
+}
+
+impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// Area of a facet with section or thickness (m²).
+    pub(super) fn area(&self, facet: FacetId) -> f64 {
+        self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
+    }
+
+    /// Both sides of an interface, which are of different bodies with one hypothesis.
+    pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {
+        let [first, second] = interface.groups();
+        let sides = [self.side(first)?, self.side(second)?];
+        if sides[0].body == sides[1].body {
+            return Err(Cause::SameBody { groups: interface.groups().map(str::to_string) });
+        }
+        let [first, second] = sides.each_ref().map(|side| (self.law)(side.facets[0]).hypothesis());
+        if first == second { Ok(sides) } else { Err(Cause::PlanesDiffer) }
+    }
+
+    /// Whether all edges face the other side, with the normal from the second one to the first.
+    pub(super) fn check_directions(&self, sides: [&Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
+        let away = normal.map(|n| -n);
+        for (side, outward) in sides.into_iter().zip([&away, normal]) {
+            let faces = |&facet: &FacetId| dot(&self.mesh.facet_normal(facet).0, outward) >= FACES;
+            if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
+                let nodes = self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+                let outward = Box::new([away.to_vec(), normal.to_vec()]);
+                return Err(Cause::TurnedAway { nodes, outward });
+            }
+        }
+        Ok(())
+    }
+
+    /// The facets of a group, which are free and of one body.
+    fn side(&self, group: &str) -> Result<Side<D>, Cause> {
+        let facets = boundary::facet_group(self.mesh, group)?.to_vec();
+        let nodes_of = |facet: FacetId| self.mesh.facets()[facet.index()].nodes;
+        let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
+        if let Some(&facet) = facets.iter().find(|facet| self.mesh.facets()[facet.index()].neighbour.is_some()) {
+            return Err(Cause::InnerFacet { nodes: shown(facet) });
+        }
+        if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
+            return Err(Cause::NotFree { nodes: shown(facet), by });
+        }
+        let body_of = |facet: FacetId| self.body[nodes_of(facet)[0].index()];
+        let body = body_of(facets[0]);
+        if facets.iter().any(|&facet| body_of(facet) != body) {
+            return Err(Cause::SeveralBodies { group: group.to_string() });
+        }
+        let mut outward = [0.0; D];
+        for &facet in &facets {
+            let (normal, area) = self.mesh.facet_normal(facet);
+            (0..D).for_each(|c| outward[c] += area * normal[c]);
+        }
+        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, body })
+    }
+}
+
+/// Whether no node may touch anything else.
+pub(super) fn check_nodes<const D: usize>(surface: &ContactSurface<D>, sides: &[Side<D>; 2]) -> Result<(), Cause> {
+    for node in sides.iter().flat_map(|side| &side.nodes) {
+        if surface.nodes().iter().any(|contact| contact.node == *node) {
+            return Err(Cause::TwoContacts { node: node.index() });
+        }
+    }
+    Ok(())
+}
+
+/// A vector of length 1.
+pub(super) fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
+    let length = dot(vector, vector).sqrt();
+    vector.map(|x| x / length)
+}

@@ -1,0 +1,129 @@
+//! Two surfaces of different bodies that may slide along each other.
+
+use super::sides::{Bodies, Side, check_nodes, unit};
+use super::{Cause, candidates};
+use crate::contact::{
+    ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
+};
+use crate::ids::{FacetId, NodeId};
+
+/// Places nearer than this part of the size of the mesh are one.
+const ONE_PLACE: f64 = 1e-12;
+/// Surfaces that stick out beyond each other by less than this part of their length are as long as each other.
+const OVERHANG: f64 = 1e-9;
+
+/// The facets of a side in ascending order of ξ, each with its nodes and their ξ (m).
+type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
+
+/// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and the
+/// other way round.
+pub(super) fn add<const D: usize, const N: usize>(
+    surface: &mut ContactSurface<D>,
+    bodies: &Bodies<'_, D, N>,
+    interface: &Interface,
+    displacement: &[[f64; D]],
+) -> Result<(), Cause> {
+    let sides = bodies.sides(interface)?;
+    check_nodes(surface, &sides)?;
+    let slave = bodies.slave(&sides, displacement);
+    let normal = unit(&sides[slave].outward).map(|n| -n);
+    bodies.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
+    // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
+    let origin = bodies.mesh.points()[sides[slave].nodes[0].index()];
+    let mut lines = Vec::new();
+    for (k, side) in sides.iter().enumerate() {
+        let frame = if k == slave { normal } else { normal.map(|n| -n) };
+        let group = interface.groups()[k].to_string();
+        let facing = Obstacle::surface(frame, interface.law(), group, Some(surface.sliding().len()));
+        lines.push(bodies.add_side(surface, side, (&normal, &origin), facing)?);
+    }
+    let [Some(first), Some(second)] = [lines.pop(), lines.pop()] else { return Ok(()) };
+    let ordered = if slave == 1 { [first, second] } else { [second, first] };
+    let tolerance = ONE_PLACE * bodies.mesh.size();
+    surface.add_sliding(SlidingSurfaces::new(ordered, normal, interface.law(), tolerance));
+    Ok(())
+}
+
+impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// Which side is the slave: the one that sticks out less beyond the other one at the start; of two that do so alike,
+    /// that with the shorter edges.
+    fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
+        let along = tangent(&unit(&sides[0].outward));
+        let ranges = sides.each_ref().map(|side| {
+            let places = side.nodes.iter().map(|node| {
+                let (x, u) = (&self.mesh.points()[node.index()], &displacement[node.index()]);
+                dot(x, &along) + dot(u, &along)
+            });
+            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], xi| [low.min(xi), high.max(xi)])
+        });
+        let [first, second] = ranges.map(|[low, high]| high - low);
+        let common = ranges[0][1].min(ranges[1][1]) - ranges[0][0].max(ranges[1][0]);
+        let outside = [first, second].map(|length| length - common.max(0.0));
+        if (outside[0] - outside[1]).abs() > OVERHANG * first.max(second) {
+            return usize::from(outside[1] < outside[0]);
+        }
+        usize::from(sides[1].facets.len() > sides[0].facets.len())
+    }
+
+    /// Adds one side to the contact surface.
+    fn add_side(
+        &self,
+        surface: &mut ContactSurface<D>,
+        side: &Side<D>,
+        (normal, origin): (&[f64; D], &[f64; D]),
+        facing: Obstacle<D>,
+    ) -> Result<Line, Cause> {
+        let points = self.mesh.points();
+        let from_origin = |node: NodeId| -> [f64; D] { std::array::from_fn(|c| points[node.index()][c] - origin[c]) };
+        let along = tangent(normal);
+        let chain = self.chain(side, |node| dot(&from_origin(node), &along))?;
+        let (start, obstacle) = (surface.nodes().len(), surface.obstacles().len());
+        let (mut nodes, mut xi, mut edges, mut facets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (facet, ends) in chain {
+            if nodes.last() != Some(&ends[0].1) {
+                nodes.push(ends[0].1);
+                xi.push(ends[0].0);
+            }
+            let first = nodes.len() - 1;
+            nodes.push(ends[1].1);
+            xi.push(ends[1].0);
+            edges.push(first);
+            let nodes = self.mesh.facets()[facet.index()].nodes.map(|node| first + usize::from(node == ends[1].1));
+            facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
+        }
+        let contact = |&node: &NodeId| {
+            let held = self.fixed[node.index()];
+            if (0..D).any(|c| held[c] && normal[c].abs() > candidates::ALIGNED) {
+                return Err(Cause::HeldAcross { node: node.index() });
+            }
+            let (guided, undeformed_gap) = (held != [false; D], f64::INFINITY);
+            let contact =
+                ContactNode { node, obstacle, undeformed_gap, free: true, guided, opposite: None, beside: None };
+            Ok((contact, points[node.index()]))
+        };
+        let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
+        let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
+        surface.add(facing, contacts, facets);
+        Ok(Line::new(start, xi, eta, edges))
+    }
+
+    /// The facets of a side along the interface, of which none covers another one.
+    fn chain(&self, side: &Side<D>, xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
+        let ends = |&facet: &FacetId| {
+            let nodes = &self.mesh.facets()[facet.index()].nodes;
+            let mut ends = [nodes[0], nodes[D - 1]].map(|node| (xi(node), node));
+            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (facet, ends)
+        };
+        let mut chain: Chain = side.facets.iter().map(ends).collect();
+        chain.sort_by(|a, b| a.1[0].0.total_cmp(&b.1[0].0));
+        for pair in chain.windows(2) {
+            let [low, high] = [pair[1].1[0].0, pair[0].1[1].0];
+            if low < high - 1e-9 * (high - pair[0].1[0].0) {
+                let nodes = [0, 1].map(|k| pair[k].1.map(|(_, node)| node.index()).to_vec());
+                return Err(Cause::Covered { nodes: Box::new(nodes) });
+            }
+        }
+        Ok(chain)
+    }
+}
