@@ -24,6 +24,13 @@ pub enum EstimateError {
     /// Maps that cannot be kept.
     #[error(transparent)]
     Request(#[from] RequestError),
+    /// Surfaces that slide along each other.
+    #[error(
+        "the surfaces \"{}\" and \"{}\" of two bodies do not match, and the estimate of such contact is not available \
+         yet; give both the same nodes along the interface and state them as matching, or simulate without an estimate",
+        .groups[0], .groups[1]
+    )]
+    NotMatching { groups: [String; 2] },
     /// No threads to work with.
     #[error("the threads of the estimate could not be started: {cause}")]
     Threads { cause: String },

@@ -15,6 +15,7 @@ mod free_vibration;
 mod from_rest;
 mod invariance;
 mod loads;
+mod mortar;
 mod numbering;
 mod pairs;
 mod resume;

@@ -95,3 +95,11 @@ fn a_replayed_step_is_no_checkpoint() {
     simulate(&problem, &times, &mut history, &mut Unobserved).unwrap();
     replay(&problem, &history, &mut Without).unwrap();
 }
+
+/// Two blocks that slide along each other: D and M follow from the fields alone.
+#[test]
+fn blocks_that_slide_go_on_from_every_step() {
+    let problem = crate::mortar::setup::Blocks { aside: 0.003, ..crate::mortar::setup::Blocks::oblique() }.problem();
+    let step = 0.9 * percute_core::dynamics::critical_time_step(&problem);
+    goes_on_from_every_step(&problem, &TimeGrid::uniform(STEPS as f64 * step, STEPS).unwrap());
+}

@@ -80,6 +80,9 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
             return Err(EstimateError::TooManyThreads { threads });
         }
         options.acceleration(D).check(options.reconstruction)?;
+        if let Some(interface) = problem.statement().interfaces.iter().find(|interface| !interface.is_matching()) {
+            return Err(EstimateError::NotMatching { groups: interface.groups().map(str::to_string) });
+        }
         // A pool of its own: a process forked later must not wait for threads it does not have.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;

@@ -19,6 +19,8 @@ pub struct Coupling {
     shapes: Vec<DualShape>,
     /// ξ of the nodes of the master (m), as that of the slave in the undeformed mesh.
     places: Vec<f64>,
+    /// 1 over the length of each edge of the master (1/m).
+    inverse: Vec<f64>,
     /// Rows of D: the values at the node before, at the node and at the node after it.
     slave: Vec<[f64; 3]>,
     /// The columns of each row of M, from the first one to before the last one.
@@ -36,9 +38,12 @@ impl Coupling {
     pub(super) fn update(&mut self, [slave, master]: [&Side; 2], shift: f64, tolerance: f64) {
         place(slave, master, shift, tolerance, &mut self.places);
         segments(slave, master, &self.places, &mut self.segments);
+        self.inverse.clear();
+        let places = &self.places;
+        self.inverse.extend(master.edges().iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
         self.arrange(slave, master);
-        for (edge, &first) in slave.edges().iter().enumerate() {
-            self.add_edge([slave.xi()[first], slave.xi()[first + 1]], edge, first, master);
+        for edge in 0..slave.edges().len() {
+            self.add_edge(edge, slave, master);
         }
         for (weight, row) in self.weights.iter_mut().zip(&self.slave) {
             *weight = row[0] + row[1] + row[2];
@@ -80,10 +85,12 @@ impl Coupling {
         self.shapes.clear();
     }
 
-    /// Adds the part of one edge of the slave, from `ends[0]` to `ends[1]`.
-    fn add_edge(&mut self, ends: [f64; 2], edge: usize, first: usize, master: &Side) {
-        let segments = self.before[edge]..self.before[edge + 1];
-        let moments = Moments::of(ends, &self.segments[segments.clone()]);
+    /// Adds the part of one edge of the slave.
+    fn add_edge(&mut self, edge: usize, slave: &Side, master: &Side) {
+        let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
+        let ends = [slave.xi()[first], slave.xi()[first + 1]];
+        let segments = &self.segments[self.before[edge]..self.before[edge + 1]];
+        let moments = Moments::of(ends, inverse, segments);
         let shape = moments.shape(ends[1] - ends[0]);
         self.shapes.push(shape);
         let [one, two] = moments.hats;
@@ -102,21 +109,21 @@ impl Coupling {
                 self.slave[first + 1][1] += two;
             }
         }
-        let inverse = 1.0 / (ends[1] - ends[0]);
-        for segment in &self.segments[segments] {
+        let lines = shape.lines();
+        for segment in segments {
             let low = master.edges()[segment.master];
-            let [a, b] = [self.places[low], self.places[low + 1]];
-            let scale = 1.0 / (b - a);
-            let hat = segment.ends.map(|end| (end - a) * scale);
-            let dual = segment.ends.map(|end| shape.dual((end - ends[0]) * inverse));
-            let sixth = (segment.ends[1] - segment.ends[0]) / 6.0;
-            for k in 0..2 {
-                let [f, g] = [dual[0][k], dual[1][k]];
+            let (from, scale) = (self.places[low], self.inverse[segment.master]);
+            let hat = segment.ends.map(|end| (end - from) * scale);
+            let second = segment.ends.map(|end| (end - ends[0]) * inverse);
+            let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
+            for (k, [start, slope]) in lines.into_iter().enumerate() {
+                let [f, g] = second.map(|second| start + slope * second);
                 // Both factors are linear: exact.
-                let second = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
+                let upper = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
                 let at = self.start[first + k] + low - self.columns[first + k][0];
-                self.master[at] += 3.0 * sixth * (f + g) - second;
-                self.master[at + 1] += second;
+                let row = &mut self.master[at..at + 2];
+                row[0] += 3.0 * sixth * (f + g) - upper;
+                row[1] += upper;
             }
         }
     }
@@ -206,7 +213,7 @@ impl Coupling {
             sum += after * slave(node + 1);
         }
         let (first, row) = self.master_row(node);
-        row.iter().enumerate().fold(sum, |sum, (at, value)| sum - value * master(first + at))
+        (first..).zip(row).fold(sum, |sum, (at, value)| sum - value * master(at))
     }
 
     /// The multipliers λ (N/m) of forces Dᵀλ on the nodes of the slave (N), one component of each. Those that do not act

@@ -22,9 +22,12 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Over segments of an edge from `ends[0]` to `ends[1]`.
-    pub(super) fn of(ends: [f64; 2], segments: &[Segment]) -> Self {
-        let inverse = 1.0 / (ends[1] - ends[0]);
+    /// Over segments of an edge from `ends[0]` to `ends[1]`, of which `inverse` is 1 over the length.
+    pub(super) fn of(ends: [f64; 2], inverse: f64, segments: &[Segment]) -> Self {
+        if covers(segments, ends) {
+            let length = ends[1] - ends[0];
+            return Self { hats: [0.5 * length; 2], square: length / 3.0, covered: length };
+        }
         let (mut second, mut square, mut covered) = (0.0, 0.0, 0.0);
         for segment in segments {
             let hat = segment.ends.map(|end| (end - ends[0]) * inverse);
@@ -42,6 +45,9 @@ impl Moments {
         if covered <= 0.0 {
             return DualShape::None;
         }
+        if covered == length {
+            return DualShape::Both([[2.0, -1.0], [-1.0, 2.0]]);
+        }
         // All of an edge in two halves must not hang on rounding.
         if covered < 0.5 * length * (1.0 - 1e-12) {
             return DualShape::One(usize::from(second > first));
@@ -55,7 +61,21 @@ impl Moments {
     }
 }
 
+/// Whether segments cover all between two ends.
+fn covers(segments: &[Segment], ends: [f64; 2]) -> bool {
+    let [Some(first), Some(last)] = [segments.first(), segments.last()] else { return false };
+    let joined = segments.windows(2).all(|pair| pair[0].ends[1] == pair[1].ends[0]);
+    joined && first.ends[0] == ends[0] && last.ends[1] == ends[1]
+}
+
 impl DualShape {
+    /// ψ of both nodes where the second hat is 0, and by how much it grows until the second hat is 1.
+    #[inline]
+    pub(super) fn lines(&self) -> [[f64; 2]; 2] {
+        let [start, end] = [0.0, 1.0].map(|second| self.dual(second));
+        [0, 1].map(|k| [start[k], end[k] - start[k]])
+    }
+
     /// ψ of both nodes where the second hat has this value.
     #[inline]
     #[must_use]

@@ -19,6 +19,9 @@ pub(super) fn solve(
         reduced.extend(normal.pressed().iter().map(|&k| -right[k]));
         normal.factors().solve(reduced);
         normal.pressed().iter().zip(&*reduced).for_each(|(&k, stick)| force[k] = *stick);
+        if force.iter().zip(limit).all(|(stick, limit)| stick.abs() <= *limit) {
+            return;
+        }
     }
     relax(matrix, right, force, |k, force| force.clamp(-limit[k], limit[k]));
 }

@@ -13,19 +13,34 @@ pub(super) fn gram(matrix: &mut Skyline, coupling: &Coupling, inverse: [&[f64]; 
         let (low, values) = coupling.master_row(row);
         scaled.clear();
         scaled.extend(values.iter().zip(&inverse[1][low..]).map(|(value, inverse)| value * inverse));
-        // Neighbours have a common node of the slave at most, others two nodes apart only where edges are cut.
+        // Where edges are cut, D joins nodes up to two apart.
         while first + 2 < row && !reaches(coupling, first, low) {
             first += 1;
         }
-        for (column, sum) in (first..).zip(matrix.add_row(first)) {
+        let sums = matrix.add_row(first);
+        for (column, sum) in (first..).zip(&mut *sums) {
             let (other_low, other) = coupling.master_row(column);
-            let common = low.max(other_low)..(low + values.len()).min(other_low + other.len());
-            for node in common {
-                *sum += scaled[node - low] * other[node - other_low];
+            let (from, to) = (low.max(other_low), (low + values.len()).min(other_low + other.len()));
+            if from < to {
+                let common = scaled[from - low..to - low].iter().zip(&other[from - other_low..]);
+                *sum = common.map(|(scaled, other)| scaled * other).sum();
             }
-            if row - column <= 2 {
-                *sum += slave_part([&coupling.slave_row(column), &own], column, row, inverse[0]);
+        }
+        let mut add = |apart: usize, product: f64, node: usize| {
+            if product != 0.0 {
+                sums[row - first - apart] += product * inverse[0][node];
             }
+        };
+        add(0, own[1] * own[1], row);
+        add(0, own[0] * own[0], row.wrapping_sub(1));
+        add(0, own[2] * own[2], row + 1);
+        if row > 0 {
+            let before = coupling.slave_row(row - 1);
+            add(1, own[0] * before[1], row - 1);
+            add(1, own[1] * before[2], row);
+        }
+        if row > 1 {
+            add(2, own[0] * coupling.slave_row(row - 2)[2], row - 1);
         }
     }
 }
@@ -34,17 +49,4 @@ pub(super) fn gram(matrix: &mut Skyline, coupling: &Coupling, inverse: [&[f64]; 
 fn reaches(coupling: &Coupling, row: usize, column: usize) -> bool {
     let (first, values) = coupling.master_row(row);
     first + values.len() > column
-}
-
-/// Σ_i D_ki D_li / m_i of two rows, at most two apart.
-fn slave_part(rows: [&[f64; 3]; 2], column: usize, row: usize, inverse: &[f64]) -> f64 {
-    let apart = row - column;
-    let mut sum = 0.0;
-    for at in apart..3 {
-        let product = rows[0][at] * rows[1][at - apart];
-        if product != 0.0 {
-            sum += product * inverse[column + at - 1];
-        }
-    }
-    sum
 }

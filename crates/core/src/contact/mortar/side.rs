@@ -9,6 +9,8 @@ pub struct Side {
     eta: Vec<f64>,
     /// The first node of each edge; the second one follows it.
     edges: Vec<usize>,
+    /// 1 over the length of each edge (1/m).
+    inverse: Vec<f64>,
     /// The share of each node in the mean of the surface.
     share: Vec<f64>,
 }
@@ -25,7 +27,8 @@ impl Side {
         }
         let length: f64 = share.iter().sum();
         share.iter_mut().for_each(|share| *share /= length);
-        Self { start, xi, eta, edges, share }
+        let inverse = edges.iter().map(|&first| 1.0 / (xi[first + 1] - xi[first])).collect();
+        Self { start, xi, eta, edges, inverse, share }
     }
 
     /// Number of nodes.
@@ -74,6 +77,12 @@ impl Side {
     #[must_use]
     pub fn edges(&self) -> &[usize] {
         &self.edges
+    }
+
+    /// 1 over the length of each edge along ξ (1/m).
+    #[inline]
+    pub(super) fn inverse(&self) -> &[f64] {
+        &self.inverse
     }
 
     /// The mean of a field over the surface, by length.

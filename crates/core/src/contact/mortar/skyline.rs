@@ -78,25 +78,20 @@ impl Factors {
             self.lower.add_row(left);
             let (done, now) = self.lower.values.split_at_mut(begin);
             let given = matrix.row(of);
-            let mut pivot = 0.0;
-            for column in left..=row {
-                let mut value = given[set[column] - matrix.first(of)];
-                if column == row {
-                    pivot += value;
-                    now[column - left] = 1.0;
-                    continue;
-                }
-                let (first, start) = (self.lower.first[column], self.lower.start[column]);
-                for at in first.max(left)..column {
-                    value -= now[at - left] * done[start + at - first];
-                }
-                now[column - left] = value;
-            }
             for column in left..row {
-                let scaled = now[column - left] * self.inverse[column];
-                pivot -= now[column - left] * scaled;
-                now[column - left] = scaled;
+                let (first, start) = (self.lower.first[column], self.lower.start[column]);
+                let from = first.max(left);
+                let other = &done[start + from - first..start + column - first];
+                let sum: f64 = now[from - left..column - left].iter().zip(other).map(|(y, l)| y * l).sum();
+                now[column - left] = given[set[column] - matrix.first(of)] - sum;
             }
+            let mut pivot = matrix.diagonal(of);
+            for (value, inverse) in now.iter_mut().zip(&self.inverse[left..row]) {
+                let scaled = *value * inverse;
+                pivot -= *value * scaled;
+                *value = scaled;
+            }
+            now[row - left] = 1.0;
             if pivot.is_nan() || pivot <= 0.0 {
                 return false;
             }

@@ -68,30 +68,38 @@ fn check(slave: &Side, master: &Side, shift: f64) {
         }
     }
     assert!(biorthogonal.iter().flatten().all(|x| x.abs() < rounding), "{biorthogonal:?}");
-    let mut columns = [vec![0.0; slave.len()], vec![0.0; master.len()]];
     for k in 0..slave.len() {
-        let (first, row) = coupling.master_row(k);
         let w = coupling.weight(k);
         assert!((w - weights[k]).abs() < rounding && (w - density[k]).abs() < rounding, "{k}");
+    }
+    check_columns(&coupling, &self::coupling(master, slave, -shift), &hats);
+    check_linear_fields(&coupling, slave);
+    check_multipliers(&coupling);
+}
+
+/// Rows of D and M have the weights for their sums. A uniform pressure is that of the hats of both sides: of the slave
+/// `hats`, of the master those of `back`, where the roles are exchanged.
+fn check_columns(coupling: &Coupling, back: &Coupling, hats: &[f64]) {
+    let rounding = 1e-13;
+    let mut columns = [vec![0.0; coupling.len()], vec![0.0; back.len()]];
+    for k in 0..coupling.len() {
+        let (first, row) = coupling.master_row(k);
+        let w = coupling.weight(k);
         assert!((row.iter().sum::<f64>() - w).abs() < rounding, "{k}");
         row.iter().enumerate().for_each(|(at, value)| columns[1][first + at] += value);
         for (at, value) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0) {
             columns[0][k + at - 1] += value;
         }
     }
-    // A uniform pressure is that of the hats of both sides.
-    for (found, expected) in columns[0].iter().zip(&hats) {
+    for (found, expected) in columns[0].iter().zip(hats) {
         assert!((found - expected).abs() < rounding, "{found} {expected}");
     }
-    let back = self::coupling(master, slave, -shift);
     for (j, found) in columns[1].iter().enumerate() {
         let expected = back.slave_row(j)[1]
             + if j > 0 { back.slave_row(j - 1)[2] } else { 0.0 }
             + if j + 1 < back.len() { back.slave_row(j + 1)[0] } else { 0.0 };
         assert!((found - expected).abs() < rounding, "{found} {expected}");
     }
-    check_linear_fields(&coupling, slave);
-    check_multipliers(&coupling);
 }
 
 /// The weighted difference of one linear field on both sides is that on the nodes: 0.

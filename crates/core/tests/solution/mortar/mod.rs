@@ -1,0 +1,8 @@
+//! Contact of two bodies that slide along each other, with any nodes.
+
+mod invariance;
+mod law;
+mod limits;
+mod patch;
+mod refusals;
+pub(crate) mod setup;

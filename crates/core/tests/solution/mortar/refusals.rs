@@ -1,0 +1,132 @@
+//! Statements that are refused, and starts.
+
+use super::setup::{Blocks, GAP, steps};
+use crate::run::{aluminium, fixed, run};
+use percute_core::contact::{Interface, Obstacle};
+use percute_core::dynamics::{SimulationError, check_start};
+use percute_core::load::Support;
+use percute_core::material::Elastic;
+use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::problem::{Cause, Initial, TriangleProblem};
+use percute_core::time::TimeGrid;
+
+fn cause(problem: Result<TriangleProblem, percute_core::problem::InputError>) -> Option<Cause> {
+    problem.err().map(|error| error.cause)
+}
+
+#[test]
+fn wrong_groups_are_refused() {
+    let blocks = Blocks::oblique();
+    let refusal = |first: &str, second: &str| {
+        let interface = Interface::sliding::<2>(first, second, 0.2).unwrap();
+        cause(blocks.bodies(blocks.mesh(), |v| v).interface(interface).build())
+    };
+    assert_eq!(refusal("upper.bottom", "lower.top"), None);
+    assert!(matches!(refusal("upper.bottom", "upper.top"), Some(Cause::SameBody { .. })));
+    assert!(matches!(refusal("upper.bottom", "lower.bottom"), Some(Cause::TurnedAway { .. })));
+    assert!(matches!(refusal("upper.bottom", "lower.left"), Some(Cause::TurnedAway { .. })));
+    assert!(matches!(refusal("upper.bottom", "anvil.top"), Some(Cause::UnknownGroup { .. })));
+    assert!(Interface::sliding::<2>("a", "b", -0.1).is_err());
+    assert!(Interface::sliding::<1>("a", "b", 0.1).is_err());
+}
+
+#[test]
+fn a_node_touches_one_thing_only() {
+    let blocks = Blocks::oblique();
+    let twice = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).interface(blocks.interface());
+    assert!(matches!(cause(twice.build()), Some(Cause::TwoContacts { .. })));
+    let floor = Obstacle::plane([0.0, -GAP], [0.0, 1.0], 0.0, None).unwrap();
+    let plane = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).obstacle(floor);
+    // Without a group, the plane may touch all that faces it: the bottom of the upper block, too.
+    assert!(matches!(cause(plane.build()), Some(Cause::TwoContacts { .. })));
+}
+
+#[test]
+fn plane_stress_meets_plane_stress_only() {
+    let strain = Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap();
+    let blocks = Blocks { materials: [aluminium(), strain], ..Blocks::oblique() };
+    let problem = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).build();
+    assert_eq!(cause(problem), Some(Cause::PlanesDiffer));
+}
+
+/// Supports may guide nodes along the interface, but not hold them across.
+#[test]
+fn supports_act_along_the_interface_alone() {
+    let blocks = Blocks { velocities: [[0.0, -20.0], [0.0, 20.0]], ..Blocks::oblique() };
+    let held = |components| {
+        let support = Support { group: "upper.left".into(), components, velocity: None };
+        blocks.bodies(blocks.mesh(), |v| v).support(support)
+    };
+    let still = Blocks { velocities: [[0.0; 2], [0.0, 20.0]], ..blocks };
+    let across = still.bodies(blocks.mesh(), |v| v).support(fixed("upper.left", [true, true]));
+    assert!(matches!(cause(across.interface(blocks.interface()).build()), Some(Cause::HeldAcross { .. })));
+    let problem = held([true, false]).support(fixed("lower.left", [true, false])).interface(blocks.interface());
+    let problem = problem.build().unwrap();
+    let run = run(&problem, &steps(&problem, 14e-6));
+    let surface = problem.surface();
+    let guided: Vec<usize> = (0..surface.nodes().len()).filter(|&at| surface.nodes()[at].guided).collect();
+    assert_eq!(guided.len(), 2);
+    let mut forces = 0;
+    for n in 0..=run.last() {
+        let step = run.history.step(n).unwrap();
+        for &at in &guided {
+            assert_eq!(step.displacement[surface.nodes()[at].node.index()][0], 0.0);
+            assert_eq!(step.reaction[at][0], 0.0);
+            forces += usize::from(step.reaction[at][1] != 0.0);
+        }
+    }
+    assert!(forces > 20, "{forces}");
+}
+
+#[test]
+fn overlaps_and_strikes_at_the_start_are_refused() {
+    let blocks = Blocks::oblique();
+    let nodes = blocks.mesh().node_count();
+    let upper = 15 * 12;
+    let down = |by: f64, velocities: [[f64; 2]; 2]| {
+        let blocks = Blocks { velocities, ..blocks };
+        let displacement = (0..nodes).map(|node| [0.0, if node < upper { -by } else { 0.0 }]).collect();
+        let bodies = blocks.bodies(blocks.mesh(), |v| v).initial_displacement(Initial::Nodal(displacement));
+        bodies.interface(blocks.interface()).build()
+    };
+    let Some(Cause::Overlaps { depth, .. }) = cause(down(3.0 * GAP, blocks.velocities)) else { panic!("not refused") };
+    assert!((depth - 2.0 * GAP).abs() < 1e-12 * GAP.sqrt(), "{depth}");
+    assert!(matches!(cause(down(GAP, blocks.velocities)), Some(Cause::StrikesAtStart { .. })));
+    // At rest on each other, and 1 µm apart.
+    down(GAP, [[5.0, 0.0], [0.0; 2]]).unwrap();
+    let near = down(GAP - 1e-6, [[0.0, -20.0], [0.0, 20.0]]).unwrap();
+    let step = |length: f64| TimeGrid::uniform(10.0 * length, 10).unwrap();
+    // 1 µm at 40 m/s: 25 ns. A node that stops needs a quarter of its way at least.
+    let error = check_start(&near, &step(1.1e-7)).unwrap_err();
+    let SimulationError::StartsTooNear { gap, speed, largest_step, .. } = error else { panic!("{error}") };
+    assert!((gap - 1e-6).abs() < 1e-15 && (speed - 40.0).abs() < 1e-12 && (largest_step - 1e-7).abs() < 1e-15);
+    check_start(&near, &step(0.9e-7)).unwrap();
+}
+
+/// Two steps of a stair, one above the other along the interface.
+#[test]
+fn edges_above_each_other_are_refused() {
+    // A C of three strips, open to the right; both inner sides that face up are named.
+    let strip = |y: f64| [[0.0, y], [2.0, y], [2.0, y + 1.0], [0.0, y + 1.0]];
+    let mut points: Vec<[f64; 2]> = [strip(0.0), strip(3.0)].concat();
+    points.extend([[0.0, 7.0], [2.0, 7.0], [2.0, 8.0], [0.0, 8.0]]);
+    points.extend([[-1.0, 0.0], [-1.0, 4.0]]);
+    let cells = [
+        [0, 1, 2],
+        [0, 2, 3],
+        [4, 5, 6],
+        [4, 6, 7],
+        [8, 9, 10],
+        [8, 10, 11],
+        [12, 0, 3],
+        [12, 3, 13],
+        [3, 4, 13],
+        [4, 7, 13],
+    ];
+    let groups = FacetGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
+    let mesh = TriangleMesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
+    assert_eq!(mesh.parts(), 2);
+    let interface = Interface::sliding::<2>("up", "down", 0.0).unwrap();
+    let problem = TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build();
+    assert!(matches!(cause(problem), Some(Cause::Covered { .. })));
+}
