@@ -268,13 +268,14 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     }
 
     /// The candidate node of an obstacle with the smallest gap at the start, as its position in the surface, and that
-    /// gap (m). None without candidates.
+    /// gap (m). None without candidates, or if none of them faces anything.
     #[must_use]
     pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
         let facing = self.surface.facing(&self.initial_displacement);
         let nodes = self.surface.nodes().iter().enumerate();
         let candidates = nodes.filter(|(_, c)| c.obstacle == obstacle && c.free);
-        candidates.map(|(at, _)| (at, self.start_of(at, &facing).0)).min_by(|a, b| a.1.total_cmp(&b.1))
+        let gaps = candidates.map(|(at, _)| (at, self.start_of(at, &facing).0)).filter(|(_, gap)| gap.is_finite());
+        gaps.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The smallest gap of the candidate nodes of an obstacle at the start (m), eq. \[3\].
