@@ -1,8 +1,9 @@
 //! The law of contact, momentum and energy where surfaces slide.
 
 use super::setup::{Blocks, steel, steps};
-use crate::run::{Run, run};
+use crate::run::{Run, run, swinging_steps};
 use percute_core::contact::{Coupling, SlidingSurfaces};
+use percute_core::dynamics::critical_time_step;
 
 /// What contact did in a run.
 #[derive(Debug, Default)]
@@ -41,8 +42,15 @@ fn weighted(
     coupling.difference(k, values, |node| along(sliding.master().position(node))) / coupling.weight(k)
 }
 
-/// Momentum, the law of contact for each multiplier, and the balance of energy.
+/// Momentum, the law of contact for each multiplier, and the balance of energy with equal steps.
 fn check(run: &Run<'_, 2, 3>) -> Seen {
+    let seen = check_steps(run);
+    check_energy(run);
+    seen
+}
+
+/// Momentum, and the law of contact for each multiplier.
+fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
     let mut seen = Seen::default();
     let start = run.momentum(0);
     let scale = run.problem.mass().iter().sum::<f64>() * fastest(run);
@@ -52,7 +60,6 @@ fn check(run: &Run<'_, 2, 3>) -> Seen {
         assert!((0..2).all(|c| (momentum[c] - start[c]).abs() <= 1e-12 * scale), "step {n}: {momentum:?} {start:?}");
         check_multipliers(run, n, &mut seen);
     }
-    check_energy(run);
     seen
 }
 
@@ -156,6 +163,14 @@ fn contact_gives_no_energy_without_sliding() {
         least = least.min(work);
     }
     assert!(least < 0.0);
+}
+
+#[test]
+fn steps_may_vary() {
+    let problem = Blocks::oblique().problem();
+    let run = run(&problem, &swinging_steps(critical_time_step(&problem), 14e-6, 3.0));
+    let seen = check_steps(&run);
+    assert!(seen.reactions > 300, "{seen:?}");
 }
 
 #[test]
