@@ -12,9 +12,9 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The nodes of the two face each other in pairs:
-    /// they differ by a gap along one common normal only, and each pair stays one during the run. The normal is the mean
-    /// one of the first group or, if the nodes do not face each other along it, of the second one.
+    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The nodes of the two face each other in
+    /// pairs: they differ by a gap along one common normal only, and each pair stays one during the run. The normal is
+    /// the mean one of the first group or, if the nodes do not face each other along it, of the second one.
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.
@@ -26,9 +26,9 @@ impl Interface {
         Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)?, matching: true })
     }
 
-    /// The same for two groups of edges of any nodes, which may slide along each other. The normal is the mean one of the
-    /// group that sticks out less beyond the other one along the interface, or of that with the shorter edges. Ends of bars
-    /// are always matching.
+    /// The same for two groups of edges of any nodes, which may slide along each other. The normal is the mean one of
+    /// the group that sticks out less beyond the other one along the interface, or of that with the shorter edges. Ends
+    /// of bars are always matching.
     ///
     /// # Errors
     /// As [`Interface::matching`].

@@ -14,8 +14,8 @@ pub struct ContactNode {
     pub node: NodeId,
     /// The obstacle it may touch.
     pub obstacle: usize,
-    /// Gap of its place in the undeformed mesh (m); infinite if it may touch all of a surface that slides along, of which
-    /// [`Facing::gap`] has the gap.
+    /// Gap of its place in the undeformed mesh (m); infinite if it may touch all of a surface that slides along, of
+    /// which [`Facing::gap`] has the gap.
     pub undeformed_gap: f64,
     /// Whether it is a candidate: its normal motion is not prescribed.
     pub free: bool,
@@ -122,8 +122,8 @@ impl<const D: usize> ContactSurface<D> {
         std::array::from_fn(|c| own[c] - other[c])
     }
 
-    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one; of surfaces that slide, on
-    /// the slave.
+    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one; of surfaces that slide,
+    /// on the slave.
     #[inline]
     #[must_use]
     pub fn leads(&self, at: usize) -> bool {

@@ -15,8 +15,8 @@ const OVERHANG: f64 = 1e-9;
 /// The facets of a side in ascending order of ξ, each with its nodes and their ξ (m).
 type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
 
-/// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and the
-/// other way round.
+/// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and
+/// the other way round.
 pub(super) fn add<const D: usize, const N: usize>(
     surface: &mut ContactSurface<D>,
     bodies: &Bodies<'_, D, N>,
@@ -45,8 +45,8 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Which side is the slave: the one that sticks out less beyond the other one at the start; of two that do so alike,
-    /// that with the shorter edges.
+    /// Which side is the slave: the one that sticks out less beyond the other one at the start; of two that do so
+    /// alike, that with the shorter edges.
     fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
         let along = tangent(&unit(&sides[0].outward));
         let ranges = sides.each_ref().map(|side| {

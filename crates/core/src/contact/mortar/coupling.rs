@@ -179,8 +179,8 @@ impl Coupling {
         &self.places
     }
 
-    /// The row of D of a multiplier (m): its values at the node before, at the node itself and at the one after it. Where
-    /// the master ends on an edge, one of its neighbours may have a value that is not 0.
+    /// The row of D of a multiplier (m): its values at the node before, at the node itself and at the one after it.
+    /// Where the master ends on an edge, one of its neighbours may have a value that is not 0.
     #[inline]
     #[must_use]
     pub fn slave_row(&self, node: usize) -> [f64; 3] {
@@ -216,8 +216,8 @@ impl Coupling {
         (first..).zip(row).fold(sum, |sum, (at, value)| sum - value * master(at))
     }
 
-    /// The multipliers λ (N/m) of forces Dᵀλ on the nodes of the slave (N), one component of each. Those that do not act
-    /// are 0.
+    /// The multipliers λ (N/m) of forces Dᵀλ on the nodes of the slave (N), one component of each. Those that do not
+    /// act are 0.
     #[must_use]
     pub fn multipliers(&self, force: &[f64]) -> Vec<f64> {
         let mut rest = force.to_vec();

@@ -9,9 +9,9 @@ use crate::contact::surface::ContactSurface;
 /// What each node of the contact surface faces with some displacements of the mesh: a plane, a node, or the surface of
 /// another body that slides along.
 ///
-/// A node of a slave whose multiplier acts has weighted values against the master, those of its contact condition. Other
-/// nodes of two surfaces that slide have the value against the point of the other surface at the same ξ, or against the
-/// nearest one if there is none.
+/// A node of a slave whose multiplier acts has weighted values against the master, those of its contact condition.
+/// Other nodes of two surfaces that slide have the value against the point of the other surface at the same ξ, or
+/// against the nearest one if there is none.
 #[derive(Clone, Debug)]
 pub struct Facing<'a, const D: usize> {
     surface: &'a ContactSurface<D>,
@@ -53,8 +53,8 @@ impl<'a, const D: usize> Facing<'a, D> {
         })
     }
 
-    /// The gap of a node (m), eq. \[3\], with these displacements of all nodes of the mesh; infinite at a node that faces
-    /// nothing.
+    /// The gap of a node (m), eq. \[3\], with these displacements of all nodes of the mesh; infinite at a node that
+    /// faces nothing.
     #[must_use]
     pub fn gap(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
         let Some((sliding, coupling, place)) = self.place(at) else {

@@ -3,8 +3,8 @@
 use super::normal::{NormalProblem, relax};
 use super::skyline::Skyline;
 
-/// Solves for the tangential multipliers `force` within these limits (N/m). The normal part does not depend on them. With
-/// `normal`, which has the factors of the same matrix, relaxation starts where all that is pressed sticks.
+/// Solves for the tangential multipliers `force` within these limits (N/m). The normal part does not depend on them.
+/// With `normal`, which has the factors of the same matrix, relaxation starts where all that is pressed sticks.
 pub(super) fn solve(
     matrix: &Skyline,
     right: &[f64],

@@ -5,12 +5,13 @@
 //! multipliers λ (N/m): the forces on the slave are Dᵀλ, those on the master −Mᵀλ, and (D f − M f')_k / w_k is the
 //! weighted value of a field f on the slave less a field f' on the master.
 //!
-//! A step has the normal problem A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0 with A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ and the weighted gaps
-//! b that the step would end with, over Δt h; then friction, A λ + b = 0 within |λ| ≤ μ λ_n. D and M are those of the
-//! predicted displacements, so that the step is explicit. On matching surfaces D = M is diagonal, and nodes are pairs.
+//! A step has the normal problem A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0 with A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ and the weighted
+//! gaps b that the step would end with, over Δt h; then friction, A λ + b = 0 within |λ| ≤ μ λ_n. D and M are those of
+//! the predicted displacements, so that the step is explicit. On matching surfaces D = M is diagonal, and nodes are
+//! pairs.
 //!
-//! Wohlmuth, *A mortar finite element method using dual spaces for the Lagrange multiplier*; the part of an edge that the
-//! other surface covers has a dual basis of its own.
+//! Wohlmuth, *A mortar finite element method using dual spaces for the Lagrange multiplier*; the part of an edge that
+//! the other surface covers has a dual basis of its own.
 
 mod coupling;
 mod dual;

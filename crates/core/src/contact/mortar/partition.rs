@@ -13,8 +13,8 @@ pub struct Segment {
     pub ends: [f64; 2],
 }
 
-/// Puts the nodes of the master, at ξ less `shift`, among those of the slave: where two are nearer than `tolerance`, the
-/// place is that of the slave.
+/// Puts the nodes of the master, at ξ less `shift`, among those of the slave: where two are nearer than `tolerance`,
+/// the place is that of the slave.
 pub(super) fn place(slave: &Side, master: &Side, shift: f64, tolerance: f64, places: &mut Vec<f64>) {
     let (xi, mut near) = (slave.xi(), 0);
     places.clear();

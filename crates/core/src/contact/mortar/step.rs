@@ -109,8 +109,8 @@ impl SlidingContact {
         }
     }
 
-    /// Hands on the forces of a step on nodes of the contact surface (N), and then, without a force, the nodes that touch
-    /// at t_{n+1}.
+    /// Hands on the forces of a step on nodes of the contact surface (N), and then, without a force, the nodes that
+    /// touch at t_{n+1}.
     pub(crate) fn react<const D: usize>(
         &mut self,
         surface: &ContactSurface<D>,

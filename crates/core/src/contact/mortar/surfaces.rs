@@ -23,8 +23,8 @@ pub(crate) fn tangent<const D: usize>(normal: &[f64; D]) -> [f64; D] {
 }
 
 impl<const D: usize> SlidingSurfaces<D> {
-    /// From slave and master, with the unit normal from the master to the slave. Nodes nearer than `tolerance` (m) along
-    /// the interface are at one place.
+    /// From slave and master, with the unit normal from the master to the slave. Nodes nearer than `tolerance` (m)
+    /// along the interface are at one place.
     pub(crate) fn new(sides: [Side; 2], normal: [f64; D], law: Coulomb, tolerance: f64) -> Self {
         Self { sides, frame: Frame::new(normal), tangent: tangent(&normal), law, tolerance }
     }
@@ -87,16 +87,16 @@ impl<const D: usize> SlidingSurfaces<D> {
         coupling
     }
 
-    /// The same with these displacements of all nodes of the mesh (m). Those of the step after t_n are the predicted ones,
-    /// u_n + Δt_n (v_{n−½} + h_n M⁻¹(F_n − K u_n)), without contact.
+    /// The same with these displacements of all nodes of the mesh (m). Those of the step after t_n are the predicted
+    /// ones, u_n + Δt_n (v_{n−½} + h_n M⁻¹(F_n − K u_n)), without contact.
     #[must_use]
     pub fn coupling(&self, surface: &ContactSurface<D>, displacement: &[[f64; D]]) -> Coupling {
         let along = |side: &Side, node| self.along(surface, side, node, displacement);
         self.coupling_at(self.shift(|node| along(self.slave(), node), |node| along(self.master(), node)))
     }
 
-    /// The multipliers λ (N/m) of a step, in global axes, from the rows of the slave among the forces on the nodes of the
-    /// contact surface (N). `coupling` is that of the predicted displacements.
+    /// The multipliers λ (N/m) of a step, in global axes, from the rows of the slave among the forces on the nodes of
+    /// the contact surface (N). `coupling` is that of the predicted displacements.
     #[must_use]
     pub fn multipliers(&self, coupling: &Coupling, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
         let slave = self.slave();

@@ -79,8 +79,8 @@ fn numbers_do_not_matter() {
     }
 }
 
-/// Either body may be the slave: the coarse one sticks out by a micrometre, or the fine one does. The motion of both differs
-/// by the error of the discretisation only, a small part of what contact does.
+/// Either body may be the slave: the coarse one sticks out by a micrometre, or the fine one does. The motion of both
+/// differs by the error of the discretisation only, a small part of what contact does.
 #[test]
 fn roles_may_be_exchanged() {
     let run_of = |widths: [f64; 2]| {

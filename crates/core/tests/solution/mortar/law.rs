@@ -148,8 +148,8 @@ fn the_law_holds_where_blocks_meet_at_an_angle() {
 }
 
 /// Contact gives no energy to blocks that meet head-on: what it takes is that of the nodes that it stops. The mean of a
-/// surface swings a little as it is strained, and D and M with it: 2e-7 of the energy was found, and 4e-6 of what contact
-/// takes.
+/// surface swings a little as it is strained, and D and M with it: 2e-7 of the energy was found, and 4e-6 of what
+/// contact takes.
 #[test]
 fn contact_gives_no_energy_without_sliding() {
     let blocks = Blocks { velocities: [[0.0, -20.0], [0.0, 20.0]], friction: 0.0, ..Blocks::oblique() };

@@ -10,8 +10,8 @@ use percute_testkit::rotated;
 const PRESSURE: f64 = 70e6;
 const STEPS: f64 = 60.0;
 
-/// Two blocks under a uniform pressure, from the displacement of its static state, turned by `angle` (rad): nothing moves
-/// in 60 steps.
+/// Two blocks under a uniform pressure, from the displacement of its static state, turned by `angle` (rad): nothing
+/// moves in 60 steps.
 fn stays_at_rest(material: Elastic, strains: [f64; 2], angle: f64) {
     let blocks = Blocks { materials: [material; 2], velocities: [[0.0; 2]; 2], ..Blocks::oblique() };
     let (sin, cos) = angle.sin_cos();
