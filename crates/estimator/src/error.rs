@@ -24,10 +24,10 @@ pub enum EstimateError {
     /// Maps that cannot be kept.
     #[error(transparent)]
     Request(#[from] RequestError),
-    /// Surfaces that slide along each other.
+    /// Surfaces that slide along each other, with a reconstruction that has none.
     #[error(
-        "the surfaces \"{}\" and \"{}\" of two bodies do not match, and the estimate of such contact is not available \
-         yet; give both the same nodes along the interface and state them as matching, or simulate without an estimate",
+        "the surfaces \"{}\" and \"{}\" slide along each other, and only the reconstruction \"corrected\" has an \
+         estimate of such contact; choose it, or state the contact as matching",
         .groups[0], .groups[1]
     )]
     NotMatching { groups: [String; 2] },

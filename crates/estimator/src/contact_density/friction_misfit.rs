@@ -1,7 +1,8 @@
 //! The misfit of the contact law on a facet, for densities and velocities that are linear along it.
 
 use super::NarrowHat;
-use percute_core::contact::{ContactFacet, Frame};
+use crate::direction::{along, tangent};
+use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
@@ -73,16 +74,4 @@ fn hat_misfit_power<const D: usize, const N: usize>(
     let sliding = velocity.map(|v| along(&v, &tangent));
     let normal = frame.split(&hat.resultant).0;
     law.limit(normal) * hat.mean_absolute(&sliding) + along(&hat.resultant, &tangent) * hat.mean_of(&sliding)
-}
-
-/// Along a plane in 2D: its normal turned back by a quarter.
-pub(crate) fn tangent<const D: usize>(frame: &Frame<D>) -> [f64; D] {
-    let mut tangent = [0.0; D];
-    (tangent[0], tangent[1]) = (frame.normal()[1], -frame.normal()[0]);
-    tangent
-}
-
-/// The component of a vector along a direction, or a value from those at the nodes with their weights.
-pub(crate) fn along<const D: usize>(vector: &[f64; D], direction: &[f64; D]) -> f64 {
-    vector.iter().zip(direction).map(|(a, b)| a * b).sum()
 }

@@ -5,13 +5,15 @@ mod corner_sliding;
 mod friction_misfit;
 mod hat;
 mod normal_misfit;
+mod sliding;
 
 pub(crate) use corner_sliding::{CornerSliding, trapezoids};
-pub(crate) use friction_misfit::{FacetDensity, along, facet_power, tangent};
+pub(crate) use friction_misfit::{FacetDensity, facet_power};
 pub(crate) use hat::NarrowHat;
 pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
+pub(crate) use sliding::{SlidingDensity, SlidingFacets, density_on};
 use std::ops::Deref;
 
 /// A density on the candidate facets. Constant once a reconstruction has made it.
@@ -20,10 +22,15 @@ use std::ops::Deref;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Densities<const D: usize> {
     linear: Vec<[[f64; D]; D]>,
-    /// The part that is linear on each facet, if hats come with it.
+    /// The part that is linear on each facet, if hats or surfaces that slide come with it.
     wide: Option<Vec<[[f64; D]; D]>>,
     hats: Vec<NarrowHat<D>>,
     shares: f64,
+    /// The parts of surfaces that slide.
+    sliding: Vec<SlidingDensity<D>>,
+    /// Facets on which these are not linear, in order, with a bound of the root of the energy of the stress of the
+    /// difference (J^½).
+    beside: Vec<(usize, f64)>,
 }
 
 /// The densities of one instant that depend on no other.
@@ -70,7 +77,26 @@ impl<const D: usize> Densities<D> {
                 (0..D).for_each(|c| linear[hat.facet][end][c] += force[c] / facets[hat.facet].area);
             }
         }
-        Self { linear, wide, hats, shares: 0.0 }
+        Self { linear, wide, hats, shares: 0.0, sliding: Vec::new(), beside: Vec::new() }
+    }
+
+    /// The density with those of all surfaces that slide.
+    pub(crate) fn with_sliding<const N: usize>(
+        mut self,
+        problem: &Problem<D, N>,
+        facets: &[SlidingFacets],
+        sliding: Vec<SlidingDensity<D>>,
+    ) -> Self {
+        if sliding.is_empty() {
+            return self;
+        }
+        self.wide.get_or_insert_with(|| self.linear.clone());
+        for (k, (facets, density)) in facets.iter().zip(&sliding).enumerate() {
+            let of = (problem, &problem.surface().sliding()[k]);
+            density.apply(of, facets, &mut self.linear, &mut self.beside);
+        }
+        self.beside.sort_by_key(|(facet, _)| *facet);
+        Self { sliding, ..self }
     }
 
     /// The density with the residual of the shares of its hats: at least 0, their sum 1.
@@ -96,6 +122,16 @@ impl<const D: usize> Densities<D> {
     /// The rest.
     pub(crate) fn hats(&self) -> &[NarrowHat<D>] {
         &self.hats
+    }
+
+    /// The parts of surfaces that slide.
+    pub(crate) fn sliding(&self) -> &[SlidingDensity<D>] {
+        &self.sliding
+    }
+
+    /// The root of the energy of a stress beside that of the linear traction on a facet (J^½).
+    pub(crate) fn beside(&self, facet: usize) -> f64 {
+        self.beside.binary_search_by_key(&facet, |(facet, _)| *facet).map_or(0.0, |at| self.beside[at].1)
     }
 
     /// The hats of one star.

@@ -7,7 +7,8 @@
 //! the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even where F_DA
 //! distributes the impulse over a time in which the node is at rest.
 
-use super::{Densities, NarrowHat, along};
+use super::{Densities, NarrowHat};
+use crate::direction::along;
 use crate::kinematic::ContactTrack;
 use crate::numbers::Reader;
 use percute_core::problem::Problem;

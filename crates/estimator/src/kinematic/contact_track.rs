@@ -29,6 +29,8 @@ pub(crate) struct ContactTrack {
     first_altered: usize,
     /// Whether contact is solved for; a prescribed node keeps its motion.
     free: bool,
+    /// The least gap before the first contact (m), 0 or less.
+    floor: f64,
     onset: f64,
     at_instants: f64,
     between_instants: f64,
@@ -75,10 +77,26 @@ impl ContactTrack {
             touching,
             first_altered: usize::MAX,
             free,
+            floor: 0.0,
             onset: 0.0,
             at_instants: 0.0,
             between_instants: 0.0,
         }
+    }
+
+    /// The same, but before its first contact the gap may fall to one below 0 (m).
+    pub(super) fn descending_to(self, floor: f64) -> Self {
+        Self { floor, ..self }
+    }
+
+    /// A node whose motion comes all at once: at instants that are shown, the change from the simulation.
+    pub(super) fn of_change(node: usize) -> Self {
+        Self::new(node, (0.0, 1.0), false, (0.0, 0.0), false)
+    }
+
+    /// Takes in that the store has its motion at so many instants.
+    pub(super) fn reach(&mut self, count: usize) {
+        self.known = count;
     }
 
     /// A node that has this motion at an instant, other than in the simulation.
@@ -120,7 +138,9 @@ impl ContactTrack {
         while self.known < store.count() {
             let (first, target, lengths) = self.window(store, PIECE)?;
             let (velocity, gap) = self.last;
-            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
+            let floor = self.floor();
+            let window =
+                FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false, floor };
             let path = window.integrate(&target);
             self.record(&window, &path);
             store.write(self.node, first, &stored(path))?;
@@ -134,10 +154,12 @@ impl ContactTrack {
         while ahead.known < store.count() {
             let (_, target, lengths) = ahead.window(store, PIECE)?;
             let (velocity, gap) = ahead.last;
-            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
+            let floor = ahead.floor();
+            let window =
+                FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false, floor };
             let path = window.integrate(&target);
             let (_, least) = window.deepest(&path);
-            if least.is_nan() || least < -tolerance {
+            if least.is_nan() || least < floor - tolerance {
                 return Ok(true);
             }
             let (velocity, gap) = path[path.len() - 1];
@@ -160,16 +182,22 @@ impl ContactTrack {
         // A window may be as long as the run: there is one copy of it at a time.
         let (first, target, lengths) = self.window(store, usize::MAX)?;
         let (velocity, gap) = self.last;
-        let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives };
+        let floor = self.floor();
+        let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives, floor };
         // A prescribed node cannot be moved out of the way.
         let path = if self.free { solve(&window, tolerance) } else { window.integrate(&target) };
         self.record(&window, &path);
         store.write(self.node, first, &stored(path))
     }
 
+    /// The least gap in the window since the last known instant (m).
+    fn floor(&self) -> f64 {
+        if self.known == 1 { self.floor } else { 0.0 }
+    }
+
     /// Takes the motion over the window as known and checks it.
     fn record(&mut self, window: &FlightWindow<'_>, path: &Path) {
-        let FlightWindow { start: (gap, velocity), lengths, target, arrives } = *window;
+        let FlightWindow { start: (gap, velocity), lengths, target, arrives, .. } = *window;
         if arrives {
             // Also the way that the simulation would go: where nothing but rest is admissible, the
             // motion itself is its rounding.
@@ -223,6 +251,11 @@ impl ContactTrack {
     #[inline]
     pub(crate) fn undeformed_gap(&self) -> f64 {
         self.undeformed_gap
+    }
+
+    /// Adds the residual of its onsets.
+    pub(super) fn report_onset(&self, residuals: &mut Residuals) {
+        residuals.onset = worse(residuals.onset, self.onset);
     }
 
     /// Adds the residuals of this node.

@@ -93,7 +93,7 @@ impl<const D: usize> FreeMotion<D> {
 /// u_CA in the middle of a step of this length (s), from that at its end and the velocities in the middle and at the
 /// end.
 #[inline(always)]
-pub(super) fn half_way<T: Value, const D: usize>(
+pub(crate) fn half_way<T: Value, const D: usize>(
     length: T,
     end: &[T; D],
     [mid_velocity, end_velocity]: [&[T; D]; 2],

@@ -14,6 +14,7 @@ mod corner;
 mod free_motion;
 mod normal_motions;
 mod shape;
+mod sliding;
 mod window;
 
 pub(crate) use common_motion::common;
@@ -21,8 +22,9 @@ pub(crate) use contact_track::{ContactTrack, NormalStep};
 pub(crate) use contact_tracks::ContactTracks;
 use corner::Corner;
 pub(crate) use corner::at_both_planes;
-use free_motion::half_way;
-pub(crate) use free_motion::{FreeMotion, NodalMotion};
+pub(crate) use free_motion::{FreeMotion, NodalMotion, half_way};
+pub(crate) use normal_motions::NormalMotions;
+pub(crate) use sliding::SlidingInstant;
 
 use crate::field_lanes::gather;
 use crate::lanes::{Lanes, Value, load, store};
@@ -202,7 +204,8 @@ pub(crate) fn gather_common<const D: usize, const N: usize>(
 }
 
 /// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
-/// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components.
+/// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components, one of
+/// surfaces that slide the change of its own.
 pub(crate) fn settle<const D: usize, const N: usize>(
     (problem, at): (&Problem<D, N>, usize),
     [displacement, velocity]: [&mut [f64; D]; 2],
@@ -218,6 +221,14 @@ pub(crate) fn settle<const D: usize, const N: usize>(
         return;
     }
     let frame: Frame<D> = problem.obstacles()[contact.obstacle].flat_frame();
+    if problem.surface().sliding_of(at).is_some() {
+        let (speed, place) = track.at(instant);
+        for c in 0..D {
+            displacement[c] += place * frame.normal()[c];
+            velocity[c] += speed * frame.normal()[c];
+        }
+        return;
+    }
     if contact.opposite.is_some() {
         let part = problem.surface().own_part(at, problem.mass());
         let (speed, gap) = track.at(instant);

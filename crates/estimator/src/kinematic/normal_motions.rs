@@ -17,7 +17,7 @@ const HELD: usize = 1 << 18;
 const SPAN: usize = 512;
 
 /// Two numbers of a node at an instant.
-pub(super) type Pair = [f64; 2];
+pub(crate) type Pair = [f64; 2];
 
 /// Where the numbers of all nodes at some consecutive instants are, those of a node side by side.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ enum Chunk {
 
 /// The numbers of all nodes.
 #[derive(Debug)]
-pub(super) struct NormalMotions {
+pub(crate) struct NormalMotions {
     nodes: usize,
     /// The number of the first chunk that is kept.
     first: usize,
@@ -62,7 +62,7 @@ fn most_chunks(nodes: usize, span: usize) -> usize {
 
 impl NormalMotions {
     /// Of so many nodes, at no instant yet; work needs so many instants at a time.
-    pub(super) fn new(nodes: usize, span: usize, file: ScratchFile) -> Self {
+    pub(crate) fn new(nodes: usize, span: usize, file: ScratchFile) -> Self {
         Self {
             nodes,
             first: 0,
@@ -82,7 +82,7 @@ impl NormalMotions {
     }
 
     /// Makes place for another instant.
-    pub(super) fn extend(&mut self) -> Result<(), ScratchError> {
+    pub(crate) fn extend(&mut self) -> Result<(), ScratchError> {
         if self.count == (self.first + self.chunks.len()) * CHUNK {
             self.put_away()?;
             let mut chunk = self.spare.pop().unwrap_or_default();
@@ -121,7 +121,7 @@ impl NormalMotions {
     }
 
     /// Appends the numbers of a node at some instants.
-    pub(super) fn read(
+    pub(crate) fn read(
         &mut self,
         node: usize,
         instants: Range<usize>,
@@ -143,7 +143,7 @@ impl NormalMotions {
     }
 
     /// Writes the numbers of a node from an instant on.
-    pub(super) fn write(&mut self, node: usize, from: usize, mut numbers: &[Pair]) -> Result<(), ScratchError> {
+    pub(crate) fn write(&mut self, node: usize, from: usize, mut numbers: &[Pair]) -> Result<(), ScratchError> {
         for (chunk, within) in pieces(from..from + numbers.len()) {
             let start = node * CHUNK + within.start;
             let (some, rest) = numbers.split_at(within.len());

@@ -30,6 +30,18 @@ impl<T: Value> ElementError<T> {
     }
 }
 
+impl ElementError {
+    /// The error with a stress beside that in it, of which this is the root of the energy (J^½): the norm of the sum is at
+    /// most the sum of both.
+    pub(crate) fn beside(self, root: f64) -> Self {
+        if root == 0.0 {
+            return self;
+        }
+        let elastic = (self.elastic.max(0.0).sqrt() + root).powi(2);
+        Self { elastic, reference: self.reference + 2.0 * (elastic - self.elastic), ..self }
+    }
+}
+
 impl<T: Value<Stored = Lanes>> ElementError<T> {
     /// To memory.
     #[inline(always)]

@@ -14,6 +14,7 @@ mod sampled_levels;
 mod sampling;
 mod schedule;
 mod separation;
+mod sliding;
 #[cfg(test)]
 mod tests;
 mod totals;
@@ -22,7 +23,7 @@ mod window;
 
 use crate::error::EstimateError;
 use crate::estimate::Estimate;
-use crate::options::{MOST_THREADS, Options};
+use crate::options::{MOST_THREADS, Options, Reconstruction};
 use crate::request::Request;
 use crate::sampling::Sampling;
 use crate::scratch_file::ScratchFile;
@@ -80,7 +81,8 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
             return Err(EstimateError::TooManyThreads { threads });
         }
         options.acceleration(D).check(options.reconstruction)?;
-        if let Some(interface) = problem.statement().interfaces.iter().find(|interface| !interface.is_matching()) {
+        let sliding = problem.statement().interfaces.iter().find(|interface| !interface.is_matching());
+        if let Some(interface) = sliding.filter(|_| options.reconstruction != Reconstruction::Corrected) {
             return Err(EstimateError::NotMatching { groups: interface.groups().map(str::to_string) });
         }
         // A pool of its own: a process forked later must not wait for threads it does not have.

@@ -6,6 +6,7 @@ use super::sampled_levels::SampledLevels;
 use super::sampling::{
     ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledStress, Sampling,
 };
+use super::sliding::SlidingMisfit;
 use super::waiting::{ContactInstant, Waiting, WaitingSample};
 use crate::concentrated::HatStress;
 use crate::contact_density::{FacetPressures, NarrowHat, NormalMisfit};
@@ -84,6 +85,8 @@ pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
     pub(super) fastest: f64,
     /// Those of the contact nodes, with the motion at hand over the intervals that are sampled.
     pub(super) tracks: &'a [ContactTrack],
+    /// The normal misfit of surfaces that slide over these.
+    pub(super) sliding: &'a SlidingMisfit,
 }
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
@@ -136,6 +139,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
         let loaded = Waiting::<D, N>::has_hats(&hats);
+        let beside = [&from, &to].map(|level| self.facets.iter().map(|&f| level.forces().density.beside(f)).sum());
         let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
         let mid = single.then(|| WaitingSample {
             at: ContactInstant {
@@ -145,7 +149,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             stress: stress(&Balanced::middle(&start, &end), loaded),
         });
         let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };
-        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, sliding, hats }
+        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, sliding, beside, hats }
     }
 
     fn at(
@@ -197,7 +201,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             start: waiting.start.as_ref().map(|stress| (stress, &start.velocities)),
             mid: waiting.mid.as_ref().map(|mid| (&mid.stress, &mid.at.velocities)),
             end: (&waiting.stop.stress, &waiting.stop.at.velocities),
-            contact: self.contact_part(context, &waiting, start.friction),
+            contact: self.contact_part(context, &waiting, (steps, start.friction)),
+            beside: [waiting.beside[0], 0.5 * (waiting.beside[0] + waiting.beside[1]), waiting.beside[1]],
             hats: [&hats[0], &hats[1], &hats[2]],
         };
         let samples = sampler.sample(&interval, &mut self.course, &mut self.kept);
@@ -217,9 +222,13 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         &mut self,
         context: &ContactSampling<'_, '_, D, N>,
         waiting: &Waiting<D, N>,
-        friction: f64,
+        (steps, friction): ([usize; 2], f64),
     ) -> [ContactPart; 3] {
         let mut normal = NormalMisfit::default();
+        let (surface, weight) = (context.shared.problem.surface(), context.reconstruction.weight_of_work());
+        for &f in self.facets.iter().filter(|&&f| surface.sliding_of(surface.facets()[f].nodes[0]).is_some()) {
+            normal.add(&context.sliding.over(f, steps, context.shared.times, weight));
+        }
         for pressures in &waiting.pressures {
             normal.add(&context.reconstruction.normal_misfit(pressures, context.tracks));
         }
@@ -280,7 +289,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         for (i, first) in self.contact.iter().enumerate() {
             let second = first.and_then(|at| problem.surface().nodes()[at].beside);
             for (k, at) in [*first, second].into_iter().enumerate() {
-                let Some(at) = at else { continue };
+                // Those of surfaces that slide are checked where their motion is made.
+                let Some(at) = at.filter(|&at| problem.surface().sliding_of(at).is_none()) else { continue };
                 let contact = &problem.surface().nodes()[at];
                 let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
                 // The element does not have the motion of a node of another body.

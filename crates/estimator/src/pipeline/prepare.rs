@@ -6,11 +6,12 @@ mod supports;
 
 use super::near_elements::span;
 use super::schedule::Schedule;
+use super::sliding::SlidingMisfit;
 use crate::contact_density::{CornerSliding, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
-use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep};
+use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep, half_way};
 use crate::loaded::LoadedFacets;
 use crate::nodal_field::FieldPool;
 use crate::options::Options;
@@ -39,6 +40,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     motion: FreeMotion<D>,
     pool: FieldPool<D>,
     tracks: ContactTracks,
+    sliding: SlidingMisfit,
     supports: SupportCheck,
     /// The step before `current`.
     before: Option<SurfaceStep<D>>,
@@ -74,7 +76,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
             motion: FreeMotion::new(problem, &pool),
             pool,
-            tracks: ContactTracks::new(problem.surface().nodes().len(), span(spacing), ScratchFile::default()),
+            tracks: ContactTracks::new(problem, span(spacing), ScratchFile::default()),
+            sliding: SlidingMisfit::new(problem, span(spacing)),
             supports: SupportCheck::default(),
             before: None,
             current: None,
@@ -131,7 +134,13 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
     /// Has the normal motion of the candidate nodes at hand from one known instant to another.
     pub(super) fn show(&mut self, instants: [usize; 2]) -> Result<(), ScratchError> {
-        self.tracks.show(instants)
+        self.tracks.show(instants)?;
+        self.sliding.show(self.problem, &mut self.tracks, instants)
+    }
+
+    /// The normal misfit of surfaces that slide, at the instants at hand.
+    pub(super) fn sliding(&self) -> &SlidingMisfit {
+        &self.sliding
     }
 
     /// Refuses a step that does not fit.
@@ -157,11 +166,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 return Err(EstimateError::StartVelocity { node });
             }
         }
-        for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
-            let node = contact.node.index();
-            let surface = problem.surface();
-            let gap = surface.gap(at, &surface.against_obstacle(at, step.displacement));
-            let velocity = surface.against_obstacle(at, problem.initial_velocity());
+        let surface = problem.surface();
+        let facing = surface.facing(step.displacement);
+        for (at, contact) in surface.nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
+            let (node, gap) = (contact.node.index(), facing.gap(at, step.displacement));
+            let velocity = facing.relative(at, problem.initial_velocity());
             let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&velocity).0;
             if gap > tolerance || speed.abs() > problem.speed_tolerance() {
                 return Err(EstimateError::StartsTouching { node, gap, speed });
@@ -173,9 +182,14 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// A node that touches at step 1 must start at least |v_n|Δt₀/4 away, or P_CA has no solution.
     fn check_first_touch(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
         let Some(start) = &self.current else { return Ok(()) };
-        for (at, contact) in self.problem.surface().nodes().iter().enumerate() {
-            if step.touching[at] && !start.forces.level.surface.touching[at] {
-                let (velocity, gap) = self.tracks.all()[at].at(0);
+        let surface = self.problem.surface();
+        let displacement = self.problem.initial_displacement();
+        let facing = surface.facing(displacement);
+        for (at, contact) in surface.nodes().iter().enumerate() {
+            if step.touching[at] && !start.forces.level.surface.touching[at] && surface.leads(at) {
+                let frame = self.problem.obstacles()[contact.obstacle].flat_frame();
+                let velocity = frame.split(&facing.relative(at, self.problem.initial_velocity())).0;
+                let gap = facing.gap(at, displacement);
                 let smallest_gap = -0.25 * velocity * self.times.step(0);
                 if gap < smallest_gap {
                     return Err(EstimateError::StartsTooNear { node: contact.node.index(), gap, smallest_gap });
@@ -208,6 +222,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             self.unmeasured.extend_from_slice(step.displacement);
         }
         let BalancedFields { displacement, force, contact, densities, lumping_difference } = balanced;
+        if let Some(densities) = &densities {
+            self.sliding.push(problem, n, densities)?;
+        }
         let level = TimeLevel {
             index: n,
             displacement,
@@ -247,7 +264,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             self.impulse.add_last(self.problem, self.times, last.level.index, &last.level.surface.reaction);
             self.ready.push_back(last);
         }
-        self.tracks.finish(self.problem.contact_tolerance())
+        self.tracks.finish(self.problem)
     }
 
     /// The next complete level that is sampled; others only carry the integral of ã on, and leave it their densities
@@ -280,21 +297,26 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         mid_velocity: Option<&[[f64; D]]>,
         now: &NodalMotion<D>,
     ) -> Result<(), ScratchError> {
-        let (problem, tolerance) = (self.problem, self.problem.contact_tolerance());
-        let surface = problem.surface();
+        let (problem, surface) = (self.problem, self.problem.surface());
         let normal = |at: usize, velocity: &[[f64; D]]| {
             let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
             frame.split(&surface.against_obstacle(at, velocity)).0
         };
         let velocity = now.velocity();
+        self.tracks.touch(problem, step.index, step.touching);
+        let at_end = |i: usize| [now.displacement()[i], velocity[i]];
         let Some(mid) = mid_velocity else {
+            self.tracks.slide(problem, 0.0, at_end)?;
             let gap = |at: usize| surface.gap(at, &surface.against_obstacle(at, now.displacement()));
             return self.tracks.begin(problem, |at| ((gap(at), normal(at, velocity)), step.touching[at]));
         };
         let half = 0.5 * self.times.step(step.index - 1);
+        let at_middle = |i: usize| [half_way(2.0 * half, &now.displacement()[i], [&mid[i], &velocity[i]]), mid[i]];
+        self.tracks.slide(problem, half, at_middle)?;
+        self.tracks.slide(problem, half, at_end)?;
         let normal_step =
             |at| NormalStep { half, velocity: [normal(at, mid), normal(at, velocity)], touching: step.touching[at] };
-        self.tracks.push(normal_step, tolerance)
+        self.tracks.push(problem, normal_step)
     }
 
     /// The initial conditions hold by construction; checked all the same.

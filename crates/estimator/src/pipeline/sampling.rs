@@ -155,6 +155,8 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) end: SampledFields<'i, D, N>,
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [ContactPart; 3],
+    /// The root of the energy of stresses beside these, at its beginning, middle and end (J^½).
+    pub(super) beside: [f64; 3],
     /// The stress of hats at its beginning, middle and end.
     pub(super) hats: [&'i [HatStress<'i>]; 3],
 }
@@ -284,6 +286,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
             };
             let stress = (&stress.mean, stress.fluctuation);
             let error = self.measure.error_of(stress, &at.increment, &at.motion, beside);
+            let error = error.beside(interval.beside[k]);
             ElementSample { error, contact: interval.contact[k] }
         };
         if let Some(start) = interval.start {

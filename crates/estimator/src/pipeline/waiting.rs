@@ -32,6 +32,8 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
     pub(super) pressures: Vec<FacetPressures<D>>,
     /// Sliding on its candidate facets beside a node at two planes, step by step.
     pub(super) sliding: Vec<CornerSliding<D>>,
+    /// The root of the energy of stresses beside σ_DA at the beginning and the end (J^½), of surfaces that slide.
+    pub(super) beside: [f64; 2],
     /// Narrow hats of its nodes at the beginning and the end, those of a node side by side.
     pub(super) hats: [Vec<NarrowHat<D>>; 2],
 }
@@ -68,8 +70,12 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
     /// Appends it to numbers.
     pub(super) fn append(&self, numbers: &mut Vec<f64>) {
         let touching = self.touching.as_flattened().as_flattened().iter().copied();
-        let flags = [self.start.is_some(), self.mid.is_some()].into_iter().chain(touching);
+        let beside = self.beside != [0.0; 2];
+        let flags = [self.start.is_some(), self.mid.is_some(), beside].into_iter().chain(touching);
         numbers.push(flags.fold(0, |flags, flag| 2 * flags + usize::from(flag)) as f64);
+        if beside {
+            numbers.extend(self.beside);
+        }
         let [from, to] = &self.hats;
         let counts = [self.pressures.len(), self.sliding.len(), from.len(), to.len()];
         numbers.extend(counts.map(|count| count as f64));
@@ -84,7 +90,8 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
     /// One that was appended.
     pub(super) fn read(numbers: &mut Reader<'_>) -> Self {
         let flags = numbers.count();
-        let flag = |k: usize| (flags >> (4 * N + 1 - k)) & 1 == 1;
+        let flag = |k: usize| (flags >> (4 * N + 2 - k)) & 1 == 1;
+        let beside = if flag(2) { numbers.take() } else { [0.0; 2] };
         let [pressures, sliding, from, to] = [(); 4].map(|()| numbers.count());
         let pressures = (0..pressures).map(|_| FacetPressures::read(numbers)).collect();
         let sliding = (0..sliding).map(|_| CornerSliding::read(numbers)).collect();
@@ -94,9 +101,10 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
             start: flag(0).then(|| SampledStress::read(numbers, loaded)),
             mid: flag(1).then(|| WaitingSample::read(numbers, loaded)),
             stop: WaitingSample::read(numbers, loaded),
-            touching: [0, 1].map(|end| std::array::from_fn(|i| [0, 1].map(|k| flag(2 + 2 * (end * N + i) + k)))),
+            touching: [0, 1].map(|end| std::array::from_fn(|i| [0, 1].map(|k| flag(3 + 2 * (end * N + i) + k)))),
             pressures,
             sliding,
+            beside,
             hats,
         }
     }

@@ -251,7 +251,9 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             }
             let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
             let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks().all());
-            self.near.sample(&ContactSampling { shared: &shared, reconstruction, fastest, tracks }, intervals)?;
+            let sliding = preparation.sliding();
+            self.near
+                .sample(&ContactSampling { shared: &shared, reconstruction, fastest, tracks, sliding }, intervals)?;
             self.near.put(&mut self.maps);
         }
         Ok(())

@@ -1,7 +1,9 @@
 //! The friction part of η of densities that are linear over a step.
 
-use crate::contact_density::{Densities, FacetDensity, facet_power, trapezoids};
+use crate::contact_density::{Densities, FacetDensity, SlidingDensity, SlidingFacets, facet_power, trapezoids};
+use crate::direction::along;
 use crate::time_level::{ForcesKnown, MotionKnown};
+use percute_core::contact::Side;
 use percute_core::problem::Problem;
 
 /// On each candidate facet (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
@@ -35,4 +37,48 @@ pub(super) fn friction<const D: usize, const N: usize>(
         friction.push(trapezoids(length, [a, m, b]).map(|work| so_far + work));
     }
     friction
+}
+
+/// Adds the same of surfaces that slide: half of each piece on each of its facets.
+pub(super) fn add_sliding<const D: usize, const N: usize>(
+    (problem, facets): (&Problem<D, N>, &[SlidingFacets]),
+    length: f64,
+    now: &ForcesKnown<D>,
+    next: &MotionKnown<D>,
+    density: &Densities<D>,
+    friction: &mut [[f64; 2]],
+) {
+    let surface = problem.surface();
+    let all = surface.sliding().iter().zip(facets).zip(now.density.sliding().iter().zip(density.sliding()));
+    for ((sliding, facets), (start, end)) in all {
+        if sliding.law().friction() == 0.0 || (start.is_zero() && end.is_zero()) {
+            continue;
+        }
+        let tangential = |field: &[[f64; D]], side: &Side| -> Vec<f64> {
+            let node = |k: usize| surface.nodes()[side.position(k)].node.index();
+            (0..side.len()).map(|k| along(&field[node(k)], sliding.tangent())).collect()
+        };
+        let both = |field: &[[f64; D]]| [sliding.slave(), sliding.master()].map(|side| tangential(field, side));
+        let [from, to] = [now.now.motion.velocity(), next.now.velocity()].map(both);
+        let mut add = |density: &SlidingDensity<D>, slip: &[Vec<f64>; 2], parts: [f64; 2]| {
+            density.friction_power(problem, sliding, slip, |piece, power| {
+                for facet in facets.of(piece) {
+                    (0..2).for_each(|k| friction[facet][k] += 0.5 * parts[k] * power);
+                }
+            });
+        };
+        // The weights of three powers in the integrals over the first half and all of the step.
+        let [half, all] = [0.5 * length, length];
+        add(start, &from, [half, 0.5 * all]);
+        add(end, &to, [0.0, 0.5 * all]);
+        if let Some(middle) = &next.mid_velocity {
+            let slip = both(middle);
+            let place = both(next.now.displacement());
+            let quarter = 0.25 * length;
+            let at_middle = |k: usize, node: usize| place[k][node] - quarter * (slip[k][node] + to[k][node]);
+            let shift = sliding.shift(|node| at_middle(0, node), |node| at_middle(1, node));
+            let mean = SlidingDensity::mean(start, end, sliding.coupling_at(shift));
+            add(&mean, &slip, [half, all]);
+        }
+    }
 }

@@ -129,6 +129,11 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         NormalMisfit::default()
     }
 
+    /// The weight of the work of normal forces that such densities miss.
+    fn weight_of_work(&self) -> f64 {
+        1.0
+    }
+
     /// The friction part of η on each candidate facet (J), up to the middle and the end of the step from `now` to
     /// `next`; `length` is that of the step (s), `density` F_DA at its end.
     fn friction(

@@ -23,5 +23,6 @@ mod malformed;
 mod maps;
 mod pairs;
 mod shapes;
+mod sliding;
 mod sources;
 mod symmetries;

@@ -7,7 +7,7 @@ use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{BarProblem, Builder, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Estimator, Options, Request, Sampling};
+use percute_estimator::{Options, Request, Sampling};
 use percute_testkit::{random_rectangle, rotated, translated, upside_down};
 
 const GAP: f64 = 50e-6;
@@ -231,14 +231,4 @@ fn bars_are_admissible() {
         let times: TimeGrid = steps(&problem, 0.9, 70);
         assert!(check("bars", &problem, &times) > 20);
     }
-}
-
-#[test]
-fn surfaces_that_slide_have_no_estimate() {
-    let groups = ["upper.bottom", "lower.bottom"];
-    let interface = Interface::sliding::<2>(groups[0], groups[1], 0.0).unwrap();
-    let problem = Blocks::head_on().builder().interface(interface).build().unwrap();
-    let times = TimeGrid::uniform(1e-6, 10).unwrap();
-    let refused = Estimator::new(&problem, &times, Options::default()).err();
-    assert_eq!(refused, Some(EstimateError::NotMatching { groups: groups.map(str::to_string) }));
 }

@@ -43,7 +43,13 @@ impl Drawn {
     }
 
     fn window(&self) -> FlightWindow<'_> {
-        FlightWindow { start: self.start, lengths: &self.lengths, target: &self.target, arrives: self.arrives }
+        FlightWindow {
+            start: self.start,
+            lengths: &self.lengths,
+            target: &self.target,
+            arrives: self.arrives,
+            floor: 0.0,
+        }
     }
 }
 
@@ -60,13 +66,14 @@ fn on_a_grid(window: &FlightWindow<'_>, points: usize) -> f64 {
     let mut conditions: Vec<Condition> = Vec::new();
     let last = window.lengths.len() - 1;
     if window.arrives {
-        conditions.push(condition(window, &Cut { half_step: last, offset: window.lengths[last] }));
+        conditions.push(condition(window, &Cut { half_step: last, offset: window.lengths[last] }, 0.0));
     }
     for (half_step, length) in window.lengths.iter().enumerate() {
         let offsets = (1..=points).map(|p| length * p as f64 / points as f64);
         // The very end of an arrival is the equality above.
         let given = |offset: f64| window.arrives && half_step == last && offset == *length;
-        conditions.extend(offsets.filter(|o| !given(*o)).map(|offset| condition(window, &Cut { half_step, offset })));
+        conditions
+            .extend(offsets.filter(|o| !given(*o)).map(|offset| condition(window, &Cut { half_step, offset }, 0.0)));
     }
     let weights: Vec<f64> = (0..free).map(|k| window.weight(k)).collect();
     let quadratic = CscMatrix::new(free, free, (0..=free).collect(), (0..free).collect(), weights.clone());
@@ -172,7 +179,7 @@ fn chatter_meets_windows_that_penetrate() {
 }
 
 fn window<'a>(start: (f64, f64), lengths: &'a [f64], target: &'a [f64]) -> FlightWindow<'a> {
-    FlightWindow { start, lengths, target, arrives: true }
+    FlightWindow { start, lengths, target, arrives: true, floor: 0.0 }
 }
 
 /// A step has two half steps, so that tracks never make a window without a free instant; should one

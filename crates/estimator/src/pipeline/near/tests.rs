@@ -27,7 +27,9 @@ fn checked(track: &ContactTrack) -> Residuals {
         maps: &Maps::new(Request::default(), &problem).unwrap(),
     };
     let reconstruction = reconstruction::new(&problem, &times, &Options::default());
-    let context = ContactSampling { shared: &shared, reconstruction: &*reconstruction, fastest: 1.0, tracks: &tracks };
+    let (fastest, sliding) = (1.0, &SlidingMisfit::new(&problem, 1));
+    let context =
+        ContactSampling { shared: &shared, reconstruction: &*reconstruction, fastest, tracks: &tracks, sliding };
     let mut near = near_elements(&problem).remove(0);
     let sampler = ElementSampler::new(&shared, near.element);
     let surface = problem.surface().nodes().len();

@@ -24,6 +24,17 @@ pub(super) struct ImpulseSmoothing<const D: usize> {
     pending: Vec<VecDeque<Pending<D>>>,
 }
 
+/// What a force of a node stops, where it changes in time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stopped {
+    /// The mass that it moves (kg).
+    pub(super) mass: f64,
+    /// τ (s).
+    pub(super) time: f64,
+    /// The relative acceleration along the normal (m/s²).
+    pub(super) acceleration: f64,
+}
+
 /// An impulse on its way.
 #[derive(Clone, Copy, Debug)]
 struct Pending<const D: usize> {
@@ -58,8 +69,9 @@ impl<const D: usize> ImpulseSmoothing<D> {
         self.time[at]
     }
 
-    /// The forces (N) of step n, of which reactions and total accelerations are given. All their impulse is kept, but
-    /// for the rest after the last step. Nothing depends on the length of later steps.
+    /// The forces (N) of step n, of which reactions and total accelerations are given, and what those of surfaces that
+    /// slide stop. All their impulse is kept, but for the rest after the last step. Nothing depends on the length of later
+    /// steps.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -67,6 +79,7 @@ impl<const D: usize> ImpulseSmoothing<D> {
         n: usize,
         reaction: &[[f64; D]],
         acceleration: impl Fn(usize) -> [f64; D],
+        stopped: &[Option<Stopped>],
     ) -> Vec<[f64; D]> {
         let (now, step) = (times.instants()[n], times.step(n.max(1) - 1));
         // The reaction at t_0 acts for half a step.
@@ -75,19 +88,26 @@ impl<const D: usize> ImpulseSmoothing<D> {
         let surface = problem.surface();
         for (k, (contact, force)) in surface.nodes().iter().zip(&mut forces).enumerate() {
             let frame = problem.obstacles()[contact.obstacle].flat_frame();
-            let (pending, time) = (&mut self.pending[k], self.time[k]);
+            let slides = stopped.get(k).copied().flatten();
+            let (pending, time) = (&mut self.pending[k], slides.map_or(self.time[k], |stopped| stopped.time));
             let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
-                let mut towards = acceleration(contact.node.index());
-                if let Some(opposite) = contact.opposite {
-                    let other = acceleration(surface.nodes()[opposite].node.index());
-                    (0..D).for_each(|c| towards[c] -= other[c]);
-                }
-                let mut part = frame.split(&towards).0;
-                if let Some(beside) = contact.beside {
-                    part = stopped_in_corner(problem, [k, beside], reaction, part, &towards);
-                }
-                let share = (surface.moved_mass(k, problem.mass()) * part / normal).min(1.0);
+                let stopped = slides.map_or_else(
+                    || {
+                        let mut towards = acceleration(contact.node.index());
+                        if let Some(opposite) = contact.opposite {
+                            let other = acceleration(surface.nodes()[opposite].node.index());
+                            (0..D).for_each(|c| towards[c] -= other[c]);
+                        }
+                        let mut part = frame.split(&towards).0;
+                        if let Some(beside) = contact.beside {
+                            part = stopped_in_corner(problem, [k, beside], reaction, part, &towards);
+                        }
+                        surface.moved_mass(k, problem.mass()) * part
+                    },
+                    |stopped| stopped.mass * stopped.acceleration,
+                );
+                let share = (stopped / normal).min(1.0);
                 if share > NEGLIGIBLE {
                     pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
@@ -159,7 +179,7 @@ mod tests {
         let mut smoothing = ImpulseSmoothing::new(&problem);
         let one = |(n, &(reaction, acceleration)): (usize, &(f64, f64))| {
             let all = |node| [if node == 0 { acceleration } else { 0.0 }];
-            smoothing.advance(&problem, times, n, &[[reaction]], all)[0][0]
+            smoothing.advance(&problem, times, n, &[[reaction]], all, &[])[0][0]
         };
         steps.iter().enumerate().map(one).collect()
     }

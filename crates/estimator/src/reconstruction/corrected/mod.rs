@@ -6,9 +6,10 @@ mod impulse_smoothing;
 mod lumping_difference;
 mod moment_correction;
 mod motions;
+mod sliding;
 mod traction_minimisation;
 
-use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps};
+use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps, friction};
 use crate::acceleration::accelerate;
 use crate::concentrated::TractionShape;
 use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact, driving_forces};
@@ -19,7 +20,7 @@ use crate::kinematic::ContactTrack;
 use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::residual::worse;
-use crate::time_level::{ForcesKnown, SurfaceStep};
+use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use concentration::Concentration;
 use concentration::OwnForces;
@@ -27,13 +28,15 @@ use impulse_smoothing::ImpulseSmoothing;
 use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
 use motions::{AuxiliaryLevel, Motions, Shares, SimulatedLevel};
-use percute_core::contact::ContactNode;
+use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
+use sliding::SlidingForces;
 use std::borrow::Cow;
+use std::sync::Arc;
 use traction_minimisation::TractionMinimisation;
 
 /// The reconstruction that drops no reaction, except at nodes with a contact of their own.
@@ -47,6 +50,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     own_forces: OwnForces<D>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
+    sliding: SlidingForces<'p, D, N>,
     motions: Option<Motions<'p, D, N>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
@@ -74,6 +78,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             own_forces: OwnForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
+            sliding: SlidingForces::new(problem),
             motions: keeps(Ablation::AuxiliarySolution).then(|| Motions::new(problem, times, shares)),
             halvings: [0.0; 2],
             mixed: options.acceleration(D) == Acceleration::Mixed,
@@ -92,14 +97,14 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         &self,
         dynamics: &Dynamics<'_, D, N>,
         state: &State<'_, D>,
-        contact: Vec<[f64; D]>,
-        gap: &[f64],
+        [contact, sudden]: [Vec<[f64; D]>; 2],
+        around: &Around<'_>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
         let (displacement, mut force) = (pool.copy(step.displacement), pool.take());
         state.write_force_without_contact(problem.surface(), &mut force);
-        let densities = self.level([&contact, step.reaction], gap);
+        let densities = self.level([&contact, &sudden], around);
         let pull = driving_forces(problem, &densities.acting);
         let lumping_difference = self.mixed.then(|| {
             let mut acceleration = force.clone();
@@ -110,21 +115,22 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
-    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], gap: &[f64]) -> LevelDensities<D> {
-        LevelDensities { acting: self.at(acting, gap), sudden: self.at(sudden, gap) }
+    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &Around<'_>) -> LevelDensities<D> {
+        LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
     }
 
-    /// The densities of a level: those that were kept, or those of its forces and reactions.
+    /// The densities of a level: those that were kept, or those of its forces and reactions without surfaces that slide.
     fn kept<'a>(&self, step: &'a SurfaceStep<D>) -> Cow<'a, LevelDensities<D>> {
-        let made = || Cow::Owned(self.level([&step.force, &step.reaction], &step.gap));
+        let around = Around { gap: &step.gap, couplings: &[] };
+        let made = || Cow::Owned(self.level([&step.force, &step.reaction], &around));
         step.densities.as_ref().map_or_else(made, Cow::Borrowed)
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// facet, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    fn at(&self, reaction: &[[f64; D]], gap: &[f64]) -> Densities<D> {
-        let problem = self.problem;
+    fn at(&self, reaction: &[[f64; D]], around: &Around<'_>) -> Densities<D> {
+        let (problem, surface) = (self.problem, self.problem.surface());
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
             problem.obstacles()[contact.obstacle].project_into_cone(force)
@@ -135,10 +141,11 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mut shapes: Vec<Option<TractionShape>> = Vec::with_capacity(nodes.len());
         for (at, force) in reaction.iter().enumerate() {
             // The traction on the other one of two nodes that touch is the same, reversed.
-            let facing = nodes[at].opposite.filter(|_| !problem.surface().leads(at));
+            let facing = nodes[at].opposite.filter(|_| !surface.leads(at));
+            let concentration = concentration.filter(|_| surface.sliding_of(at).is_none());
             shapes.push(concentration.and_then(|concentration| match facing {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
-                None => concentration.shape(problem, at, force, gap),
+                None => concentration.shape(problem, at, force, around.gap),
             }));
         }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
@@ -146,6 +153,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             let centroid =
                 |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
             correction.apply(&mut reaction, &centroid);
+            self.sliding.correct_moments(around.couplings, &mut reaction);
             for (at, contact) in nodes.iter().enumerate() {
                 if let Some(first) = contact.opposite.filter(|&first| first < at) {
                     reaction[at] = reaction[first].map(|f| -f);
@@ -154,6 +162,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         }
         let density = |f: usize, k: usize| match shaped(k) {
             Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),
+            None if surface.sliding_of(k).is_some() => [0.0; D],
             None => reaction[k].map(|r| r / self.tributary[k]),
         };
         let (mut hats, mut shares) = (Vec::new(), 0.0);
@@ -164,8 +173,18 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 hats.extend(own);
             }
         }
-        Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats).with_shares(shares)
+        let made = Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats);
+        let sliding = self.sliding.densities(around.couplings, &reaction);
+        made.with_shares(shares).with_sliding(problem, self.sliding.facets(), sliding)
     }
+}
+
+/// What the nodes of the contact surface face at an instant.
+struct Around<'a> {
+    /// Gaps of the simulation (m).
+    gap: &'a [f64],
+    /// Those of surfaces that slide.
+    couplings: &'a [Arc<Coupling>],
 }
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
@@ -205,18 +224,25 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
+        let surface = problem.surface();
+        let couplings: Vec<Arc<Coupling>> =
+            surface.sliding().iter().map(|sliding| Arc::new(sliding.coupling(surface, step.displacement))).collect();
+        let mut arresting = self.sliding.of(self.times, state);
         let mut contact = match &mut self.impulse_smoothing {
             Some(smoothing) => {
-                smoothing.advance(problem, self.times, step.index, step.reaction, |node| state.acceleration_of(node))
+                let acceleration = |node| state.acceleration_of(node);
+                let stopped = self.sliding.stopped(&couplings, acceleration);
+                smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped)
             }
-            None => step.reaction.to_vec(),
+            None => arresting.clone(),
         };
-        let gap = problem.surface().gaps(step.displacement);
+        [&mut arresting, &mut contact].into_iter().for_each(|forces| self.sliding.gather(&couplings, forces));
+        let gap = surface.gaps(step.displacement);
+        let around = Around { gap: &gap, couplings: &couplings };
         let Some(mut motions) = self.motions.take() else {
-            return self.balance_simulation(dynamics, state, contact, &gap, pool);
+            return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };
         motions.begin(dynamics, step.index);
-        let mut arresting = step.reaction.to_vec();
         if let Some(concentration) = &self.concentration {
             let approaches = motions.approaches(dynamics, step.index);
             let (step, smoothing) = (self.times.step(step.index), self.impulse_smoothing.as_ref());
@@ -224,7 +250,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             let fields = [contact.as_mut_slice(), arresting.as_mut_slice()];
             self.own_forces.apply(problem, concentration, &gap, |at| approaches[at], steps, fields);
         }
-        let densities = self.level([&contact, &arresting], &gap);
+        let densities = self.level([&contact, &arresting], &around);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
         // The pass fills all of them.
@@ -259,6 +285,20 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         Some(OffContact::new(self.problem, [&densities.start, &densities.end], sudden))
     }
 
+    fn friction(
+        &self,
+        problem: &Problem<D, N>,
+        length: f64,
+        now: &ForcesKnown<D>,
+        next: &MotionKnown<D>,
+        density: &Densities<D>,
+    ) -> Vec<[f64; 2]> {
+        let mut friction = friction::friction(problem, length, now, next, density);
+        let of = (problem, self.sliding.facets());
+        friction::add_sliding(of, length, now, next, density, &mut friction);
+        friction
+    }
+
     fn concentration(&self) -> Option<&Concentration<D>> {
         self.concentration.as_ref()
     }
@@ -273,6 +313,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
 
     fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
+    }
+
+    fn weight_of_work(&self) -> f64 {
+        self.normal_work
     }
 
     fn equilibrate(

@@ -8,7 +8,7 @@
 //! Friction is multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room;
 //! there is always enough.
 
-use crate::contact_density::{along, tangent};
+use crate::direction::{along, tangent};
 use percute_core::contact::Coulomb;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
@@ -19,7 +19,7 @@ const NOTHING: f64 = 1e-24;
 
 /// The nodes of a body that face one plane, with their common data.
 #[derive(Clone, Debug)]
-struct Group<const D: usize> {
+pub(super) struct Group<const D: usize> {
     normal: [f64; D],
     tangent: [f64; D],
     law: Coulomb,
@@ -28,15 +28,15 @@ struct Group<const D: usize> {
 
 /// A node of the contact surface.
 #[derive(Clone, Copy, Debug)]
-struct CorrectedNode {
+pub(super) struct CorrectedNode {
     /// Position in the contact surface.
-    at: usize,
+    pub(super) at: usize,
     /// Centroid of its shape function along the plane (m).
-    centroid: f64,
-    /// From there to the node, along the plane and away from it (m).
-    lever: [f64; 2],
+    pub(super) centroid: f64,
+    /// From there to the place of its reaction, along the plane and away from it (m).
+    pub(super) lever: [f64; 2],
     /// Whether its tangential motion is prescribed: no friction moves it.
-    guided: bool,
+    pub(super) guided: bool,
 }
 
 /// Gives reactions as forces whose densities have their moment.
@@ -54,7 +54,8 @@ impl<const D: usize> MomentCorrection<D> {
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);
         let mut groups: Vec<((NodeId, usize), Group<D>)> = Vec::new();
-        let leading = surface.nodes().iter().zip(&centroids).enumerate().filter(|(at, _)| surface.leads(*at));
+        let flat = |at: usize| surface.leads(at) && surface.sliding_of(at).is_none();
+        let leading = surface.nodes().iter().zip(&centroids).enumerate().filter(|(at, _)| flat(*at));
         for (at, (contact, centroid)) in leading {
             let key = (part[contact.node.index()], contact.obstacle);
             let found = groups.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
@@ -85,7 +86,12 @@ impl<const D: usize> MomentCorrection<D> {
 }
 
 impl<const D: usize> Group<D> {
-    fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
+    pub(super) fn new(normal: [f64; D], tangent: [f64; D], law: Coulomb, nodes: Vec<CorrectedNode>) -> Self {
+        Self { normal, tangent, law, nodes }
+    }
+
+    /// The same for one group.
+    pub(super) fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
         let nodes: Vec<CorrectedNode> = self.nodes.iter().map(|node| self.moved(node, centroid(node.at))).collect();
         let normal: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.normal)).collect();
         if normal.iter().filter(|n| **n > 0.0).count() < 2 {

@@ -75,7 +75,8 @@ impl<const D: usize> OwnForces<D> {
     ) {
         let surface = problem.surface();
         let mut known = Known { problem, concentration, gap, steps: &steps, contact, arresting };
-        for (at, node) in surface.nodes().iter().enumerate().filter(|&(at, node)| node.free && surface.leads(at)) {
+        let stands = |at: usize| surface.leads(at) && surface.sliding_of(at).is_none();
+        for (at, node) in surface.nodes().iter().enumerate().filter(|&(at, node)| node.free && stands(at)) {
             match node.beside {
                 None => {
                     let last = self.contacts[at].take();

@@ -1,7 +1,7 @@
 use super::MomentCorrection;
 use crate::contact_density::nodal_forces;
 use crate::options::Options;
-use crate::reconstruction::corrected::Corrected;
+use crate::reconstruction::corrected::{Around, Corrected};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
@@ -45,7 +45,8 @@ fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
     nodal_forces(
         problem,
-        &Corrected::new(problem, &times, &Options::default()).at(reaction, &vec![0.0; reaction.len()]),
+        &Corrected::new(problem, &times, &Options::default())
+            .at(reaction, &Around { gap: &vec![0.0; reaction.len()], couplings: &[] }),
     )
 }
 

@@ -1,0 +1,337 @@
+//! The admissible motion of two surfaces that slide along each other.
+//!
+//! Contact of the simulation is between a node of the slave and a weighted part of the master. Problem P_CA is solved
+//! for this weighted relative motion x_k. Its change from the simulation, δ_k = ẋ_k − W_k, is shared by the nodes of both
+//! surfaces with the least kinetic energy: Δv = ±m⁻¹Gᵀ A⁻¹ (w δ). Where the surfaces still penetrate between their nodes,
+//! nodes of the slave are lifted: x_k is solved for again, at rest at a small height p_k, and the change is that of the
+//! node alone. Zero gap at each point is not asked for, as it would make the interface straight.
+//!
+//! Lifts follow from the whole run. So this motion is known at its end.
+
+mod lift;
+mod path;
+mod record;
+
+use super::normal_motions::{NormalMotions, Pair};
+use crate::residual::{Residuals, worse};
+use crate::scratch_file::{ScratchError, ScratchFile};
+use lift::Penetration;
+use path::{Target, solve};
+use percute_core::contact::{Side, SlidingSurfaces};
+use percute_core::problem::Problem;
+use record::{Motion, Record};
+use std::ops::Range;
+
+/// Rounds of lifts after which the search ends; a penetration that is left shows in the residuals.
+const MOST_ROUNDS: usize = 20;
+
+/// Instants that are worked on at once.
+const PIECE: usize = 64;
+
+/// The motion of two surfaces, of the simulation until the run is over and admissible from then on.
+#[derive(Debug)]
+pub(crate) struct SlidingMotion {
+    /// Among the pairs of surfaces that slide.
+    index: usize,
+    record: Record,
+    /// ẋ_k and x_k of the nodes of the slave, with their lifts (m/s, m), once they are known.
+    relative: NormalMotions,
+    /// Lifts p_k (m).
+    lifts: Vec<f64>,
+    rounds: usize,
+}
+
+/// Both surfaces at an instant, in the admissible motion.
+#[derive(Clone, Debug)]
+pub(crate) struct SlidingInstant {
+    /// How far the slave has moved against the master along the tangent (m).
+    pub(crate) shift: f64,
+    /// η of the nodes of the slave and of the master (m).
+    pub(crate) eta: [Vec<f64>; 2],
+    /// ẋ_k of the nodes of the slave (m/s).
+    pub(crate) speed: Vec<f64>,
+}
+
+impl SlidingMotion {
+    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, index: usize, span: usize) -> Self {
+        let sliding = &problem.surface().sliding()[index];
+        Self {
+            index,
+            record: Record::new(sliding, span),
+            relative: NormalMotions::new(sliding.slave().len(), span, ScratchFile::default()),
+            lifts: vec![0.0; sliding.slave().len()],
+            rounds: 0,
+        }
+    }
+
+    /// Takes in the instant at the end of a half step of this length (s), with displacement (m) and velocity (m/s) of
+    /// the nodes of the mesh.
+    ///
+    /// # Errors
+    /// A temporary file that fails.
+    pub(crate) fn push<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        half: f64,
+        motion: impl Fn(usize) -> [[f64; D]; 2],
+    ) -> Result<(), ScratchError> {
+        let surface = problem.surface();
+        self.record.push((surface, &surface.sliding()[self.index]), half, motion)
+    }
+
+    /// Takes in which nodes of the contact surface touch at a step.
+    pub(crate) fn touch<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        step: usize,
+        touching: &[bool],
+    ) {
+        let slave = problem.surface().sliding()[self.index].slave();
+        self.record.touch(step, |node| touching[slave.position(node)]);
+    }
+
+    /// Finds the admissible motion of the run, and hands it on: for each node of the contact surface, the changes of
+    /// normal velocity and displacement (m/s, m) along its own normal from an instant on.
+    ///
+    /// # Errors
+    /// A temporary file that fails.
+    pub(crate) fn finish<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        residuals: &mut Residuals,
+        write: impl FnMut(usize, usize, &[Pair]) -> Result<(), ScratchError>,
+    ) -> Result<(), ScratchError> {
+        let sliding = &problem.surface().sliding()[self.index];
+        let count = self.record.count();
+        let scale = [problem.mesh().size(), problem.contact_tolerance()];
+        let slaves = sliding.slave().len();
+        let mut targets: Vec<Option<Target>> = Vec::with_capacity(slaves);
+        for node in 0..slaves {
+            targets.push(self.record.targets(node)?);
+        }
+        // Without lifts; the difference to the target is shared.
+        let mut change = Changes::new(sliding, count)?;
+        (0..count).try_for_each(|_| self.relative.extend())?;
+        for (node, target) in targets.iter().enumerate() {
+            let Some(target) = target else { continue };
+            let path = solve(&self.record, node, target, 0.0, scale, residuals)?;
+            self.relative.write(node, 0, &path)?;
+            change.aim(node, &path, &target.0)?;
+        }
+        change.share(problem, sliding, &mut self.record)?;
+        let without = residuals.onset;
+        loop {
+            let found = self.penetration(sliding, &mut change, scale)?;
+            self.rounds += 1;
+            if !found.is_found() || self.rounds > MOST_ROUNDS {
+                let [at, between] = found.deepest.map(|depth| depth / scale[0]);
+                residuals.penetration_at_instants = worse(residuals.penetration_at_instants, at);
+                residuals.penetration_between_instants = worse(residuals.penetration_between_instants, between);
+                break;
+            }
+            let mut onsets = Residuals::default();
+            for (node, more) in found.lift.iter().enumerate().filter(|(_, more)| **more > 0.0) {
+                let Some(target) = &targets[node] else { continue };
+                self.lifts[node] += more;
+                let path = solve(&self.record, node, target, self.lifts[node], scale, &mut onsets)?;
+                let mut last = Vec::with_capacity(count);
+                self.relative.read(node, 0..count, &mut last)?;
+                change.add(node, &path, &last)?;
+                self.relative.write(node, 0, &path)?;
+            }
+            residuals.onset = worse(without, onsets.onset);
+        }
+        change.hand_on(sliding, write)
+    }
+
+    /// The penetration of the motion so far.
+    fn penetration<const D: usize>(
+        &mut self,
+        sliding: &SlidingSurfaces<D>,
+        change: &mut Changes,
+        scale: [f64; 2],
+    ) -> Result<Penetration, ScratchError> {
+        let mut found = Penetration::new(sliding.slave().len(), scale);
+        let mut last: Option<Motion> = None;
+        for instants in portions(self.record.count()) {
+            let first = instants.start;
+            for (k, motion) in change.motions(sliding, &mut self.record, instants)?.into_iter().enumerate() {
+                found.at(sliding, &motion);
+                if let Some(last) = &last {
+                    found.between(sliding, [last, &motion], self.record.halves()[first + k]);
+                }
+                last = Some(motion);
+            }
+        }
+        Ok(found)
+    }
+
+    /// Both surfaces at some instants of the admissible motion; `change` gives the change of the normal displacement (m)
+    /// of a node of the contact surface along its own normal.
+    ///
+    /// # Errors
+    /// A temporary file that fails.
+    pub(crate) fn instants<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        instants: Range<usize>,
+        change: impl Fn(usize, usize) -> f64,
+    ) -> Result<Vec<SlidingInstant>, ScratchError> {
+        let sliding = &problem.surface().sliding()[self.index];
+        let motions = self.record.motions(sliding, instants.clone())?;
+        let mut made: Vec<SlidingInstant> = Vec::with_capacity(motions.len());
+        for (instant, mut motion) in instants.clone().zip(motions) {
+            for (k, side) in sides(sliding).into_iter().enumerate() {
+                for (node, eta) in motion.eta[k].iter_mut().enumerate() {
+                    *eta += SIGNS[k] * change(side.position(node), instant);
+                }
+            }
+            made.push(SlidingInstant {
+                shift: motion.shift[0],
+                eta: motion.eta,
+                speed: vec![0.0; sliding.slave().len()],
+            });
+        }
+        let mut pairs = Vec::new();
+        for node in 0..sliding.slave().len() {
+            pairs.clear();
+            self.relative.read(node, instants.clone(), &mut pairs)?;
+            made.iter_mut().zip(&pairs).for_each(|(made, [speed, _])| made.speed[node] = *speed);
+        }
+        Ok(made)
+    }
+}
+
+/// The normals of slave and master along that of the slave.
+const SIGNS: [f64; 2] = [1.0, -1.0];
+
+fn sides<const D: usize>(sliding: &SlidingSurfaces<D>) -> [&Side; 2] {
+    [sliding.slave(), sliding.master()]
+}
+
+/// All instants, some at a time.
+fn portions(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(PIECE).map(move |first| first..(first + PIECE).min(count))
+}
+
+/// The changes of the normal motion of both surfaces (m/s, m), along the normal of the slave, its nodes first.
+#[derive(Debug)]
+struct Changes {
+    all: NormalMotions,
+    slaves: usize,
+    count: usize,
+}
+
+impl Changes {
+    fn new<const D: usize>(sliding: &SlidingSurfaces<D>, count: usize) -> Result<Self, ScratchError> {
+        let slaves = sliding.slave().len();
+        let mut all = NormalMotions::new(slaves + sliding.master().len(), count, ScratchFile::default());
+        (0..count).try_for_each(|_| all.extend())?;
+        Ok(Self { all, slaves, count })
+    }
+
+    /// Keeps δ of a node of the slave until it is shared.
+    fn aim(&mut self, node: usize, path: &[Pair], target: &[f64]) -> Result<(), ScratchError> {
+        let miss: Vec<Pair> = path.iter().zip(target).map(|([speed, _], target)| [speed - target, 0.0]).collect();
+        self.all.write(node, 0, &miss)
+    }
+
+    /// Shares δ out at each instant; displacements follow by the trapezoidal rule.
+    fn share<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        sliding: &SlidingSurfaces<D>,
+        record: &mut Record,
+    ) -> Result<(), ScratchError> {
+        let inverse = sides(sliding).map(|side| -> Vec<f64> {
+            let node = |k| problem.surface().nodes()[side.position(k)].node.index();
+            (0..side.len()).map(|k| 1.0 / problem.mass()[node(k)]).collect()
+        });
+        let nodes = self.slaves + inverse[1].len();
+        let mut last: Vec<Pair> = vec![[0.0; 2]; nodes];
+        for instants in portions(self.count) {
+            let shifts: Vec<f64> = record.shifts(instants.clone());
+            let mut portion = self.read(0..self.slaves, instants.clone())?;
+            portion.resize(nodes, vec![[0.0; 2]; instants.len()]);
+            for (j, instant) in instants.clone().enumerate() {
+                let mut speed = vec![0.0; nodes];
+                if portion[..self.slaves].iter().any(|pairs| pairs[j][0] != 0.0) {
+                    let coupling = sliding.coupling_at(shifts[j]);
+                    let right: Vec<f64> = (0..self.slaves).map(|k| coupling.weight(k) * portion[k][j][0]).collect();
+                    let [slave, master] = coupling.share([&inverse[0], &inverse[1]], &right);
+                    speed = slave.into_iter().chain(master).collect();
+                }
+                let half = record.halves()[instant];
+                for (k, speed) in speed.into_iter().enumerate() {
+                    let place = last[k][1] + 0.5 * half * (last[k][0] + speed);
+                    last[k] = [speed, place];
+                    portion[k][j] = last[k];
+                }
+            }
+            for (k, pairs) in portion.iter().enumerate() {
+                self.all.write(k, instants.start, pairs)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the change from one x_k to another to a node of the slave alone.
+    fn add(&mut self, node: usize, path: &[Pair], last: &[Pair]) -> Result<(), ScratchError> {
+        let mut pairs = self.read(node..node + 1, 0..self.count)?.remove(0);
+        for (pair, (now, last)) in pairs.iter_mut().zip(path.iter().zip(last)) {
+            (0..2).for_each(|c| pair[c] += now[c] - last[c]);
+        }
+        self.all.write(node, 0, &pairs)
+    }
+
+    /// The motion of both surfaces with these changes.
+    fn motions<const D: usize>(
+        &mut self,
+        sliding: &SlidingSurfaces<D>,
+        record: &mut Record,
+        instants: Range<usize>,
+    ) -> Result<Vec<Motion>, ScratchError> {
+        let mut motions = record.motions(sliding, instants.clone())?;
+        let changes = self.read(0..self.slaves + sliding.master().len(), instants)?;
+        for (j, motion) in motions.iter_mut().enumerate() {
+            let (slave, master) = changes.split_at(self.slaves);
+            for (k, side) in [slave, master].into_iter().enumerate() {
+                for (node, pairs) in side.iter().enumerate() {
+                    let [speed, place] = pairs[j];
+                    motion.speed[k][node] += speed;
+                    motion.eta[k][node] += place;
+                }
+            }
+        }
+        Ok(motions)
+    }
+
+    /// Hands on the changes of each node along its own normal.
+    fn hand_on<const D: usize>(
+        &mut self,
+        sliding: &SlidingSurfaces<D>,
+        mut write: impl FnMut(usize, usize, &[Pair]) -> Result<(), ScratchError>,
+    ) -> Result<(), ScratchError> {
+        let mut first = 0;
+        for (side, sign) in sides(sliding).into_iter().zip(SIGNS) {
+            for node in 0..side.len() {
+                for instants in portions(self.count) {
+                    let pairs = self.read(first + node..first + node + 1, instants.clone())?.remove(0);
+                    let own: Vec<Pair> = pairs.iter().map(|pair| pair.map(|value| sign * value)).collect();
+                    write(side.position(node), instants.start, &own)?;
+                }
+            }
+            first += side.len();
+        }
+        Ok(())
+    }
+
+    /// Those of some nodes at some instants.
+    fn read(&mut self, nodes: Range<usize>, instants: Range<usize>) -> Result<Vec<Vec<Pair>>, ScratchError> {
+        let read = |node| {
+            let mut pairs = Vec::with_capacity(instants.len());
+            self.all.read(node, instants.clone(), &mut pairs).map(|()| pairs)
+        };
+        nodes.map(read).collect()
+    }
+}

@@ -1,0 +1,188 @@
+//! Forces of surfaces that slide along each other.
+//!
+//! The nodal forces of the simulation, Dᵀλ and −Mᵀλ, are those of multipliers of the nodes of the slave. The force of such
+//! a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions by a
+//! correction over all nodes that act.
+
+use super::impulse_smoothing::Stopped;
+use super::moment_correction::{CorrectedNode, Group};
+use crate::contact_density::{SlidingDensity, SlidingFacets};
+use crate::direction::along;
+use crate::partition::pieces;
+use percute_core::contact::{Coupling, Side, SlidingSurfaces};
+use percute_core::history::State;
+use percute_core::ids::ElementId;
+use percute_core::material::Law;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::sync::Arc;
+
+/// The forces of all surfaces that slide.
+#[derive(Debug)]
+pub(super) struct SlidingForces<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    facets: Vec<SlidingFacets>,
+    /// Mean impedance ρc over slave and master of each pair of surfaces, times the thickness (kg/(m s)).
+    impedance: Vec<[f64; 2]>,
+}
+
+impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
+    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+        let impedance =
+            |sliding: &SlidingSurfaces<D>| [sliding.slave(), sliding.master()].map(|side| impedance(problem, side));
+        Self {
+            problem,
+            facets: SlidingFacets::all(problem),
+            impedance: problem.surface().sliding().iter().map(impedance).collect(),
+        }
+    }
+
+    /// The forces of the nodes of the contact surface (N) at a step: on slaves R_k, on masters nothing, elsewhere the
+    /// reactions.
+    pub(super) fn of(&self, times: &TimeGrid, state: &State<'_, D>) -> Vec<[f64; D]> {
+        let (surface, step) = (self.problem.surface(), state.step());
+        let mut forces = step.reaction.to_vec();
+        for sliding in surface.sliding() {
+            let positions = || sliding.positions();
+            if positions().all(|at| step.reaction[at] == [0.0; D]) {
+                continue;
+            }
+            // D and M of the step are those of the place at its end without contact.
+            let (length, h) = (times.step(step.index), times.velocity_step(step.index));
+            let predicted = |side: &Side, k: usize| {
+                let at = side.position(k);
+                let node = surface.nodes()[at].node.index();
+                let (acceleration, mass) = (state.acceleration_of(node), self.problem.mass()[node]);
+                let place: [f64; D] = std::array::from_fn(|c| {
+                    let velocity = state.half_step()[node][c] + h * (acceleration[c] - step.reaction[at][c] / mass);
+                    step.displacement[node][c] + length * velocity
+                });
+                along(&place, sliding.tangent())
+            };
+            let shift = sliding.shift(|k| predicted(sliding.slave(), k), |k| predicted(sliding.master(), k));
+            let coupling = sliding.coupling_at(shift);
+            let multipliers = sliding.multipliers(&coupling, step.reaction);
+            positions().for_each(|at| forces[at] = [0.0; D]);
+            for (k, multiplier) in multipliers.iter().enumerate() {
+                forces[sliding.slave().position(k)] = multiplier.map(|value| coupling.weight(k) * value);
+            }
+        }
+        forces
+    }
+
+    /// What a force of each node of a slave stops, with the coupling at an instant and total accelerations (m/s²), by the
+    /// position in the contact surface.
+    pub(super) fn stopped(
+        &self,
+        couplings: &[Arc<Coupling>],
+        acceleration: impl Fn(usize) -> [f64; D],
+    ) -> Vec<Option<Stopped>> {
+        let (surface, mass) = (self.problem.surface(), self.problem.mass());
+        let mut stopped = vec![None; if couplings.is_empty() { 0 } else { surface.nodes().len() }];
+        for ((sliding, coupling), [own, other]) in surface.sliding().iter().zip(couplings).zip(&self.impedance) {
+            let node = |side: &Side, k: usize| surface.nodes()[side.position(k)].node.index();
+            let inward = |side: &Side, k: usize| along(&acceleration(node(side, k)), sliding.frame().normal());
+            for k in (0..coupling.len()).filter(|&k| coupling.is_active(k)) {
+                let weight = coupling.weight(k);
+                let moved = weight * weight
+                    / mobility(coupling, k, [sliding.slave(), sliding.master()], |side, k| mass[node(side, k)]);
+                let relative = coupling.difference(k, |k| inward(sliding.slave(), k), |k| inward(sliding.master(), k));
+                stopped[sliding.slave().position(k)] = Some(Stopped {
+                    mass: moved,
+                    time: moved * (1.0 / own + 1.0 / other) / weight,
+                    acceleration: relative / weight,
+                });
+            }
+        }
+        stopped
+    }
+
+    /// Moves forces of nodes of a slave that no longer act to the nearest ones that do.
+    pub(super) fn gather(&self, couplings: &[Arc<Coupling>], forces: &mut [[f64; D]]) {
+        for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
+            for k in (0..coupling.len()).filter(|&k| !coupling.is_active(k)) {
+                let at = sliding.slave().position(k);
+                let force = std::mem::replace(&mut forces[at], [0.0; D]);
+                let nearest =
+                    (0..coupling.len()).filter(|&k| coupling.is_active(k)).min_by_key(|other| other.abs_diff(k));
+                if let Some(nearest) = nearest.filter(|_| force != [0.0; D]) {
+                    let to = &mut forces[sliding.slave().position(nearest)];
+                    (0..D).for_each(|c| to[c] += force[c]);
+                }
+            }
+        }
+    }
+
+    /// Gives the forces of slaves (N) the moment of their reactions.
+    pub(super) fn correct_moments(&self, couplings: &[Arc<Coupling>], forces: &mut [[f64; D]]) {
+        for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
+            group(self.problem, sliding, coupling).apply(forces, &|_| None);
+        }
+    }
+
+    /// The densities of such forces.
+    pub(super) fn densities(&self, couplings: &[Arc<Coupling>], forces: &[[f64; D]]) -> Vec<SlidingDensity<D>> {
+        let all = self.problem.surface().sliding().iter().zip(couplings);
+        let density = |(sliding, coupling): (&SlidingSurfaces<D>, &Arc<Coupling>)| {
+            SlidingDensity::new(coupling, |k| forces[sliding.slave().position(k)])
+        };
+        all.map(density).collect()
+    }
+
+    pub(super) fn facets(&self) -> &[SlidingFacets] {
+        &self.facets
+    }
+}
+
+/// A_kk = Σ D_ki²/m_i + Σ M_kj²/m_j (m²/kg).
+fn mobility(coupling: &Coupling, k: usize, sides: [&Side; 2], mass: impl Fn(&Side, usize) -> f64) -> f64 {
+    let slave = coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0);
+    let own: f64 = slave.map(|(at, value)| value * value / mass(sides[0], k + at - 1)).sum();
+    let (first, row) = coupling.master_row(k);
+    let other = row.iter().enumerate().map(|(at, value)| value * value / mass(sides[1], first + at));
+    own + other.sum::<f64>()
+}
+
+/// Mean of ρc over a surface, by length, times the thickness.
+fn impedance<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
+    let positions = side.position(0)..side.position(side.len());
+    let (mut sum, mut length) = (0.0, 0.0);
+    for facet in problem.surface().facets().iter().filter(|facet| positions.contains(&facet.nodes[0])) {
+        let owner: ElementId = problem.mesh().facets()[facet.facet.index()].owner;
+        let law = problem.material(owner);
+        sum += law.density() * law.wave_speed() * facet.area;
+        length += facet.area / law.extent();
+    }
+    sum / length
+}
+
+/// All nodes of a slave that act, with the centroids of their densities.
+fn group<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    sliding: &SlidingSurfaces<D>,
+    coupling: &Coupling,
+) -> Group<D> {
+    let slave = sliding.slave();
+    // ∫χξ, ∫(ψ − χ)ξ and ∫(ψ − χ)η of each node.
+    let mut moments = vec![[0.0; 3]; slave.len()];
+    for piece in pieces(sliding, coupling) {
+        let [edge, first] = piece.slave;
+        let shape = coupling.shape(edge);
+        let (dual, density) = (piece.on_slave.map(|s| shape.dual(s)), piece.on_slave.map(|s| shape.density(s)));
+        let eta = piece.slave_values(|node| slave.eta()[node]);
+        for k in 0..2 {
+            let own = density.map(|both| both[k]);
+            let apart = [0, 1].map(|end| dual[end][k] - own[end]);
+            let sums = [piece.product(own, piece.ends), piece.product(apart, piece.ends), piece.product(apart, eta)];
+            moments[first + k].iter_mut().zip(sums).for_each(|(moment, sum)| *moment += sum);
+        }
+    }
+    let node = |(k, moments): (usize, &[f64; 3])| {
+        let [centroid, along, across] = moments.map(|moment| moment / coupling.weight(k));
+        let at = slave.position(k);
+        let guided = problem.surface().nodes()[at].guided;
+        CorrectedNode { at, centroid, lever: [along, across], guided }
+    };
+    let acting = moments.iter().enumerate().filter(|(k, _)| coupling.is_active(*k));
+    Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.map(node).collect())
+}

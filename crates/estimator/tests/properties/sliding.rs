@@ -1,0 +1,143 @@
+//! Surfaces of two bodies that slide along each other.
+
+use crate::bodies::{aluminium, steps};
+use crate::estimating::{assert_admissible, estimate, history};
+use percute_core::contact::Interface;
+use percute_core::material::Elastic;
+use percute_core::mesh::TriangleMesh;
+use percute_core::problem::{Initial, TriangleProblem};
+use percute_estimator::{EstimateError, Estimator, Options, Reconstruction, Sampling};
+use percute_testkit::{rotated, translated, upside_down};
+
+const GAP: f64 = 50e-6;
+const HEIGHT: f64 = 0.025;
+
+/// Two blocks, one above the other.
+#[derive(Clone, Copy)]
+struct Blocks {
+    /// Cells of the upper and of the lower one.
+    cells: [[usize; 2]; 2],
+    widths: [f64; 2],
+    /// How far the upper one is to the right (m), and by which angle it is turned (rad).
+    aside: f64,
+    tilt: f64,
+    materials: [Elastic; 2],
+    velocities: [[f64; 2]; 2],
+    friction: f64,
+    /// Both turned by an angle (rad).
+    angle: f64,
+}
+
+impl Blocks {
+    fn oblique() -> Self {
+        Self {
+            cells: [[14, 11], [20, 16]],
+            widths: [0.04; 2],
+            aside: 0.0,
+            tilt: 0.0,
+            materials: [aluminium(); 2],
+            velocities: [[8.0, -20.0], [0.0, 20.0]],
+            friction: 0.2,
+            angle: 0.0,
+        }
+    }
+
+    fn mesh(&self) -> TriangleMesh {
+        let block =
+            |k: usize| TriangleMesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
+        let upper = rotated(&block(0), self.tilt).unwrap();
+        let low = upper.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+        let upper = translated(&upper, [self.aside, HEIGHT + GAP - low]).unwrap();
+        let both = TriangleMesh::joined(&[("upper", &upper), ("lower", &block(1))]).unwrap();
+        rotated(&both, self.angle).unwrap()
+    }
+
+    fn between(&self, interface: Interface) -> TriangleProblem {
+        let (mesh, (sin, cos)) = (self.mesh(), self.angle.sin_cos());
+        let turned = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
+        let upper = (self.cells[0][0] + 1) * (self.cells[0][1] + 1);
+        let velocity = |node: usize| turned(self.velocities[usize::from(node >= upper)]);
+        let velocity = (0..mesh.node_count()).map(velocity).collect();
+        TriangleProblem::builder(mesh)
+            .material_of("upper", self.materials[0])
+            .material_of("lower", self.materials[1])
+            .initial_velocity(Initial::Nodal(velocity))
+            .interface(interface)
+            .build()
+            .unwrap()
+    }
+
+    fn problem(&self) -> TriangleProblem {
+        self.between(Interface::sliding::<2>("upper.bottom", "lower.top", self.friction).unwrap())
+    }
+}
+
+fn steel() -> Elastic {
+    Elastic::plane_stress(210e9, 0.3, 7800.0, 1.0).unwrap()
+}
+
+/// On surfaces with the same nodes that do not slide, as those of mirror images, multipliers are pairs of nodes:
+/// estimates agree part by part.
+#[test]
+fn on_matching_surfaces_multipliers_are_pairs() {
+    let strain = Elastic::plane_strain(70e9, 0.3, 2700.0, 2.0).unwrap();
+    for material in [aluminium(), strain] {
+        let block = translated(&TriangleMesh::rectangle(0.04, HEIGHT, 10, 8).unwrap(), [0.0, GAP]).unwrap();
+        let mesh = TriangleMesh::joined(&[("upper", &block), ("lower", &upside_down(&block).unwrap())]).unwrap();
+        let half = block.node_count();
+        let velocity: Vec<_> = (0..2 * half).map(|node| [0.0, if node < half { -20.0 } else { 20.0 }]).collect();
+        let between = |interface: Interface| {
+            TriangleProblem::builder(mesh.clone())
+                .material(material)
+                .initial_velocity(Initial::Nodal(velocity.clone()))
+                .interface(interface)
+                .build()
+                .unwrap()
+        };
+        let groups = ["upper.bottom", "lower.bottom"];
+        let pairs = between(Interface::matching::<2>(groups[0], groups[1], 0.2).unwrap());
+        let sliding = between(Interface::sliding::<2>(groups[0], groups[1], 0.2).unwrap());
+        let times = steps(&pairs, 0.9, 90);
+        let options = Options { every: Sampling::Every(1), ..Options::default() };
+        let [one, other] = [&pairs, &sliding].map(|problem| estimate(problem, &history(problem, &times), options));
+        assert_admissible("sliding", &other);
+        let scale = one.error.sup.powi(2);
+        for (a, b) in one.over_time.iter().zip(&other.over_time) {
+            let (one, other) = (a.parts, b.parts);
+            let parts = [(one.kinetic, other.kinetic), (one.elastic, other.elastic), (one.contact, other.contact)];
+            assert!(parts.iter().all(|(a, b)| (a - b).abs() <= 1e-9 * scale), "{:e}: {parts:?} {scale}", a.time);
+        }
+    }
+}
+
+/// Residuals of all conditions, whatever the blocks are and however they move.
+#[test]
+fn everything_is_admissible() {
+    let blocks = Blocks::oblique();
+    let cases = [
+        blocks,
+        Blocks { materials: [aluminium(), steel()], angle: 0.5, ..blocks },
+        Blocks { velocities: [[150.0, -20.0], [0.0, 20.0]], ..blocks },
+        Blocks { widths: [0.02, 0.04], cells: [[5, 6], [14, 11]], aside: 0.0113, ..blocks },
+        Blocks { tilt: 0.05, velocities: [[0.0, -200.0], [0.0, 200.0]], ..blocks },
+    ];
+    for (k, blocks) in cases.iter().enumerate() {
+        let problem = blocks.problem();
+        let times = steps(&problem, 0.9, 90);
+        let made = estimate(&problem, &history(&problem, &times), Options::default());
+        println!("{k} {:?} {:?} {:?}", made.error, made.parts, made.residuals);
+        assert_admissible(&format!("case {k}"), &made);
+    }
+}
+
+/// Only one reconstruction has an estimate of such surfaces.
+#[test]
+fn other_reconstructions_refuse() {
+    let problem = Blocks::oblique().problem();
+    let times = steps(&problem, 0.9, 10);
+    for reconstruction in [Reconstruction::Published, Reconstruction::Consistent] {
+        let refused = Estimator::new(&problem, &times, Options { reconstruction, ..Options::default() }).err();
+        let groups = ["upper.bottom", "lower.top"].map(str::to_string);
+        assert_eq!(refused, Some(EstimateError::NotMatching { groups }));
+    }
+}
