@@ -29,8 +29,6 @@ pub(crate) struct ContactTrack {
     first_altered: usize,
     /// Whether contact is solved for; a prescribed node keeps its motion.
     free: bool,
-    /// The least gap before the first contact (m), 0 or less.
-    floor: f64,
     onset: f64,
     at_instants: f64,
     between_instants: f64,
@@ -77,16 +75,10 @@ impl ContactTrack {
             touching,
             first_altered: usize::MAX,
             free,
-            floor: 0.0,
             onset: 0.0,
             at_instants: 0.0,
             between_instants: 0.0,
         }
-    }
-
-    /// The same, but before its first contact the gap may fall to one below 0 (m).
-    pub(super) fn descending_to(self, floor: f64) -> Self {
-        Self { floor, ..self }
     }
 
     /// A node whose motion comes all at once: at instants that are shown, the change from the simulation.
@@ -138,9 +130,7 @@ impl ContactTrack {
         while self.known < store.count() {
             let (first, target, lengths) = self.window(store, PIECE)?;
             let (velocity, gap) = self.last;
-            let floor = self.floor();
-            let window =
-                FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false, floor };
+            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
             let path = window.integrate(&target);
             self.record(&window, &path);
             store.write(self.node, first, &stored(path))?;
@@ -154,12 +144,10 @@ impl ContactTrack {
         while ahead.known < store.count() {
             let (_, target, lengths) = ahead.window(store, PIECE)?;
             let (velocity, gap) = ahead.last;
-            let floor = ahead.floor();
-            let window =
-                FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false, floor };
+            let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives: false };
             let path = window.integrate(&target);
             let (_, least) = window.deepest(&path);
-            if least.is_nan() || least < floor - tolerance {
+            if least.is_nan() || least < -tolerance {
                 return Ok(true);
             }
             let (velocity, gap) = path[path.len() - 1];
@@ -182,22 +170,16 @@ impl ContactTrack {
         // A window may be as long as the run: there is one copy of it at a time.
         let (first, target, lengths) = self.window(store, usize::MAX)?;
         let (velocity, gap) = self.last;
-        let floor = self.floor();
-        let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives, floor };
+        let window = FlightWindow { start: (gap, velocity), lengths: &lengths, target: &target, arrives };
         // A prescribed node cannot be moved out of the way.
         let path = if self.free { solve(&window, tolerance) } else { window.integrate(&target) };
         self.record(&window, &path);
         store.write(self.node, first, &stored(path))
     }
 
-    /// The least gap in the window since the last known instant (m).
-    fn floor(&self) -> f64 {
-        if self.known == 1 { self.floor } else { 0.0 }
-    }
-
     /// Takes the motion over the window as known and checks it.
     fn record(&mut self, window: &FlightWindow<'_>, path: &Path) {
-        let FlightWindow { start: (gap, velocity), lengths, target, arrives, .. } = *window;
+        let FlightWindow { start: (gap, velocity), lengths, target, arrives } = *window;
         if arrives {
             // Also the way that the simulation would go: where nothing but rest is admissible, the
             // motion itself is its rounding.

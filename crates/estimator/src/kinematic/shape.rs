@@ -32,7 +32,7 @@ thread_local! {
 pub(super) fn solve(window: &FlightWindow<'_>, tolerance: f64) -> Path {
     let velocity = window.shifted();
     let path = window.integrate(&velocity);
-    if window.deepest(&path).1 >= window.floor - tolerance {
+    if window.deepest(&path).1 >= -tolerance {
         return path;
     }
     window.integrate(&shape(window, &velocity, 0.1 * tolerance))
@@ -54,7 +54,7 @@ fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
             // The gap at the very ends is given.
             let given = (m == 0 && cut.offset == 0.0)
                 || (window.arrives && m + 1 == window.lengths.len() && cut.offset == window.lengths[m]);
-            if gap < window.floor - tolerance && !given {
+            if gap < -tolerance && !given {
                 found = true;
                 add(&mut cuts, canonical(window, cut), SAME_CUT * window.lengths[m]);
             }
@@ -62,10 +62,10 @@ fn shape(window: &FlightWindow<'_>, start: &[f64], tolerance: f64) -> Vec<f64> {
         if !found {
             break;
         }
-        let conditions: Vec<Condition> = cuts.iter().map(|cut| condition(window, cut, window.floor)).collect();
+        let conditions: Vec<Condition> = cuts.iter().map(|cut| condition(window, cut)).collect();
         let end = window.arrives.then(|| {
             let last = window.lengths.len() - 1;
-            condition(window, &Cut { half_step: last, offset: window.lengths[last] }, 0.0)
+            condition(window, &Cut { half_step: last, offset: window.lengths[last] })
         });
         let (found, active) = nearest(window, end, conditions);
         velocity[..free].copy_from_slice(&found);
@@ -99,8 +99,8 @@ fn add(cuts: &mut Vec<Cut>, new: Cut, apart: f64) {
     }
 }
 
-/// The gap at a cut as a linear condition: gap ≥ `least`.
-fn condition(window: &FlightWindow<'_>, cut: &Cut, least: f64) -> Condition {
+/// The gap at a cut as a linear condition: gap ≥ 0.
+fn condition(window: &FlightWindow<'_>, cut: &Cut) -> Condition {
     let free = window.free_instants();
     let (gap, first) = window.start;
     let mut row = vec![0.0; free];
@@ -118,7 +118,7 @@ fn condition(window: &FlightWindow<'_>, cut: &Cut, least: f64) -> Condition {
     let curvature = 0.5 * cut.offset * cut.offset / window.lengths[cut.half_step];
     add(cut.half_step, cut.offset - curvature);
     add(cut.half_step + 1, curvature);
-    Condition { row, bound: least - given }
+    Condition { row, bound: -given }
 }
 
 /// Minimises ½Σω(x − target)² under one equality and several inequalities; returns which of these are active too.

@@ -13,8 +13,6 @@ pub(super) struct FlightWindow<'a> {
     pub(super) target: &'a [f64],
     /// Whether the node arrives on the plane at rest at the last instant (the onset).
     pub(super) arrives: bool,
-    /// The least gap on the way (m), 0 or less.
-    pub(super) floor: f64,
 }
 
 /// A point of a window.

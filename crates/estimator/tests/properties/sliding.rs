@@ -1,13 +1,14 @@
 //! Surfaces of two bodies that slide along each other.
 
 use crate::bodies::{aluminium, steps};
-use crate::estimating::{assert_admissible, estimate, history};
-use percute_core::contact::Interface;
+use crate::estimating::{assert_admissible, estimate, estimate_with_maps, history};
+use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, TriangleProblem};
-use percute_estimator::{EstimateError, Estimator, Options, Reconstruction, Sampling};
-use percute_testkit::{rotated, translated, upside_down};
+use percute_core::time::TimeGrid;
+use percute_estimator::{EstimateError, Estimator, Options, Reconstruction, Request, Sampling};
+use percute_testkit::{Random, rotated, translated, upside_down};
 
 const GAP: f64 = 50e-6;
 const HEIGHT: f64 = 0.025;
@@ -125,7 +126,6 @@ fn everything_is_admissible() {
         let problem = blocks.problem();
         let times = steps(&problem, 0.9, 90);
         let made = estimate(&problem, &history(&problem, &times), Options::default());
-        println!("{k} {:?} {:?} {:?}", made.error, made.parts, made.residuals);
         assert_admissible(&format!("case {k}"), &made);
     }
 }
@@ -139,5 +139,101 @@ fn other_reconstructions_refuse() {
         let refused = Estimator::new(&problem, &times, Options { reconstruction, ..Options::default() }).err();
         let groups = ["upper.bottom", "lower.top"].map(str::to_string);
         assert_eq!(refused, Some(EstimateError::NotMatching { groups }));
+    }
+}
+
+/// u_CA of the two bodies, from the maps, does not penetrate at any point of the partition, though it touches.
+#[test]
+fn admissible_motions_do_not_penetrate() {
+    let blocks = Blocks::oblique();
+    for blocks in [
+        Blocks { materials: [aluminium(), steel()], ..blocks },
+        Blocks { tilt: 0.05, velocities: [[0.0, -200.0], [0.0, 200.0]], ..blocks },
+        Blocks { widths: [0.02, 0.04], cells: [[5, 6], [14, 11]], aside: 0.0113, ..blocks },
+    ] {
+        let problem = blocks.problem();
+        let times = steps(&problem, 0.9, 80);
+        let (history, surface) = (history(&problem, &times), problem.surface());
+        let request = Request { fields: true, ..Request::evenly(&times, usize::MAX, 1) };
+        let options = Options { every: Sampling::Every(1), ..Options::default() };
+        let estimate = estimate_with_maps(&problem, &history, options, &request);
+        let sliding = &surface.sliding()[0];
+        let mut nearest = f64::INFINITY;
+        for map in &estimate.maps {
+            let displacement = &map.fields.as_ref().unwrap().displacement;
+            let coupling = sliding.coupling(surface, displacement);
+            let eta = |side: &Side, node: usize| {
+                let u = displacement[surface.nodes()[side.position(node)].node.index()];
+                side.eta()[node] + u.iter().zip(sliding.frame().normal()).map(|(u, n)| u * n).sum::<f64>()
+            };
+            let at = |side: &Side, places: &[f64], first: usize, xi: f64| {
+                let part = (xi - places[first]) / (places[first + 1] - places[first]);
+                eta(side, first) + part * (eta(side, first + 1) - eta(side, first))
+            };
+            for segment in coupling.segments() {
+                for xi in segment.ends {
+                    let slave = sliding.slave().edges()[segment.slave];
+                    let master = sliding.master().edges()[segment.master];
+                    let gap = at(sliding.slave(), sliding.slave().xi(), slave, xi)
+                        - at(sliding.master(), coupling.places(), master, xi);
+                    assert!(gap >= -1e-12 * problem.mesh().size(), "step {}: {gap}", map.step);
+                    nearest = nearest.min(gap);
+                }
+            }
+        }
+        assert!(nearest <= 1e-9, "{nearest}");
+    }
+}
+
+/// Neither a rotation nor the order of the bodies or of their nodes matters, and threads and windows not a bit.
+#[test]
+fn the_frame_and_the_order_do_not_matter() {
+    let blocks = Blocks { materials: [aluminium(), steel()], ..Blocks::oblique() };
+    let problem = blocks.problem();
+    let times = steps(&problem, 0.9, 60);
+    let error = |problem: &TriangleProblem, options| estimate(problem, &history(problem, &times), options).error;
+    let expected = error(&problem, Options::default());
+    let exchanged = Interface::sliding::<2>("lower.top", "upper.bottom", blocks.friction).unwrap();
+    for other in [Blocks { angle: 0.7, ..blocks }.problem(), blocks.between(exchanged)] {
+        let found = error(&other, Options::default());
+        // Rounding, which contact that opens and closes amplifies.
+        assert!((found.sup / expected.sup - 1.0).abs() < 1e-9, "{found:?} {expected:?}");
+        assert!((found.mean / expected.mean - 1.0).abs() < 1e-9, "{found:?} {expected:?}");
+    }
+    for (threads, window) in [(1, 1), (2, 3), (3, 8)] {
+        let options = Options { threads: Some(threads), window: Some(window), ..Options::default() };
+        assert_eq!(error(&problem, options), expected, "{threads} {window}");
+    }
+}
+
+/// Blocks drawn at random.
+#[test]
+fn any_blocks_are_admissible() {
+    for seed in 0..60 {
+        let mut random = Random::new(seed);
+        let cells = [(); 2].map(|()| [1 + random.bits() as usize % 7, 1 + random.bits() as usize % 4]);
+        let widths = [(); 2].map(|()| random.between(0.01, 0.04));
+        let speed = 10.0_f64.powf(random.between(-1.0, 2.5));
+        let materials = [(); 2].map(|()| if random.bits().is_multiple_of(2) { aluminium() } else { steel() });
+        let blocks = Blocks {
+            cells,
+            widths,
+            aside: random.between(-widths[0], widths[1]),
+            tilt: if random.bits().is_multiple_of(2) { 0.0 } else { random.between(-0.2, 0.2) },
+            materials,
+            velocities: [[random.between(-speed, speed), -speed], [0.0, random.between(0.0, speed)]],
+            friction: random.between(0.0, 0.8),
+            angle: random.between(0.0, 6.0),
+        };
+        let problem = blocks.problem();
+        // The bodies meet after a third of the steps or so.
+        let critical = steps(&problem, 1.0, 1).end();
+        let count = 60;
+        let way = 3.0 * GAP / (speed - blocks.velocities[1][1] + 2.0 * blocks.velocities[1][1]);
+        let step = (way / f64::from(count)).min(random.between(0.3, 0.95) * critical);
+        let times = TimeGrid::uniform(step * f64::from(count), count as usize).unwrap();
+        let history = history(&problem, &times);
+        let made = estimate(&problem, &history, Options::default());
+        assert_admissible(&format!("seed {seed}"), &made);
     }
 }

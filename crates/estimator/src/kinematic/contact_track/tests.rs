@@ -56,7 +56,7 @@ fn track(gap: f64, velocity: f64) -> Alone {
 fn recorded(start: (f64, f64), path: Path, arrives: bool) -> Residuals {
     let mut track = track(start.0, start.1).track;
     let (lengths, target) = (vec![HALF; path.len()], path.iter().map(|(v, _)| *v).collect::<Vec<_>>());
-    track.record(&FlightWindow { start, lengths: &lengths, target: &target, arrives, floor: 0.0 }, &path);
+    track.record(&FlightWindow { start, lengths: &lengths, target: &target, arrives }, &path);
     residuals(&track)
 }
 

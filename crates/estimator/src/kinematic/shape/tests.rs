@@ -43,13 +43,7 @@ impl Drawn {
     }
 
     fn window(&self) -> FlightWindow<'_> {
-        FlightWindow {
-            start: self.start,
-            lengths: &self.lengths,
-            target: &self.target,
-            arrives: self.arrives,
-            floor: 0.0,
-        }
+        FlightWindow { start: self.start, lengths: &self.lengths, target: &self.target, arrives: self.arrives }
     }
 }
 
@@ -66,14 +60,13 @@ fn on_a_grid(window: &FlightWindow<'_>, points: usize) -> f64 {
     let mut conditions: Vec<Condition> = Vec::new();
     let last = window.lengths.len() - 1;
     if window.arrives {
-        conditions.push(condition(window, &Cut { half_step: last, offset: window.lengths[last] }, 0.0));
+        conditions.push(condition(window, &Cut { half_step: last, offset: window.lengths[last] }));
     }
     for (half_step, length) in window.lengths.iter().enumerate() {
         let offsets = (1..=points).map(|p| length * p as f64 / points as f64);
         // The very end of an arrival is the equality above.
         let given = |offset: f64| window.arrives && half_step == last && offset == *length;
-        conditions
-            .extend(offsets.filter(|o| !given(*o)).map(|offset| condition(window, &Cut { half_step, offset }, 0.0)));
+        conditions.extend(offsets.filter(|o| !given(*o)).map(|offset| condition(window, &Cut { half_step, offset })));
     }
     let weights: Vec<f64> = (0..free).map(|k| window.weight(k)).collect();
     let quadratic = CscMatrix::new(free, free, (0..=free).collect(), (0..free).collect(), weights.clone());
@@ -179,7 +172,7 @@ fn chatter_meets_windows_that_penetrate() {
 }
 
 fn window<'a>(start: (f64, f64), lengths: &'a [f64], target: &'a [f64]) -> FlightWindow<'a> {
-    FlightWindow { start, lengths, target, arrives: true, floor: 0.0 }
+    FlightWindow { start, lengths, target, arrives: true }
 }
 
 /// A step has two half steps, so that tracks never make a window without a free instant; should one

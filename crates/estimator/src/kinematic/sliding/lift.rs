@@ -1,5 +1,6 @@
 //! Penetration of two surfaces, and the lifts that remove it.
 
+use super::path::Lift;
 use super::record::Motion;
 use crate::kinematic::window::least_of_parabola;
 use crate::partition::{Piece, pieces};
@@ -12,10 +13,12 @@ const BESIDE: f64 = 1e-9;
 /// The penetration of two surfaces during the run.
 #[derive(Clone, Debug)]
 pub(super) struct Penetration {
-    /// How much higher each node of the slave has to be (m).
-    pub(super) lift: Vec<f64>,
+    /// How much higher each node of the slave has to be, and by which instant.
+    pub(super) lifts: Vec<Lift>,
     /// The deepest point at the instants and between them (m).
     pub(super) deepest: [f64; 2],
+    /// The instant that is looked at, or the last one before.
+    instant: usize,
     /// Depths below this are none (m).
     tolerance: f64,
     size: f64,
@@ -23,16 +26,17 @@ pub(super) struct Penetration {
 
 impl Penetration {
     pub(super) fn new(nodes: usize, [size, tolerance]: [f64; 2]) -> Self {
-        Self { lift: vec![0.0; nodes], deepest: [0.0; 2], tolerance, size }
+        Self { lifts: vec![Lift::NONE; nodes], deepest: [0.0; 2], instant: 0, tolerance, size }
     }
 
     /// Whether a lift is wanted.
     pub(super) fn is_found(&self) -> bool {
-        self.lift.iter().any(|lift| *lift > 0.0)
+        self.lifts.iter().any(|lift| lift.height > 0.0)
     }
 
     /// Looks at an instant.
-    pub(super) fn at<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, motion: &Motion) {
+    pub(super) fn at<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, motion: &Motion, instant: usize) {
+        self.instant = instant;
         let coupling = sliding.coupling_at(motion.shift[0]);
         for piece in pieces(sliding, &coupling) {
             let gap = difference(&piece, &motion.eta);
@@ -40,7 +44,7 @@ impl Penetration {
         }
     }
 
-    /// Looks at the half step of this length (s) between two instants: the exact least gap of each point where the
+    /// Looks at the half step of this length (s) between the last instant and the next one: the exact least gap of each point where the
     /// bodies do not slide, else those after each quarter of it.
     pub(super) fn between<const D: usize>(
         &mut self,
@@ -82,7 +86,8 @@ impl Penetration {
         let all: f64 = nodes.clone().map(|(_, hat)| hat).sum();
         for (node, _) in nodes {
             // Depth is at most the size of the body: a tiny hat must not throw the node away.
-            self.lift[node] = self.lift[node].max((-gap / all).min(self.size));
+            let lift = &mut self.lifts[node];
+            *lift = Lift { height: lift.height.max((-gap / all).min(self.size)), by: lift.by.min(self.instant) };
         }
     }
 }

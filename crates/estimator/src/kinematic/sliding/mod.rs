@@ -3,8 +3,8 @@
 //! Contact of the simulation is between a node of the slave and a weighted part of the master. Problem P_CA is solved
 //! for this weighted relative motion x_k. Its change from the simulation, δ_k = ẋ_k − W_k, is shared by the nodes of both
 //! surfaces with the least kinetic energy: Δv = ±m⁻¹Gᵀ A⁻¹ (w δ). Where the surfaces still penetrate between their nodes,
-//! nodes of the slave are lifted: x_k is solved for again, at rest at a small height p_k, and the change is that of the
-//! node alone. Zero gap at each point is not asked for, as it would make the interface straight.
+//! nodes of the slave are lifted: x_k is solved for again, at rest at a small height p_k to which the node rises until it
+//! is needed, and the change is that of the node alone. Zero gap at each point is not asked for, as it would make the interface straight.
 //!
 //! Lifts follow from the whole run. So this motion is known at its end.
 
@@ -16,7 +16,7 @@ use super::normal_motions::{NormalMotions, Pair};
 use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use lift::Penetration;
-use path::{Target, solve};
+use path::{Lift, Target, solve};
 use percute_core::contact::{Side, SlidingSurfaces};
 use percute_core::problem::Problem;
 use record::{Motion, Record};
@@ -36,8 +36,8 @@ pub(crate) struct SlidingMotion {
     record: Record,
     /// ẋ_k and x_k of the nodes of the slave, with their lifts (m/s, m), once they are known.
     relative: NormalMotions,
-    /// Lifts p_k (m).
-    lifts: Vec<f64>,
+    /// Lifts p_k.
+    lifts: Vec<Lift>,
     rounds: usize,
 }
 
@@ -59,7 +59,7 @@ impl SlidingMotion {
             index,
             record: Record::new(sliding, span),
             relative: NormalMotions::new(sliding.slave().len(), span, ScratchFile::default()),
-            lifts: vec![0.0; sliding.slave().len()],
+            lifts: vec![Lift::NONE; sliding.slave().len()],
             rounds: 0,
         }
     }
@@ -114,7 +114,7 @@ impl SlidingMotion {
         (0..count).try_for_each(|_| self.relative.extend())?;
         for (node, target) in targets.iter().enumerate() {
             let Some(target) = target else { continue };
-            let path = solve(&self.record, node, target, 0.0, scale, residuals)?;
+            let path = solve(&self.record, node, target, Lift::NONE, scale, residuals)?;
             self.relative.write(node, 0, &path)?;
             change.aim(node, &path, &target.0)?;
         }
@@ -130,9 +130,10 @@ impl SlidingMotion {
                 break;
             }
             let mut onsets = Residuals::default();
-            for (node, more) in found.lift.iter().enumerate().filter(|(_, more)| **more > 0.0) {
+            for (node, more) in found.lifts.iter().enumerate().filter(|(_, more)| more.height > 0.0) {
                 let Some(target) = &targets[node] else { continue };
-                self.lifts[node] += more;
+                let lift = &mut self.lifts[node];
+                *lift = Lift { height: lift.height + more.height, by: lift.by.min(more.by) };
                 let path = solve(&self.record, node, target, self.lifts[node], scale, &mut onsets)?;
                 let mut last = Vec::with_capacity(count);
                 self.relative.read(node, 0..count, &mut last)?;
@@ -154,12 +155,12 @@ impl SlidingMotion {
         let mut found = Penetration::new(sliding.slave().len(), scale);
         let mut last: Option<Motion> = None;
         for instants in portions(self.record.count()) {
-            let first = instants.start;
-            for (k, motion) in change.motions(sliding, &mut self.record, instants)?.into_iter().enumerate() {
-                found.at(sliding, &motion);
+            let motions = change.motions(sliding, &mut self.record, instants.clone())?;
+            for (instant, motion) in instants.zip(motions) {
                 if let Some(last) = &last {
-                    found.between(sliding, [last, &motion], self.record.halves()[first + k]);
+                    found.between(sliding, [last, &motion], self.record.halves()[instant]);
                 }
+                found.at(sliding, &motion, instant);
                 last = Some(motion);
             }
         }
