@@ -128,8 +128,8 @@ impl Row {
     }
 }
 
-/// Within 0.1 of the prototype, whose tractions have more energy than those here (measured −0.095 to 0.096). Its narrow
-/// block has a sharper stress where the corner ends inside an edge: the bound here has indices larger by 0.15.
+/// At least 1, and at most 0.05 above the prototype, whose tractions have more energy than those here: where its bound
+/// of the stress at the end of the other body is 2 to 25 %, the star of a node has a few per cent.
 #[test]
 #[ignore = "takes a minute"]
 fn effectivity_indices_against_a_finer_reference() {
@@ -137,20 +137,23 @@ fn effectivity_indices_against_a_finer_reference() {
         for ((mesh, reference), expected) in MESHES.into_iter().zip(&row.expected) {
             let found = row.indices(mesh, reference);
             println!("{}: {:.3} {:.3} ({expected:?})", row.name, found[0], found[1]);
-            let more = if row.width < 0.04 { 0.16 } else { 0.1 };
-            let near = found.iter().zip(expected).all(|(found, expected)| (-0.1..=more).contains(&(found - expected)));
-            assert!(near, "{}: {found:?} {expected:?}", row.name);
+            // Of a body that enters from beside, both programs are less sharp: at most 1.6.
+            let near = |(found, most): (&f64, &f64)| {
+                let most = if row.aside < 0.0 { 1.6 } else { most + 0.05 };
+                (1.0..=most).contains(found)
+            };
+            assert!(found.iter().zip(expected).all(near), "{}: {found:?} {expected:?}", row.name);
         }
     }
 }
 
-/// One of them at each test, on the coarse mesh.
+/// Two of them at each test, on the coarse mesh.
 #[test]
 fn effectivity_indices_of_two_blocks_that_slide() {
     for row in &ROWS[1..3] {
         let found = row.indices(MESHES[0].0, [[56, 48], [60, 48]]);
         // Against a reference half as fine, both are larger by up to 0.02 than above.
-        let near = found.iter().zip(&row.expected[0]).all(|(found, expected)| (found - expected).abs() <= 0.1);
+        let near = found.iter().zip(&row.expected[0]).all(|(found, most)| (1.0..=most + 0.05).contains(found));
         assert!(near, "{}: {found:?} {:?}", row.name, row.expected[0]);
     }
 }

@@ -2,6 +2,7 @@
 //! balances them in the star of the node.
 
 mod cut_star;
+mod edge_rest;
 mod edge_traction;
 mod hat_stress;
 mod layer;
@@ -10,6 +11,7 @@ mod panel;
 mod shape;
 mod star_stress;
 
+pub(crate) use edge_rest::roots;
 pub(crate) use edge_traction::EdgeTraction;
 pub(crate) use hat_stress::{HatStress, StarFrame};
 pub(crate) use shape::{LoadedStar, ShapeCosts, TractionShape};

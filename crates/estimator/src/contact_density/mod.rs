@@ -12,6 +12,7 @@ pub(crate) use friction_misfit::{FacetDensity, facet_power};
 pub(crate) use hat::NarrowHat;
 pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
+use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 pub(crate) use sliding::{SlidingDensity, SlidingFacets, density_on};
 use std::ops::Deref;
@@ -28,9 +29,9 @@ pub(crate) struct Densities<const D: usize> {
     shares: f64,
     /// The parts of surfaces that slide.
     sliding: Vec<SlidingDensity<D>>,
-    /// Facets on which these are not linear, in order, with a bound of the root of the energy of the stress of the
-    /// difference (J^½).
-    beside: Vec<(usize, f64)>,
+    /// Elements in which these have a stress beside that of linear tractions, in order, with the root of its energy
+    /// (J^½).
+    beside: Vec<(ElementId, f64)>,
 }
 
 /// The densities of one instant that depend on no other.
@@ -95,7 +96,7 @@ impl<const D: usize> Densities<D> {
             let of = (problem, &problem.surface().sliding()[k]);
             density.apply(of, facets, &mut self.linear, &mut self.beside);
         }
-        self.beside.sort_by_key(|(facet, _)| *facet);
+        self.beside.sort_by_key(|(element, _)| *element);
         Self { sliding, ..self }
     }
 
@@ -129,9 +130,10 @@ impl<const D: usize> Densities<D> {
         &self.sliding
     }
 
-    /// The root of the energy of a stress beside that of the linear traction on a facet (J^½).
-    pub(crate) fn beside(&self, facet: usize) -> f64 {
-        self.beside.binary_search_by_key(&facet, |(facet, _)| *facet).map_or(0.0, |at| self.beside[at].1)
+    /// The root of the energy of the stress beside that of linear tractions in an element (J^½).
+    pub(crate) fn beside(&self, element: ElementId) -> f64 {
+        let start = self.beside.partition_point(|(other, _)| *other < element);
+        self.beside[start..].iter().take_while(|(other, _)| *other == element).map(|(_, root)| root).sum()
     }
 
     /// The hats of one star.

@@ -5,6 +5,7 @@
 //! element knows the linear traction with the same moments. The difference of the two balances itself; the norm of its
 //! stress has a bound, C h ∫r², for any partition of the edge.
 
+use crate::concentrated::{StarElement, roots};
 use crate::direction::along;
 use crate::partition::{Piece, pieces};
 use percute_core::contact::{Coupling, Side, SlidingSurfaces};
@@ -12,6 +13,9 @@ use percute_core::ids::ElementId;
 use percute_core::material::{Hypothesis, Law};
 use percute_core::problem::Problem;
 use std::sync::Arc;
+
+/// Where ∫r² is at most this part of ∫F², the bound of its energy is not worth a better one.
+const SMALL: f64 = 1e-3;
 
 /// An edge of a surface that slides, as a candidate facet.
 #[derive(Clone, Copy, Debug)]
@@ -128,14 +132,14 @@ impl<const D: usize> SlidingDensity<D> {
         [0, 1].map(|end| components.map(|ends| ends[end]))
     }
 
-    /// Adds the linear tractions with the same moments to those of facets (Pa), and hands on the facets with a stress
-    /// beside theirs: with a bound of the root of its energy (J^½).
+    /// Adds the linear tractions with the same moments to those of facets (Pa), and hands on the elements with a stress
+    /// beside theirs: with the root of its energy, or a bound of it (J^½).
     pub(crate) fn apply<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
         facets: &SlidingFacets,
         linear: &mut [[[f64; D]; D]],
-        beside: &mut Vec<(usize, f64)>,
+        beside: &mut Vec<(ElementId, f64)>,
     ) {
         if self.is_zero() {
             return;
@@ -154,7 +158,7 @@ impl<const D: usize> SlidingDensity<D> {
                     let nodal = load.nodal(k);
                     (0..D).for_each(|c| value[c] += nodal[c] / area);
                 }
-                beside.push((edge.facet, (edge.spread * load.rest(edge.length)).sqrt()));
+                beside.extend(load.beside(problem, edge));
             }
         }
     }
@@ -224,6 +228,57 @@ impl<const D: usize> Load<D> {
     /// The linear traction with the same moments, at a node (N).
     fn nodal(&self, end: usize) -> [f64; D] {
         std::array::from_fn(|c| 4.0 * self.moments[end][c] - 2.0 * self.moments[1 - end][c])
+    }
+
+    /// The elements with the stress of r, and the root of its energy (J^½): the element of the edge with the bound, or
+    /// those of the star of a node, where the load ends on the edge and this is less.
+    fn beside<const N: usize>(&self, problem: &Problem<D, N>, edge: &EdgeFacet) -> Vec<(ElementId, f64)> {
+        let (mesh, rest) = (problem.mesh(), self.rest(edge.length));
+        let facet = problem.surface().facets()[edge.facet].facet;
+        let mut least = vec![(mesh.facets()[facet.index()].owner, (edge.spread * rest).sqrt())];
+        let total = |all: &[(ElementId, f64)]| all.iter().map(|(_, root)| root).sum::<f64>();
+        if rest <= SMALL * self.square(edge.length) {
+            return least;
+        }
+        for end in 0..2 {
+            let node = problem.surface().nodes()[problem.surface().facets()[edge.facet].nodes[edge.ends[end]]].node;
+            let star = mesh.stars().star(node);
+            let side = usize::from(star.links[0] != Some(facet));
+            let points = self.points(end, edge.length);
+            let corners = |&id: &ElementId| {
+                let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
+                let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
+                StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
+            };
+            let elements: Vec<_> = star.elements.iter().map(corners).collect();
+            let supported = [star.links.first(), star.links.last()].map(|link| {
+                let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+                [supported[0], supported[D - 1]]
+            });
+            if let Some(roots) = roots(&elements, side, &points, supported) {
+                let other: Vec<_> = star.elements.iter().copied().zip(roots).collect();
+                if total(&other) < total(&least) {
+                    least = other;
+                }
+            }
+        }
+        least
+    }
+
+    /// Places from an end on, ascending, and the density there times the length of the edge (N).
+    fn points(&self, end: usize, length: f64) -> Vec<(f64, [f64; 2])> {
+        let vector = |value: &[f64; D]| [value[0] * length, value[D - 1] * length];
+        let all = self.spans.iter().flat_map(|(places, values)| [0, 1].map(|k| (places[k], vector(&values[k]))));
+        if end == 0 { all.collect() } else { all.map(|(place, value)| (1.0 - place, value)).rev().collect() }
+    }
+
+    /// ∫F² over the edge (N²/m).
+    fn square(&self, length: f64) -> f64 {
+        let of = |(places, values): &([f64; 2], [[f64; D]; 2])| -> f64 {
+            let sum = (0..D).map(|c| [values[0][c], values[1][c]]).map(|[a, b]| a * a + a * b + b * b);
+            (places[1] - places[0]) * length / 3.0 * sum.sum::<f64>()
+        };
+        self.spans.iter().map(of).sum()
     }
 
     /// ∫r² over the edge of this length (N²/m), with the difference r of the density and that linear traction.
