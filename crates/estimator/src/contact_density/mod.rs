@@ -16,6 +16,7 @@ use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 pub(crate) use sliding::{SlidingDensity, SlidingFacets, density_on};
 use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
 
 /// A density on the candidate facets. Constant once a reconstruction has made it.
 ///
@@ -28,10 +29,23 @@ pub(crate) struct Densities<const D: usize> {
     hats: Vec<NarrowHat<D>>,
     shares: f64,
     /// The parts of surfaces that slide.
-    sliding: Vec<SlidingDensity<D>>,
+    sliding: Option<Arc<Sliding<D>>>,
+}
+
+/// The parts of surfaces that slide.
+#[derive(Debug)]
+struct Sliding<const D: usize> {
+    densities: Vec<SlidingDensity<D>>,
+    facets: Arc<[SlidingFacets]>,
     /// Elements in which these have a stress beside that of linear tractions, in order, with the root of its energy
-    /// (J^½).
-    beside: Vec<(ElementId, f64)>,
+    /// (J^½): made at first use, for sampled instants alone.
+    beside: OnceLock<Vec<(ElementId, f64)>>,
+}
+
+impl<const D: usize> PartialEq for Sliding<D> {
+    fn eq(&self, other: &Self) -> bool {
+        self.densities == other.densities
+    }
 }
 
 /// The densities of one instant that depend on no other.
@@ -78,26 +92,25 @@ impl<const D: usize> Densities<D> {
                 (0..D).for_each(|c| linear[hat.facet][end][c] += force[c] / facets[hat.facet].area);
             }
         }
-        Self { linear, wide, hats, shares: 0.0, sliding: Vec::new(), beside: Vec::new() }
+        Self { linear, wide, hats, shares: 0.0, sliding: None }
     }
 
     /// The density with those of all surfaces that slide.
     pub(crate) fn with_sliding<const N: usize>(
         mut self,
         problem: &Problem<D, N>,
-        facets: &[SlidingFacets],
-        sliding: Vec<SlidingDensity<D>>,
+        facets: &Arc<[SlidingFacets]>,
+        densities: Vec<SlidingDensity<D>>,
     ) -> Self {
-        if sliding.is_empty() {
+        if densities.is_empty() {
             return self;
         }
         self.wide.get_or_insert_with(|| self.linear.clone());
-        for (k, (facets, density)) in facets.iter().zip(&sliding).enumerate() {
-            let of = (problem, &problem.surface().sliding()[k]);
-            density.apply(of, facets, &mut self.linear, &mut self.beside);
+        for (k, (facets, density)) in facets.iter().zip(&densities).enumerate() {
+            density.apply((problem, &problem.surface().sliding()[k]), facets, &mut self.linear);
         }
-        self.beside.sort_by_key(|(element, _)| *element);
-        Self { sliding, ..self }
+        let sliding = Sliding { densities, facets: Arc::clone(facets), beside: OnceLock::new() };
+        Self { sliding: Some(Arc::new(sliding)), ..self }
     }
 
     /// The density with the residual of the shares of its hats: at least 0, their sum 1.
@@ -127,13 +140,21 @@ impl<const D: usize> Densities<D> {
 
     /// The parts of surfaces that slide.
     pub(crate) fn sliding(&self) -> &[SlidingDensity<D>] {
-        &self.sliding
+        self.sliding.as_ref().map_or(&[], |sliding| &sliding.densities)
     }
 
     /// The root of the energy of the stress beside that of linear tractions in an element (J^½).
-    pub(crate) fn beside(&self, element: ElementId) -> f64 {
-        let start = self.beside.partition_point(|(other, _)| *other < element);
-        self.beside[start..].iter().take_while(|(other, _)| *other == element).map(|(_, root)| root).sum()
+    pub(crate) fn beside<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> f64 {
+        let Some(sliding) = &self.sliding else { return 0.0 };
+        let beside = sliding.beside.get_or_init(|| {
+            let all = sliding.densities.iter().zip(&*sliding.facets).zip(problem.surface().sliding());
+            let mut beside: Vec<_> =
+                all.flat_map(|((density, facets), surfaces)| density.beside((problem, surfaces), facets)).collect();
+            beside.sort_by_key(|(element, _)| *element);
+            beside
+        });
+        let start = beside.partition_point(|(other, _)| *other < element);
+        beside[start..].iter().take_while(|(other, _)| *other == element).map(|(_, root)| root).sum()
     }
 
     /// The hats of one star.

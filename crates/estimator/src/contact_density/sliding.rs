@@ -132,17 +132,35 @@ impl<const D: usize> SlidingDensity<D> {
         [0, 1].map(|end| components.map(|ends| ends[end]))
     }
 
-    /// Adds the linear tractions with the same moments to those of facets (Pa), and hands on the elements with a stress
-    /// beside theirs: with the root of its energy, or a bound of it (J^½).
+    /// Adds the linear tractions with the same moments to those of facets (Pa).
     pub(crate) fn apply<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
         facets: &SlidingFacets,
         linear: &mut [[[f64; D]; D]],
-        beside: &mut Vec<(ElementId, f64)>,
     ) {
+        for (edge, load) in self.loads(sliding, facets) {
+            let area = problem.surface().facets()[edge.facet].area;
+            for k in 0..2 {
+                let (value, nodal) = (&mut linear[edge.facet][edge.ends[k]], load.nodal(k));
+                (0..D).for_each(|c| value[c] += nodal[c] / area);
+            }
+        }
+    }
+
+    /// The elements with a stress beside that of these tractions, and the root of its energy, or a bound of it (J^½).
+    pub(crate) fn beside<const N: usize>(
+        &self,
+        (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
+        facets: &SlidingFacets,
+    ) -> Vec<(ElementId, f64)> {
+        self.loads(sliding, facets).iter().flat_map(|(edge, load)| load.beside(problem, edge)).collect()
+    }
+
+    /// The loads of the edges that have any, of both surfaces.
+    fn loads(&self, sliding: &SlidingSurfaces<D>, facets: &SlidingFacets) -> Vec<(EdgeFacet, Load<D>)> {
         if self.is_zero() {
-            return;
+            return Vec::new();
         }
         let mut loads = facets.edges.each_ref().map(|edges| vec![Load::<D>::default(); edges.len()]);
         for piece in pieces(sliding, &self.coupling) {
@@ -150,17 +168,8 @@ impl<const D: usize> SlidingDensity<D> {
             loads[0][piece.slave[0]].add(&piece, piece.on_slave, values, 1.0);
             loads[1][piece.master[0]].add(&piece, piece.on_master, values, -1.0);
         }
-        for (edges, loads) in facets.edges.iter().zip(&loads) {
-            for (edge, load) in edges.iter().zip(loads).filter(|(_, load)| !load.spans.is_empty()) {
-                let area = problem.surface().facets()[edge.facet].area;
-                for k in 0..2 {
-                    let value = &mut linear[edge.facet][edge.ends[k]];
-                    let nodal = load.nodal(k);
-                    (0..D).for_each(|c| value[c] += nodal[c] / area);
-                }
-                beside.extend(load.beside(problem, edge));
-            }
-        }
+        let all = facets.edges.iter().flatten().copied().zip(loads.into_iter().flatten());
+        all.filter(|(_, load)| !load.spans.is_empty()).collect()
     }
 
     /// The power of the misfit of Coulomb's law, μF_n|w_t| + w_t·F_t, half of it on each of the facets of a piece (W).
@@ -241,28 +250,37 @@ impl<const D: usize> Load<D> {
             return least;
         }
         for end in 0..2 {
-            let node = problem.surface().nodes()[problem.surface().facets()[edge.facet].nodes[edge.ends[end]]].node;
-            let star = mesh.stars().star(node);
-            let side = usize::from(star.links[0] != Some(facet));
-            let points = self.points(end, edge.length);
-            let corners = |&id: &ElementId| {
-                let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
-                let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
-                StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
-            };
-            let elements: Vec<_> = star.elements.iter().map(corners).collect();
-            let supported = [star.links.first(), star.links.last()].map(|link| {
-                let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
-                [supported[0], supported[D - 1]]
-            });
-            if let Some(roots) = roots(&elements, side, &points, supported) {
-                let other: Vec<_> = star.elements.iter().copied().zip(roots).collect();
-                if total(&other) < total(&least) {
-                    least = other;
-                }
+            let Some(other) = self.in_star(problem, edge, end) else { continue };
+            if total(&other) < total(&least) {
+                least = other;
             }
         }
         least
+    }
+
+    /// The same in the star of the node at an end of the edge; none if rounding spoils its stress.
+    fn in_star<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        edge: &EdgeFacet,
+        end: usize,
+    ) -> Option<Vec<(ElementId, f64)>> {
+        let (mesh, facet) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+        let node = problem.surface().nodes()[facet.nodes[edge.ends[end]]].node;
+        let star = mesh.stars().star(node);
+        let corners = |&id: &ElementId| {
+            let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
+            let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
+            StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
+        };
+        let elements: Vec<_> = star.elements.iter().map(corners).collect();
+        let supported = [star.links.first(), star.links.last()].map(|link| {
+            let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+            [supported[0], supported[D - 1]]
+        });
+        let side = usize::from(star.links[0] != Some(facet.facet));
+        let roots = roots(&elements, side, &self.points(end, edge.length), supported)?;
+        Some(star.elements.iter().copied().zip(roots).collect())
     }
 
     /// Places from an end on, ascending, and the density there times the length of the edge (N).

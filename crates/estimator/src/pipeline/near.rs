@@ -139,7 +139,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
         let loaded = Waiting::<D, N>::has_hats(&hats);
-        let beside = [&from, &to].map(|level| level.forces().density.beside(self.element));
+        let problem = sampler.problem();
+        let beside = [&from, &to].map(|level| level.forces().density.beside(problem, self.element));
         let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
         let mid = single.then(|| WaitingSample {
             at: ContactInstant {

@@ -294,7 +294,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         density: &Densities<D>,
     ) -> Vec<[f64; 2]> {
         let mut friction = friction::friction(problem, length, now, next, density);
-        let of = (problem, self.sliding.facets());
+        let of = (problem, &**self.sliding.facets());
         friction::add_sliding(of, length, now, next, density, &mut friction);
         friction
     }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct SlidingForces<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
-    facets: Vec<SlidingFacets>,
+    facets: Arc<[SlidingFacets]>,
     /// Mean impedance ρc over slave and master of each pair of surfaces, times the thickness (kg/(m s)).
     impedance: Vec<[f64; 2]>,
 }
@@ -32,7 +32,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             |sliding: &SlidingSurfaces<D>| [sliding.slave(), sliding.master()].map(|side| impedance(problem, side));
         Self {
             problem,
-            facets: SlidingFacets::all(problem),
+            facets: SlidingFacets::all(problem).into(),
             impedance: problem.surface().sliding().iter().map(impedance).collect(),
         }
     }
@@ -129,7 +129,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         all.map(density).collect()
     }
 
-    pub(super) fn facets(&self) -> &[SlidingFacets] {
+    pub(super) fn facets(&self) -> &Arc<[SlidingFacets]> {
         &self.facets
     }
 }
