@@ -48,12 +48,15 @@ pub struct Residuals {
     pub hat_resultants: f64,
     /// Divergence of the stress of hats, its tractions on the sides of sub-triangles, and their continuity inside.
     pub hat_stress: f64,
+    /// Force and couple of the densities on two surfaces that slide along each other: opposite.
+    #[serde(default)]
+    pub opposite_forces: f64,
 }
 
 impl Residuals {
     /// Name and value of every residual, in the order of the method.
     #[must_use]
-    pub fn entries(&self) -> [(&'static str, f64); 17] {
+    pub fn entries(&self) -> [(&'static str, f64); 18] {
         [
             ("initial_conditions", self.initial_conditions),
             ("supports", self.supports),
@@ -72,6 +75,7 @@ impl Residuals {
             ("hat_cone", self.hat_cone),
             ("hat_resultants", self.hat_resultants),
             ("hat_stress", self.hat_stress),
+            ("opposite_forces", self.opposite_forces),
         ]
     }
 
@@ -95,6 +99,7 @@ impl Residuals {
             (&mut self.hat_cone, other.hat_cone),
             (&mut self.hat_resultants, other.hat_resultants),
             (&mut self.hat_stress, other.hat_stress),
+            (&mut self.opposite_forces, other.opposite_forces),
         ];
         for (mine, theirs) in fields {
             *mine = worse(*mine, theirs);

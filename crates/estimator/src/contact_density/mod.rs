@@ -7,6 +7,7 @@ mod hat;
 mod normal_misfit;
 mod sliding;
 
+use crate::residual::worse;
 pub(crate) use corner_sliding::{CornerSliding, trapezoids};
 pub(crate) use friction_misfit::{FacetDensity, facet_power};
 pub(crate) use hat::NarrowHat;
@@ -141,6 +142,16 @@ impl<const D: usize> Densities<D> {
     /// The parts of surfaces that slide.
     pub(crate) fn sliding(&self) -> &[SlidingDensity<D>] {
         self.sliding.as_ref().map_or(&[], |sliding| &sliding.densities)
+    }
+
+    /// The residuals of surfaces that slide: of Coulomb's cone, and of opposite forces.
+    pub(crate) fn sliding_residuals<const N: usize>(&self, problem: &Problem<D, N>) -> [f64; 2] {
+        let Some(sliding) = &self.sliding else { return [0.0; 2] };
+        let all = sliding.densities.iter().zip(&*sliding.facets).zip(problem.surface().sliding());
+        let one = |((density, facets), surfaces): ((&SlidingDensity<D>, &SlidingFacets), _)| {
+            density.residuals((problem, surfaces), facets, &self.linear)
+        };
+        all.map(one).fold([0.0; 2], |a, b| [0, 1].map(|k| worse(a[k], b[k])))
     }
 
     /// The root of the energy of the stress beside that of linear tractions in an element (J^½).

@@ -8,6 +8,7 @@
 use crate::concentrated::{StarElement, roots};
 use crate::direction::along;
 use crate::partition::{Piece, pieces};
+use crate::residual::worse;
 use percute_core::contact::{Coupling, Side, SlidingSurfaces};
 use percute_core::ids::ElementId;
 use percute_core::material::{Hypothesis, Law};
@@ -146,6 +147,41 @@ impl<const D: usize> SlidingDensity<D> {
                 (0..D).for_each(|c| value[c] += nodal[c] / area);
             }
         }
+    }
+
+    /// How far it is outside of Coulomb's cone, and how far the tractions on both surfaces (Pa) are from opposite forces
+    /// and couples. Both are relative.
+    pub(crate) fn residuals<const N: usize>(
+        &self,
+        (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
+        facets: &SlidingFacets,
+        linear: &[[[f64; D]; D]],
+    ) -> [f64; 2] {
+        let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let largest = self.multipliers.iter().map(size).fold(0.0, worse);
+        if largest == 0.0 {
+            return [0.0; 2];
+        }
+        let outside = self.multipliers.iter().map(|f| {
+            let [tangential, normal] = sliding.law().excess(sliding.frame(), f);
+            worse(tangential, normal) / size(f).max(1e-12 * largest)
+        });
+        let (mut force, mut couple, mut scale) = ([0.0; D], 0.0, 0.0);
+        let places = [sliding.slave().xi(), self.coupling.places()];
+        for (side, edges) in facets.edges.iter().enumerate() {
+            for (edge, first) in edges.iter().zip([sliding.slave(), sliding.master()][side].edges()) {
+                let facet = &problem.surface().facets()[edge.facet];
+                let moments = Problem::<D, N>::facet_moments(facet.area, &linear[edge.facet]);
+                for k in 0..2 {
+                    let moment = moments[edge.ends[k]];
+                    (0..D).for_each(|c| force[c] += moment[c]);
+                    couple += places[side][first + k] * along(&moment, sliding.frame().normal());
+                    scale += size(&moment);
+                }
+            }
+        }
+        let couple = couple.abs() / problem.mesh().size();
+        [outside.fold(0.0, worse), worse(size(&force), couple) / scale.max(f64::MIN_POSITIVE)]
     }
 
     /// The elements with a stress beside that of these tractions, and the root of its energy, or a bound of it (J^½).

@@ -31,9 +31,12 @@ impl ContactTracks {
     }
 
     /// The most bytes that they take.
-    pub(crate) fn memory(nodes: usize, span: usize) -> usize {
+    pub(crate) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, span: usize) -> usize {
+        let nodes = problem.surface().nodes().len();
         let at_hand = nodes.saturating_mul(span).saturating_mul(size_of::<[f64; 2]>());
-        nodes * size_of::<ContactTrack>() + most_bytes(nodes, span).saturating_add(at_hand)
+        let sliding: usize = problem.surface().sliding().iter().map(|sliding| sliding.positions().count()).sum();
+        let sliding = if sliding > 0 { super::sliding::memory(sliding) } else { 0 };
+        nodes * size_of::<ContactTrack>() + most_bytes(nodes, span).saturating_add(at_hand).saturating_add(sliding)
     }
 
     /// Begins with the gap (m) and normal velocity (m/s) of each node at t = 0, and whether it touches.

@@ -31,7 +31,7 @@ pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, sa
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
     // The memory of a group has room for more; what is in the file is read into another.
     let groups = (2 + usize::from(all > most)) * elements.min(BLOCK * GROUP) * LANES * interval;
-    elements * size_of::<NearElement<D, N>>() + all.min(most) + groups + ContactTracks::memory(nodes, span(spacing))
+    elements * size_of::<NearElement<D, N>>() + all.min(most) + groups + ContactTracks::memory(problem, span(spacing))
 }
 
 /// Whether the intervals of a flight over the whole run have no room in memory.

@@ -12,11 +12,11 @@ mod lift;
 mod path;
 mod record;
 
-use super::normal_motions::{NormalMotions, Pair};
+use super::normal_motions::{NormalMotions, Pair, most_bytes};
 use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use lift::Penetration;
-use path::{Lift, Target, solve};
+use path::{Lift, solve};
 use percute_core::contact::{Side, SlidingSurfaces};
 use percute_core::problem::Problem;
 use record::{Motion, Record};
@@ -39,6 +39,12 @@ pub(crate) struct SlidingMotion {
     /// Lifts p_k.
     lifts: Vec<Lift>,
     rounds: usize,
+}
+
+/// About how many bytes the motions take of surfaces with so many nodes.
+pub(super) fn memory(nodes: usize) -> usize {
+    // Simulation and change of all nodes, three more pairs of numbers of those of slaves.
+    5 * most_bytes(nodes, usize::MAX)
 }
 
 /// Both surfaces at an instant, in the admissible motion.
@@ -105,16 +111,12 @@ impl SlidingMotion {
         let count = self.record.count();
         let scale = [problem.mesh().size(), problem.contact_tolerance()];
         let slaves = sliding.slave().len();
-        let mut targets: Vec<Option<Target>> = Vec::with_capacity(slaves);
-        for node in 0..slaves {
-            targets.push(self.record.targets(node)?);
-        }
         // Without lifts; the difference to the target is shared.
         let mut change = Changes::new(sliding, count)?;
         (0..count).try_for_each(|_| self.relative.extend())?;
-        for (node, target) in targets.iter().enumerate() {
-            let Some(target) = target else { continue };
-            let path = solve(&self.record, node, target, Lift::NONE, scale, residuals)?;
+        for node in 0..slaves {
+            let Some(target) = self.record.target(node)? else { continue };
+            let path = solve(&self.record, node, &target, Lift::NONE, scale, residuals)?;
             self.relative.write(node, 0, &path)?;
             change.aim(node, &path, &target.0)?;
         }
@@ -131,10 +133,10 @@ impl SlidingMotion {
             }
             let mut onsets = Residuals::default();
             for (node, more) in found.lifts.iter().enumerate().filter(|(_, more)| more.height > 0.0) {
-                let Some(target) = &targets[node] else { continue };
+                let Some(target) = self.record.target(node)? else { continue };
                 let lift = &mut self.lifts[node];
                 *lift = Lift { height: lift.height + more.height, by: lift.by.min(more.by) };
-                let path = solve(&self.record, node, target, self.lifts[node], scale, &mut onsets)?;
+                let path = solve(&self.record, node, &target, self.lifts[node], scale, &mut onsets)?;
                 let mut last = Vec::with_capacity(count);
                 self.relative.read(node, 0..count, &mut last)?;
                 change.add(node, &path, &last)?;

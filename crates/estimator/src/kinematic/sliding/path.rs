@@ -1,13 +1,10 @@
 //! Problem P_CA of a node of the slave.
 
-use super::record::Record;
+use super::record::{Record, Target};
 use crate::kinematic::contact_track::{ContactTrack, NormalStep};
 use crate::kinematic::normal_motions::{NormalMotions, Pair};
 use crate::residual::Residuals;
 use crate::scratch_file::{ScratchError, ScratchFile};
-
-/// The weighted normal motion of a node that its simulation aims at: velocities (m/s) and the gap at t_0 (m).
-pub(super) type Target = (Vec<f64>, f64);
 
 /// How high a node is lifted (m), and by which instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,9 @@ use crate::kinematic::normal_motions::{NormalMotions, Pair};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use percute_core::contact::{ContactSurface, Side, SlidingSurfaces};
 
+/// The weighted normal motion of a node that its simulation aims at: velocities (m/s) and the gap at t_0 (m).
+pub(super) type Target = (Vec<f64>, f64);
+
 /// The motion of all nodes of both surfaces at an instant, those of the slave first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
@@ -130,7 +133,7 @@ impl Record {
 
     /// The weighted normal velocities of a node of the slave (m/s) with the part of sliding, and its gap at t_0 (m): c is
     /// constant before its multiplier acts and after that. None if it never acts.
-    pub(super) fn targets(&mut self, node: usize) -> Result<Option<(Vec<f64>, f64)>, ScratchError> {
+    pub(super) fn target(&mut self, node: usize) -> Result<Option<Target>, ScratchError> {
         let count = self.count();
         let mut pairs = Vec::with_capacity(count);
         self.weighted.read(node, 0..count, &mut pairs)?;

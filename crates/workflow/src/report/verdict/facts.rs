@@ -195,10 +195,11 @@ fn corner<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &Con
     both.filter(|entries| entries.iter().all(|&at| touched(at))).map(opening).min_by(f64::total_cmp)
 }
 
-/// The largest speed at which two nodes of different bodies approach each other at the start (m/s).
+/// The largest speed at which two bodies approach each other at the start, at the nodes of their contact (m/s).
 fn approach<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<f64> {
-    let nodes = problem.surface().nodes().iter().enumerate().filter(|(_, contact)| contact.opposite.is_some());
-    nodes.map(|(at, _)| -problem.start_of_contact(at).1).reduce(f64::max)
+    let (surface, starts) = (problem.surface(), problem.starts_of_contact());
+    let of_bodies = |at: &usize| surface.nodes()[*at].opposite.is_some() || surface.sliding_of(*at).is_some();
+    (0..starts.len()).filter(of_bodies).map(|at| -starts[at].1).reduce(f64::max)
 }
 
 /// Diagonal of the bounding box of the largest body (m).

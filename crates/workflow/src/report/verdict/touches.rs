@@ -62,6 +62,8 @@ struct Surface<'a, const D: usize, const N: usize> {
     first_touch: Vec<Option<f64>>,
     /// The nodes beside each node on the surface.
     beside: Vec<Vec<usize>>,
+    /// Gaps at the start of the run (m).
+    gap: Vec<f64>,
 }
 
 impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
@@ -73,7 +75,8 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
                 beside[a].extend(facet.nodes.iter().filter(|&&b| b != a));
             }
         }
-        Self { problem, first_touch, beside }
+        let gap = problem.starts_of_contact().into_iter().map(|(gap, _)| gap).collect();
+        Self { problem, first_touch, beside, gap }
     }
 
     /// The nodes that touch first.
@@ -123,11 +126,9 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     /// Whether the edge between two nodes is parallel to the plane at the start of the run.
     fn parallel(&self, a: usize, b: usize) -> bool {
         let surface = self.problem.surface();
-        let start = self.problem.initial_displacement();
-        let gap = |at: usize| surface.gap(at, &surface.against_obstacle(at, start));
         let at = |at: usize| surface.point(at);
         let length = (0..D).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
-        (gap(a) - gap(b)).abs() <= PARALLEL * length
+        (self.gap[a] - self.gap[b]).abs() <= PARALLEL * length
     }
 
     fn node(&self, at: usize) -> NodeId {
