@@ -38,7 +38,7 @@ pub(in crate::report) struct Facts {
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
     pub(super) largest_friction: f64,
-    /// The least angle between two planes that one node touches (degrees).
+    /// The least angle between two planes that touch the body at edges with a common node (degrees).
     pub(super) corner: Option<f64>,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
@@ -183,16 +183,21 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
     count
 }
 
-/// The least angle between two planes that one node touches in the course of time (degrees).
+/// The least angle between two planes that are touched in the course of time and meet at a node of the surface
+/// (degrees). The node itself may touch one of them only: an impact on one of two planes that open by more than 90
+/// degrees throws it away from the other.
 fn corner<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Option<f64> {
-    let touched = |at: usize| results.summary[at].first_touch.is_some();
     let nodes = problem.surface().nodes();
-    let both = nodes.iter().enumerate().filter_map(|(at, contact)| Some([at, contact.beside?]));
-    let opening = |entries: [usize; 2]| {
-        let [one, two] = entries.map(|at| problem.obstacles()[nodes[at].obstacle].flat_frame());
+    let mut touched = vec![false; problem.obstacles().len()];
+    for (contact, summary) in nodes.iter().zip(&results.summary) {
+        touched[contact.obstacle] |= summary.first_touch.is_some();
+    }
+    let planes = nodes.iter().filter_map(|contact| Some([contact.obstacle, nodes[contact.beside?].obstacle]));
+    let opening = |planes: [usize; 2]| {
+        let [one, two] = planes.map(|obstacle| problem.obstacles()[obstacle].flat_frame());
         (-one.split(two.normal()).0).clamp(-1.0, 1.0).acos().to_degrees()
     };
-    both.filter(|entries| entries.iter().all(|&at| touched(at))).map(opening).min_by(f64::total_cmp)
+    planes.filter(|planes| planes.iter().all(|&plane| touched[plane])).map(opening).min_by(f64::total_cmp)
 }
 
 /// The largest speed at which two bodies approach each other at the start, at the nodes of their contact (m/s).

@@ -46,7 +46,7 @@ const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 const ACUTE: f64 = 59.9;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 24] = [
+pub(super) const RULES: [Rule; 25] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -84,18 +84,25 @@ pub(super) const RULES: [Rule; 24] = [
         situation: "impacts just after the first touch",
         doubt: None,
     },
-    // `percute verify` gave 1.3 to 2.7 at 45 degrees, 1.3 to 4.5 at 30 and 9.8 at 20, most with obtuse triangles.
+    // python/percute/verification/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30 and
+    // 8.5 at 20.
     Rule {
         applies: |f| f.is_cornered() && f.corner.is_some_and(|opening| opening < ACUTE),
-        range: [0.98, 10.0],
+        range: [0.9, 10.0],
         situation: "bodies in an acute corner of two planes",
         doubt: None,
     },
-    // crates/estimator/tests/corner.rs: 1.00 to 1.53. `percute verify` gave up to 1.66 where a body force presses for
-    // long.
+    // The same, pressed for 200 µs: 0.88 to 2.07.
+    Rule {
+        applies: |f| f.is_cornered() && f.passages > LONG,
+        range: [0.85, 2.2],
+        situation: "bodies pressed for long into the corner of two planes",
+        doubt: None,
+    },
+    // The same, and crates/estimator/tests/corner.rs: 0.90 to 1.57.
     Rule {
         applies: Facts::is_cornered,
-        range: [0.98, 1.7],
+        range: [0.89, 1.7],
         situation: "bodies in the corner of two planes",
         doubt: None,
     },
@@ -209,7 +216,7 @@ impl Facts {
         self.contact.touches == Touches::None && self.dimension == 2 && self.acceleration == Some(Acceleration::Closest)
     }
 
-    /// Whether a node touches two planes, in one contact phase.
+    /// Whether the body touches two planes that meet at one of its nodes, in one contact phase.
     fn is_cornered(&self) -> bool {
         self.corner.is_some() && self.phases == 1
     }
@@ -234,7 +241,7 @@ impl Facts {
 
 /// The property with which the effectivity index is outside the range of the rules, if a run has one.
 pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
-    // 1.7 to 4.7 in flat and tilted impacts.
+    // python/percute/verification/penalties.py: 1.02 to 2.97 in flat and tilted impacts.
     facts.by_a_penalty.then_some(PENALTY)
 }
 
