@@ -1,15 +1,14 @@
 //! A verification over the size of the elements. `python/percute/pictures/convergence.py` draws the same.
 
-use super::{LETTER, ROOM, SAMPLE, SIZE};
+use super::{LETTER, ROOM, ROW, SAMPLE, SIZE};
 use crate::axes::{Look, Plot};
 use crate::scale::Scale;
 use crate::svg::{Anchor, Svg};
 use percute_workflow::verify::{Level, Verification};
 
-/// Height of a plot, room below it for the sizes of the elements, height of a row of a legend (pixels).
+/// Height of a plot, room below it for the sizes of the elements (pixels).
 const HEIGHT: f64 = 190.0;
 const BELOW: f64 = 34.0;
-const ROW: f64 = 20.0;
 /// Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their
 /// range.
 const BESIDE: f64 = 1.1;

@@ -1,7 +1,7 @@
 //! Quantities over time.
 
-use super::{ROOM, SIZE, legend, plot};
-use crate::axes::Look;
+use super::{Legend, ROOM, SIZE};
+use crate::axes::{Look, Plot};
 use crate::scale::{Scale, prefixed};
 use crate::svg::{Anchor, Svg};
 
@@ -45,8 +45,13 @@ impl OverTime<'_> {
             if self.prefixes { prefixed(self.unit, high.max(-low)) } else { (1.0, self.unit.to_string()) };
         let room = 0.04 * (high - low);
         let y = Scale::linear(factor * if low < 0.0 { low - room } else { 0.0 }, factor * (high + room));
-        let plot = plot(Scale::linear(from * in_time, to * in_time), y);
-        let mut svg = Svg::new(SIZE);
+        // A single line is named by its axis.
+        let named = if self.lines.len() > 1 { &self.lines[..self.lines.len().min(LINES)] } else { &[] };
+        let legend = Legend::new(named.iter().map(|line| line.name));
+        let [left, top, right, below] = ROOM;
+        let (corner, size) = ([left, top + legend.further()], [SIZE[0] - left - right, SIZE[1] - top - below]);
+        let plot = Plot { corner, size, x: Scale::linear(from * in_time, to * in_time), y };
+        let mut svg = Svg::new([SIZE[0], SIZE[1] + legend.further()]);
         let quantity = if unit.is_empty() { self.quantity.to_string() } else { format!("{} ({unit})", self.quantity) };
         let labels = (format!("t ({second})"), quantity);
         // Numbers of things have no halves.
@@ -54,17 +59,15 @@ impl OverTime<'_> {
         plot.axes(&mut svg, &Look { x: &labels.0, y: &labels.1, marks: [7, 5], whole, grid: [true, false] });
         if let Some((at, name)) = self.mark {
             let [x, _] = plot.at(at * in_time, 0.0);
-            svg.line("now", [x, ROOM[1]], [x, SIZE[1] - ROOM[3]]);
-            svg.text("faint", [x, ROOM[1] - 4.0], Anchor::Middle, false, name);
+            svg.line("now", [x, corner[1]], [x, corner[1] + size[1]]);
+            svg.text("faint", [x, corner[1] - 4.0], Anchor::Middle, false, name);
         }
         for (k, line) in self.lines.iter().enumerate().take(LINES) {
             let points = thinned(&self.time, &line.values).into_iter();
             let points = points.map(|(t, value)| plot.at(t * in_time, value * factor));
             svg.polyline(&format!("s{k}"), points);
         }
-        if self.lines.len() > 1 {
-            legend(&mut svg, 0.0, &self.lines.iter().take(LINES).map(|line| line.name).collect::<Vec<_>>());
-        }
+        legend.draw(&mut svg);
         Some(svg)
     }
 }
