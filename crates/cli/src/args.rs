@@ -123,8 +123,9 @@ pub struct RunArguments {
 pub struct SimulateArguments {
     /// The case file (TOML)
     pub case: PathBuf,
-    /// The file of the history (.vtkhdf) [default: as in the case, or named after it in the working directory]
-    #[arg(short = 'o', long, value_name = "FILE")]
+    /// The file of the history (.vtkhdf), also `--output` [default: as in the case, or named after it in the working
+    /// directory]
+    #[arg(short = 'o', long, alias = "output", value_name = "FILE")]
     pub history: Option<PathBuf>,
     /// Replace an existing history
     #[arg(long)]

@@ -134,8 +134,9 @@ fn outputs_are_checked_before_any_work() {
     std::fs::write(bench.path("text.vtkhdf"), "mine").unwrap();
     std::fs::create_dir(bench.path("folder")).unwrap();
     let before = files(&bench);
-    let wrong: [(&[&str], i32, &str); 16] = [
+    let wrong: [(&[&str], i32, &str); 17] = [
         (&["simulate", "case.toml", "--history", "there.vtkhdf"], 2, "--history there.vtkhdf: the file exists already"),
+        (&["simulate", "case.toml", "--output", "there.vtkhdf"], 2, "--history there.vtkhdf: the file exists already"),
         (&["run", "case.toml", "--history", "text.vtkhdf"], 2, "--force to replace it"),
         (&["run", "case.toml", "--estimate", "text.vtkhdf"], 2, "--estimate text.vtkhdf: the file exists already"),
         (&["estimate", "there.vtkhdf", "--output", "text.vtkhdf"], 2, "--output text.vtkhdf: the file exists already"),
