@@ -6,6 +6,8 @@
 Akantu integrates with central differences and a lumped mass, as percute does, but it treats contact by a penalty: a force in
 proportion to the penetration, where percute has Lagrange multipliers and no penetration. The script takes some seconds and
 prints the error of each simulation. docs/recipes.md has the results.
+
+The file cannot be called akantu.py: Python would import it in place of Akantu.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -62,6 +63,19 @@ def test_the_page_is_well_formed_and_stands_alone(estimate: pc.Estimate, tmp_pat
     # The only reference is the picture of the pressure, which is inside the page.
     assert [reference.split(",")[0] for reference in page.references] == ["data:image/png;base64"]
     assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_the_page_has_a_style_for_the_dark_small_screens_and_paper(estimate: pc.Estimate, tmp_path: Path) -> None:
+    """What browsers make of it is looked at; without these rules it cannot be right."""
+    estimate.report(tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    style = text.partition("<style>")[2].partition("</style>")[0]
+    for rule in ("@media screen and (prefers-color-scheme:dark)", "@media screen and (max-width:", "@media print", ".scroll{overflow-x:auto;max-width:100%"):
+        assert rule in style, rule
+    # Tables and pictures that are wider than the screen scroll inside their frames.
+    for tag in ("table", "svg"):
+        framed = len(re.findall(rf'<div class="scroll"><{tag}[ >]', text))
+        assert framed == len(re.findall(rf"<{tag}[ >]", text)) > 5, tag
 
 
 def test_an_estimate_has_the_same_page_from_a_file(estimate: pc.Estimate, tmp_path: Path) -> None:
