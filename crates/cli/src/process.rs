@@ -5,9 +5,10 @@ use crate::exit::INTERRUPTED;
 use crate::stop::{Answer, Stop};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write, stderr, stdout};
+use std::sync::LazyLock;
 use std::time::Duration;
 
-static STOP: Stop = Stop::new();
+static STOP: LazyLock<Stop> = LazyLock::new(Stop::new);
 
 /// How long a command may take to see that it is to stop, unless it is at its steps.
 const PATIENCE: Duration = Duration::from_millis(300);

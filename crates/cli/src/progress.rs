@@ -2,7 +2,7 @@
 
 use crate::stop::Stop;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use percute_core::observer::{Observer, Progress};
+use percute_core::observer::{Observer, Progress, StopFlag};
 use std::ops::ControlFlow;
 
 /// Shows progress on a terminal and asks whether to stop.
@@ -42,6 +42,10 @@ impl Observer for Watch<'_> {
         }
         if self.stop.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
+
+    fn flag(&self) -> StopFlag {
+        self.stop.flag()
+    }
 }
 
 impl Drop for Watch<'_> {
@@ -61,7 +65,10 @@ mod tests {
     fn a_watch_breaks_when_asked() {
         let (stop, progress) = (Stop::new(), Progress { stage: "simulating", done: 1, total: 2 });
         assert_eq!(Watch::new(false, &stop).observe(progress), ControlFlow::Continue(()));
+        let flag = Watch::new(false, &stop).flag();
+        assert!(!flag.is_up());
         stop.ask();
+        assert!(flag.is_up(), "within a step");
         assert_eq!(Watch::new(false, &stop).observe(progress), ControlFlow::Break(()));
     }
 

@@ -1,5 +1,6 @@
 //! A request to stop the command: from a signal to the place where it is heard.
 
+use percute_core::observer::StopFlag;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
@@ -8,7 +9,7 @@ const PAUSE: Duration = Duration::from_millis(10);
 /// Whether the command was asked to stop, and where it is.
 #[derive(Debug, Default)]
 pub struct Stop {
-    asked: AtomicBool,
+    asked: StopFlag,
     /// The command has seen it, or has ended.
     heard: AtomicBool,
     /// The command is at steps: it looks between them, and its results so far are worth the wait.
@@ -29,13 +30,18 @@ pub(crate) enum Answer {
 impl Stop {
     /// Before any request.
     #[must_use]
-    pub const fn new() -> Self {
-        Self { asked: AtomicBool::new(false), heard: AtomicBool::new(false), at_steps: AtomicBool::new(false) }
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// For those who work within a step.
+    pub(crate) fn flag(&self) -> StopFlag {
+        self.asked.clone()
     }
 
     /// Whether to stop. The command looks here between its steps.
     pub fn is_asked(&self) -> bool {
-        let asked = self.asked.load(Relaxed);
+        let asked = self.asked.is_up();
         if asked {
             self.heard.store(true, Relaxed);
         }
@@ -44,7 +50,7 @@ impl Stop {
 
     /// Asks. Returns whether that was done before.
     pub fn ask(&self) -> bool {
-        self.asked.swap(true, Relaxed)
+        self.asked.set(true)
     }
 
     /// The command begins or ends its steps.
@@ -54,9 +60,9 @@ impl Stop {
 
     /// A command begins.
     pub(crate) fn begin(&self) {
-        for flag in [&self.asked, &self.heard, &self.at_steps] {
-            flag.store(false, Relaxed);
-        }
+        self.asked.set(false);
+        self.heard.store(false, Relaxed);
+        self.at_steps.store(false, Relaxed);
     }
 
     /// The command has ended: there is nothing to wait for.

@@ -37,6 +37,9 @@ pub enum EstimateError {
     /// Not even one whole step.
     #[error("the history holds {}; an estimate needs at least 2", counted(*.count, "instant"))]
     TooFewSteps { count: usize },
+    /// Stopped on a large mesh before any step was estimated.
+    #[error("no step was estimated yet; on a mesh of this size a stop does not wait for it")]
+    Stopped,
     /// A step that does not fit.
     #[error(transparent)]
     Step(#[from] StepError),

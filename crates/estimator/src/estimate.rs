@@ -112,7 +112,7 @@ pub struct Estimate<const D: usize> {
     pub own_contacts: usize,
     /// Where velocities and accelerations came from.
     pub given: Given,
-    /// Last step taken in.
+    /// Last step that is estimated.
     pub steps: usize,
     /// Its time T (s).
     pub end: f64,

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the
-/// observer breaks, the steps taken so far are estimated. The simulation is summed up from the steps.
+/// observer breaks, the steps taken so far are estimated, on a large mesh as far as [`Estimator::stopping`] says. The simulation is summed up from the steps.
 /// `beside` takes every step that is estimated too, so that they need not be read again.
 ///
 /// # Errors
@@ -27,7 +27,7 @@ pub fn estimate<const D: usize, const N: usize>(
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
-    let estimator = Estimator::new(problem, source.times(), options)?.keeping(request)?;
+    let estimator = Estimator::new(problem, source.times(), options)?.keeping(request)?.stopping(observer.flag());
     let mut sinks = (estimator, (Balancing::new(problem, source.times()), beside));
     let mut evaluation = Evaluation::new(problem, source.times());
     let last = source.count().saturating_sub(1);

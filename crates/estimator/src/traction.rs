@@ -23,6 +23,7 @@ use mass_term::MassTerm;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::material::Law;
 use percute_core::mesh::{Star, Strips};
+use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use solve::StarFields;
 use star_solver::{Compatibility, Ends};
@@ -57,6 +58,8 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     loaded: usize,
     /// Where the links of each contact node's star begin among those of all contact nodes.
     contact_links: Vec<usize>,
+    /// Once it is up, no further part is worked on.
+    pub(crate) stop: StopFlag,
 }
 
 impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
@@ -90,12 +93,13 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             crossing,
             loaded,
             contact_links,
+            stop: StopFlag::default(),
         }
     }
 
-    /// The parts that go through the work one after the other.
-    pub(crate) fn parts(&self) -> &[MeshPart] {
-        &self.parts
+    /// The parts that go through the work one after the other, until it is stopped.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &MeshPart> {
+        self.parts.iter().take_while(|_| !self.stop.is_up())
     }
 
     /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.

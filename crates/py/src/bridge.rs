@@ -7,7 +7,7 @@
 //! interpreter ends.
 
 use crate::errors::percute_error;
-use percute_core::observer::{Observer, Progress};
+use percute_core::observer::{Observer, Progress, StopFlag};
 use pyo3::prelude::*;
 use std::any::Any;
 use std::borrow::Cow;
@@ -48,7 +48,7 @@ impl ProgressNow {
 /// What the caller and the work share.
 #[derive(Debug, Default)]
 pub(crate) struct Task {
-    stop: AtomicBool,
+    stop: StopFlag,
     /// Whether a file is being written.
     writing: AtomicBool,
     progress: Mutex<Option<Progress>>,
@@ -71,7 +71,7 @@ impl Drop for Writing {
 impl Task {
     /// Whether the work should stop.
     pub(crate) fn stopped(&self) -> bool {
-        self.stop.load(Relaxed)
+        self.stop.is_up()
     }
 
     fn is_writing(&self) -> bool {
@@ -101,6 +101,10 @@ impl Observer for Watch {
     fn observe(&mut self, progress: Progress) -> ControlFlow<()> {
         *self.0.progress.lock().unwrap_or_else(PoisonError::into_inner) = Some(progress);
         if self.0.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn flag(&self) -> StopFlag {
+        self.0.stop.clone()
     }
 }
 
@@ -143,7 +147,7 @@ fn carry_out<T: Send + 'static>(
     let worker = std::thread::Builder::new().name("percute".into()).spawn(job)?;
     let waited = wait(py, task, &mut receiver, tell);
     if waited.is_err() {
-        task.stop.store(true, Relaxed);
+        task.stop.set(true);
         leave(py, task, &mut receiver);
     }
     match waited? {
@@ -198,7 +202,9 @@ pub(crate) fn close_files(py: Python<'_>) {
     let writers = std::mem::take(&mut *WRITERS.lock().unwrap_or_else(PoisonError::into_inner));
     let ours = writers.iter().filter(|(process, _)| *process == std::process::id());
     let writers: Vec<Arc<Task>> = ours.filter_map(|(_, task)| task.upgrade()).collect();
-    writers.iter().for_each(|task| task.stop.store(true, Relaxed));
+    for task in &writers {
+        task.stop.set(true);
+    }
     while writers.iter().any(|task| task.is_writing()) && py.check_signals().is_ok() {
         py.detach(|| std::thread::sleep(POLL));
     }

@@ -46,6 +46,14 @@ pub struct Results<const D: usize> {
     pub outline: Option<Outline>,
 }
 
+impl<const D: usize> Results<D> {
+    /// Whether the observer broke before all steps were done and estimated.
+    #[must_use]
+    pub fn interrupted(&self) -> bool {
+        self.simulation.interrupted || self.estimate.steps < self.simulation.steps
+    }
+}
+
 impl Analysis {
     fn recorder<'p, const D: usize, const N: usize>(
         &self,
@@ -131,7 +139,7 @@ pub(crate) fn beside<const D: usize, const N: usize>(
     let mut contact = analysis.recorder(ordered.problem(), times)?;
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
-    let mut estimator = estimator.map_err(RunError::from)?;
+    let mut estimator = estimator.map_err(RunError::from)?.stopping(observer.flag());
     let mut outline = LastOutline::new(ordered.problem().mesh());
     let mut sinks = ((&mut estimator, (&mut contact, &mut outline)), sink);
     let done = drive(ordered, times, (analysis.options.threads, None), storage, &mut sinks, observer)?;

@@ -47,7 +47,9 @@ fn estimate<const D: usize, const N: usize>(
     let analysis = Analysis { options, request, contact_steps: output.is_some() || print.report.is_some() };
     let graded = stored.estimate(&analysis, arguments.accept_inconsistent, watch);
     let Graded { results, times, checked } = match graded {
-        Err(Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. }) if console.stop.is_asked() => {
+        Err(Failure::History {
+            cause: error @ (EstimateError::TooFewSteps { .. } | EstimateError::Stopped), ..
+        }) if console.stop.is_asked() => {
             return Ok(console.interrupted_early(&error));
         }
         other => other?,

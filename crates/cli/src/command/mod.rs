@@ -143,6 +143,14 @@ impl Console<'_> {
         INTERRUPTED
     }
 
+    /// Says how an estimate of the steps in a history is made, and how its run goes on.
+    fn say_to_estimate(&mut self, history: &Path) {
+        let file = history.display();
+        self.say(&format!(
+            "no estimate was made: `percute estimate {file}` makes that of the steps done, and --resume goes on"
+        ));
+    }
+
     /// Prints the plausibility warnings about a case and returns their names.
     fn warn_about<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
         let warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };

@@ -51,7 +51,7 @@ pub(super) fn give<const D: usize, const N: usize>(
     let tables = tabulate(finished, work.force);
     let shown = show(finished, &stored_json, print, work, console);
     console.first([printed, stored, tables, shown])?;
-    Ok(if simulation.interrupted { INTERRUPTED } else { DONE })
+    Ok(if results.interrupted() { INTERRUPTED } else { DONE })
 }
 
 /// Draws the picture and writes the page, as far as they are wanted.

@@ -97,10 +97,7 @@ where
                 // An estimate of all steps until there would take long; standard output has results only.
                 let seconds = start.elapsed().as_secs_f64();
                 console.say(simulated(&case.subject(), &simulation, file, seconds).trim_end());
-                console.say(&format!(
-                    "no estimate was made: `percute estimate {}` makes that of the steps done, and --resume goes on",
-                    file.display()
-                ));
+                console.say_to_estimate(file);
                 return Ok(Break(INTERRUPTED));
             }
             again(&Stored::of_case(case, file, true)?, analysis, work, console)
@@ -109,9 +106,15 @@ where
     match done {
         // Nothing can be estimated from a run stopped at its very start.
         Err(
-            Failure::Run(RunError::Estimate(error @ EstimateError::TooFewSteps { .. }))
-            | Failure::History { cause: error @ EstimateError::TooFewSteps { .. }, .. },
-        ) if console.stop.is_asked() => Ok(Break(console.interrupted_early(&error))),
+            Failure::Run(RunError::Estimate(error @ (EstimateError::TooFewSteps { .. } | EstimateError::Stopped)))
+            | Failure::History { cause: error @ (EstimateError::TooFewSteps { .. } | EstimateError::Stopped), .. },
+        ) if console.stop.is_asked() => {
+            let code = console.interrupted_early(&error);
+            if let (EstimateError::Stopped, Some(history)) = (error, history) {
+                console.say_to_estimate(history.file);
+            }
+            Ok(Break(code))
+        }
         other => other.map(Continue),
     }
 }

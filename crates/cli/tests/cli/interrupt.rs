@@ -201,20 +201,38 @@ fn the_set_up_of_a_large_mesh_is_left_at_once() {
     }
 }
 
-#[test]
-fn long_windows_end_with_a_summary() {
-    // A window of eight levels takes longer than the command may take to look in its set-up.
+/// Interrupts a run of 240 000 triangles, of which a window takes seconds here, after so many steps, with samples at
+/// these. Its history is closed.
+fn interrupted_after(steps: u64, every: &str) -> (Bench, Output) {
     let block = BLOCK.replace("nx = 5, ny = 4", "nx = 400, ny = 300").replace("end = 5e-6", "end = 1e-4");
-    let bench = Bench::new(&block);
+    let bench = Bench::new(&block.replace("every = 1", &format!("every = {every}")));
     let arguments = ["run", "case.toml", "--history", "h.vtkhdf", "--threads", "1", "--long", "--quiet"];
     let child = start(&bench, &arguments);
-    while info_of(&bench, "h.vtkhdf")["steps"].as_u64() < Some(1) {
+    while info_of(&bench, "h.vtkhdf")["steps"].as_u64() < Some(steps) {
         std::thread::sleep(Duration::from_millis(5));
     }
     let output = send_interrupt(child);
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    assert!(stdout(&output).contains("INTERRUPTED at step "), "{} {}", stdout(&output), stderr(&output));
     assert_eq!(info_of(&bench, "h.vtkhdf")["complete"], true);
+    (bench, output)
+}
+
+#[test]
+fn a_long_window_is_left_in_its_middle() {
+    // A window of eight levels is done after ten steps.
+    let (_, output) = interrupted_after(13, "1");
+    let summary = stdout(&output);
+    assert!(summary.contains("INTERRUPTED at step ") && summary.contains(", error until t = "), "{summary}");
+    assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+}
+
+#[test]
+fn a_stop_before_the_first_window_tells_how_to_estimate() {
+    // A window of `auto` has some hundred steps on this mesh.
+    let (bench, output) = interrupted_after(2, "\"auto\"");
+    assert_eq!(stdout(&output), "", "no step is estimated");
+    assert!(stderr(&output).contains("`percute estimate h.vtkhdf`"), "{}", stderr(&output));
+    assert!(info_of(&bench, "h.vtkhdf")["steps"].as_u64() >= Some(2));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::common::{BLOCK, Bench, stderr, stdout};
 use crate::interrupt::start;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// A run of about a second, with its history in a folder.
@@ -66,6 +67,31 @@ fn of_two_runs_on_one_file_the_second_is_refused_at_its_start() {
         assert_eq!(stdout(loser), "");
         let info = bench.percute(&["info", "a.vtkhdf"]);
         assert!(stdout(&info).contains("complete"), "{}", stdout(&info));
+    }
+}
+
+/// Files that cannot be written to their end leave those that they would replace, and nothing else. The limit on the
+/// size of files is in blocks of 512 bytes, and `trap` makes it an error of writing.
+#[test]
+fn a_file_that_is_not_written_whole_replaces_none() {
+    let bench = Bench::new(BLOCK);
+    let names = ["e.vtkhdf", "p.svg", "p.png", "r.html", "t.csv"];
+    names.iter().for_each(|name| std::fs::write(bench.path(name), "old").unwrap());
+    let before = bench.files();
+    let program = assert_cmd::cargo::cargo_bin!("percute");
+    for (picture, file) in [("p.svg", "r.html"), ("p.png", "e.vtkhdf")] {
+        let outputs = format!("--estimate e.vtkhdf --picture {picture} --report r.html --csv t.csv --force --quiet");
+        let line = format!("trap '' XFSZ; ulimit -f 2; exec {} run case.toml {outputs}", program.display());
+        let output = Command::new("sh").current_dir(bench.path("")).args(["-c", &line]).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        assert!(stdout(&output).contains("\nresult    sup "), "the result is printed all the same");
+        for name in [picture, file, "t.csv"] {
+            assert!(stderr(&output).contains(name), "{}", stderr(&output));
+        }
+    }
+    assert_eq!(bench.files(), before);
+    for name in names {
+        assert_eq!(std::fs::read(bench.path(name)).unwrap(), b"old", "{name}");
     }
 }
 

@@ -44,6 +44,8 @@ impl FarSums {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FarCourse<const D: usize, const N: usize> {
     pub(super) course: Course,
+    /// The integral before the levels at work.
+    before: f64,
     stress: AdmissibleStress<D, N>,
 }
 
@@ -72,6 +74,8 @@ pub(super) struct FarSampling<'a, 's, 'p, const D: usize, const N: usize> {
     before: Option<EquilibratedLevel<'a, D>>,
     is_near: &'a [bool],
     courses: &'a mut [FarCourse<D, N>],
+    /// Number of elements sampled.
+    done: usize,
     room: Pool<BlockFields<D>>,
     levels: ElementError<Lanes>,
     mids: ElementError<Lanes>,
@@ -88,7 +92,8 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarSampling<'a, 's, 'p, D, N> {
     ) -> Self {
         let none = ElementError::filled(Lanes::ZERO);
         let (residuals, kept) = (Residuals::default(), Vec::new());
-        Self { shared, before, is_near, courses, room: Pool::new(), levels: none, mids: none, residuals, kept }
+        let room = Pool::new();
+        Self { shared, before, is_near, courses, done: 0, room, levels: none, mids: none, residuals, kept }
     }
 
     /// Samples the elements of some blocks.
@@ -105,12 +110,18 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarSampling<'a, 's, 'p, D, N> {
         };
         let courses = courses[blocks.start * BLOCK..end].par_chunks_mut(BLOCK).enumerate();
         let found: Vec<FarBlock> = courses.map(block).collect();
+        self.done = end;
         for block in found {
             self.levels.add(&block.levels);
             self.mids.add(&block.mids);
             self.residuals.merge(&block.residuals);
             self.kept.extend(block.kept);
         }
+    }
+
+    /// Takes back what was added to integrals at these levels.
+    pub(super) fn undo(self) {
+        self.courses[..self.done].iter_mut().for_each(|far| far.course.integral = far.before);
     }
 
     /// Appends the sums at these levels, of which all blocks are sampled.

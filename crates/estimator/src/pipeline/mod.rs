@@ -30,6 +30,7 @@ use crate::scratch_file::ScratchFile;
 use maps::Maps;
 use near_elements::may_need_a_file;
 use percute_core::history::{SinkError, State, StateSink};
+use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
@@ -39,6 +40,9 @@ pub use window::memory;
 
 /// From so many elements on, a step takes much longer than to hand it to the threads, some 10 µs.
 const THREADED: usize = 20_000;
+
+/// From so many elements on a stop is looked for within a window. A smaller one takes some 0.1 s, and is not given up.
+const STOPPED: usize = 100_000;
 
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
@@ -50,8 +54,8 @@ const THREADED: usize = 20_000;
 /// `TMPDIR` names or in `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
 ///
 /// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it
-/// returns, and so does [`finish`](Estimator::finish) on the last one. A stop may have to wait that long: about a
-/// second on one core for a million elements. [`Options::window`] makes it shorter.
+/// returns, and so does [`finish`](Estimator::finish) on the last one: about a second on one core for a million
+/// elements. [`stopping`](Estimator::stopping) ends it before.
 #[derive(Debug)]
 pub struct Estimator<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
@@ -113,10 +117,20 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         Ok(self)
     }
 
+    /// Leaves the work on a large mesh in its middle once a flag is up. The estimate then covers the steps before that
+    /// work, and those that follow are not estimated: [`Estimate::steps`] tells how many are.
+    #[must_use]
+    pub fn stopping(mut self, flag: StopFlag) -> Self {
+        if self.problem.mesh().element_count() >= STOPPED {
+            self.window.stop_at(flag);
+        }
+        self
+    }
+
     /// Ends with the steps taken so far and sums up.
     ///
     /// # Errors
-    /// Fewer than two steps, or numbers out of range.
+    /// Fewer than two steps, none estimated before a [stop](Estimator::stopping), or numbers out of range.
     pub fn finish(mut self) -> Result<Estimate<D>, EstimateError> {
         if self.preparation.count() < 2 {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });

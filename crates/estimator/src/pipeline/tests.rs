@@ -1,5 +1,6 @@
 //! Intervals that wait: their memory is limited, and the temporary file changes no result.
 
+use super::fixture::impact;
 use super::*;
 use crate::options::Reconstruction;
 use crate::scratch_file::ScratchFile;
@@ -7,8 +8,9 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
-use percute_core::observer::Unobserved;
+use percute_core::observer::{Progress, StopFlag, Unobserved};
 use percute_core::problem::{Initial, TriangleProblem};
+use std::ops::ControlFlow;
 
 /// A low, wide block that strikes a plane and flies off: most nodes never touch again.
 fn rebound() -> TriangleProblem {
@@ -89,4 +91,47 @@ fn a_file_that_fails_is_an_error() {
     let Err(SimulationError::Sink { cause, step }) = watched.run() else { panic!("no error") };
     assert!(step > 10, "{step}");
     assert!(matches!(cause.downcast_ref(), Some(EstimateError::Scratch(_))), "{cause}");
+}
+
+/// The estimate of a short run that is stopped once this step was taken in; only a `large` mesh is left in the middle of
+/// its work.
+fn stopped(
+    problem: &TriangleProblem,
+    times: &TimeGrid,
+    step: usize,
+    large: bool,
+) -> Result<Estimate<2>, EstimateError> {
+    let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
+    let flag = StopFlag::default();
+    let mut estimator = Estimator::new(problem, times, options).unwrap().stopping(flag.clone());
+    if large {
+        estimator.window.stop_at(flag.clone());
+    }
+    let watch = &mut |progress: Progress| {
+        flag.set(progress.done >= step);
+        ControlFlow::Continue(())
+    };
+    simulate(problem, times, &mut estimator, watch).unwrap();
+    estimator.finish()
+}
+
+/// A stop drops the windows from then on. What is kept has the bits of the whole estimate, and the contributions of the
+/// elements still add up to the mean.
+#[test]
+fn a_stop_keeps_the_windows_before_it() {
+    let (problem, times) = impact();
+    let whole = stopped(&problem, &times, usize::MAX, true).unwrap();
+    assert_eq!((whole.steps, whole.over_time.len()), (20, 41));
+    // Eight levels are a window; the first ends with step 7, and is ready when step 9 is.
+    for (step, last) in [(10, 7), (15, 7), (17, 15), (19, 15)] {
+        let kept = stopped(&problem, &times, step, true).unwrap();
+        assert_eq!((kept.steps, kept.end), (last, times.instants()[last]), "stopped at step {step}");
+        assert_eq!(kept.over_time, whole.over_time[..2 * last + 1]);
+        let sum: f64 = kept.by_element.iter().map(|e| e * e).sum();
+        // Sums of some hundred terms in another order.
+        assert!((sum / kept.error.mean.powi(2) - 1.0).abs() < 1e-12, "stopped at step {step}: {sum}");
+        assert_eq!(kept.sources.unwrap().over_time, whole.sources.as_ref().unwrap().over_time[..2 * last + 1]);
+    }
+    assert_eq!(stopped(&problem, &times, 5, true), Err(EstimateError::Stopped));
+    assert_eq!(stopped(&problem, &times, 5, false).unwrap(), whole);
 }

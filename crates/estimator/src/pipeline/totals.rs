@@ -29,7 +29,8 @@ pub(super) fn estimate<const D: usize, const N: usize>(
     worked: Worked<D, N>,
 ) -> Estimate<D> {
     let Worked { mut intervals, near, integrals: mut integral, mut residuals, mut maps } = worked;
-    let last = preparation.count() - 1;
+    // The last step taken in, unless work was stopped before.
+    let last = intervals[intervals.len() - 1].levels[1];
     let end = times.instants()[last];
     for element in &near {
         integral[element.element.index()] = element.course.integral;

@@ -15,6 +15,7 @@ use super::totals::{self, Worked};
 use crate::contact_density::OffContact;
 use crate::difference::Difference;
 use crate::element::Element;
+use crate::error::EstimateError;
 use crate::estimate::{Estimate, Sample};
 use crate::lanes::{LANES, Lanes};
 use crate::options::{Acceleration, Options, Reconstruction};
@@ -24,6 +25,7 @@ use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::sources::Sources;
 use crate::time_level::ForcesKnown;
 use crate::traction::{EquilibratedLevels, Equilibration, KeptLevel, Then};
+use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use rayon::ThreadPool;
@@ -110,6 +112,8 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     courses: Vec<FarCourse<D, N>>,
     pub(super) maps: Maps<D>,
     residuals: Residuals,
+    /// Work was stopped: the levels from then on are not estimated.
+    stopped: bool,
 }
 
 impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
@@ -137,6 +141,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             courses: vec![FarCourse::default(); problem.mesh().element_count()],
             maps,
             residuals: Residuals::default(),
+            stopped: false,
         }
     }
 
@@ -149,6 +154,11 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     /// Has the memory of the first window at hand: a stop waits for that window, but not for this.
     pub(super) fn make_room(&mut self) {
         self.equilibrated = EquilibratedLevels::with_links(self.problem.mesh().stars().link_count());
+    }
+
+    /// Leaves a window in its middle once the flag is up, and gives up its levels.
+    pub(super) fn stop_at(&mut self, flag: StopFlag) {
+        self.equilibration.stop = flag;
     }
 
     /// Takes in a level; works when the window is full.
@@ -167,8 +177,11 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         mut self,
         pool: &ThreadPool,
         preparation: &mut Preparation<'p, D, N>,
-    ) -> Result<Estimate<D>, ScratchError> {
+    ) -> Result<Estimate<D>, EstimateError> {
         pool.install(|| self.work(preparation).and_then(|()| self.catch_up(preparation)))?;
+        if self.intervals.is_empty() {
+            return Err(EstimateError::Stopped);
+        }
         // The sums over time begin when the memory of levels is free.
         let Self {
             problem,
@@ -194,15 +207,21 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
 
     /// Works on the levels of the window and keeps the last for the next one.
     fn work(&mut self, preparation: &mut Preparation<'p, D, N>) -> Result<(), ScratchError> {
-        if self.levels.is_empty() {
+        self.stopped |= self.equilibration.stop.is_up();
+        if self.levels.is_empty() || self.stopped {
+            self.levels.clear();
             return Ok(());
         }
         let mut levels = std::mem::take(&mut self.equilibrated);
         let (reconstruction, choice) = (preparation.reconstruction(), self.choice);
         let forces = std::mem::take(&mut self.levels);
-        let kept = self.sample(&mut levels, |equilibration, levels, then| {
+        let sampled = self.sample(&mut levels, |equilibration, levels, then| {
             reconstruction.equilibrate(equilibration, choice, forces, levels, then)
         })?;
+        let Some(kept) = sampled else {
+            self.stopped = true;
+            return Ok(());
+        };
         let (equilibration, concentration) = (&self.equilibration, reconstruction.concentration());
         let balance = Balance { problem: self.problem, equilibration, choice, concentration };
         self.maps.begin(self.times.instants(), &balance, &levels);
@@ -213,17 +232,21 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
     }
 
     /// Samples all elements at some levels, each part of the mesh as soon as its tractions are there. Returns the
-    /// contributions of far elements to maps.
+    /// contributions of far elements to maps; none if it is stopped, and then no sum is changed.
     fn sample(
         &mut self,
         levels: &mut EquilibratedLevels<D>,
         equilibrate: impl FnOnce(&Equilibration<'p, D, N>, &mut EquilibratedLevels<D>, Then<'_, D>) -> f64,
-    ) -> Result<Vec<Contribution>, ScratchError> {
+    ) -> Result<Option<Vec<Contribution>>, ScratchError> {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
         let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
         let before = self.carried.as_ref().map(KeptLevel::level);
         let mut far = FarSampling::new(&shared, before, &self.is_near, &mut self.courses);
         let miss = equilibrate(equilibration, levels, &mut |levels, part| far.sample(levels, part.elements.clone()));
+        if equilibration.stop.is_up() {
+            far.undo();
+            return Ok(None);
+        }
         let (residuals, kept) = far.finish(levels, &mut self.far);
         let (sampled, first) = (SampledLevels { before, levels }, self.intervals.len());
         for (k, interval) in sampled.intervals().enumerate() {
@@ -235,7 +258,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         self.near.append(&shared, &sampled, first..self.intervals.len())?;
         self.residuals.merge(&residuals);
         self.residuals.star_compatibility = worse(self.residuals.star_compatibility, miss);
-        Ok(kept)
+        Ok(Some(kept))
     }
 
     /// Samples near elements as far as the motion of all contact nodes is known.

@@ -43,10 +43,15 @@ pub(super) fn head(contents: &Contents<'_>) -> String {
 fn interrupted(document: &Document) -> String {
     let [steps, planned] = ["steps", "steps_planned"].map(|path| number(document.number(path)));
     let end = document.number("end").map_or_else(String::new, |end| html(&format!(", t = {}", quantity(end, "s", 4))));
-    format!(
-        "<div class=\"verdict warning\"><p><b>Interrupted</b> at step {steps} of {planned}{end}: all numbers are those \
-         of the steps until then.</p></div>\n"
-    )
+    let simulated = document.list("balance_over_time.time").len().saturating_sub(1);
+    let (at, of) = match document.number("steps") {
+        Some(estimated) if simulated as f64 > estimated => (
+            format!("step {simulated} of {planned}"),
+            format!("the error is that of the first {steps} steps{end}, all other numbers are those of all steps done"),
+        ),
+        _ => (format!("step {steps} of {planned}{end}"), "all numbers are those of the steps until then".to_string()),
+    };
+    format!("<div class=\"verdict warning\"><p><b>Interrupted</b> at {at}: {of}.</p></div>\n")
 }
 
 /// Verdict, warnings, tiles.

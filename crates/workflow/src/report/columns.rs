@@ -46,6 +46,11 @@ impl EnergiesOverTime {
         let time = instants.iter().take(balances.len()).copied().collect();
         Self { time, energies: Columns::new(balances.to_vec(), ENERGIES) }
     }
+
+    /// Number of steps between them.
+    pub(super) fn steps(&self) -> usize {
+        self.time.len().saturating_sub(1)
+    }
 }
 
 /// Records, of which the named numbers are serialised, each as an array.

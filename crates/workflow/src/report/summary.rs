@@ -119,6 +119,10 @@ fn sampled(every: Sampling) -> String {
 fn time(report: &Report) -> String {
     let Report { steps, steps_planned: planned, .. } = *report;
     let end = trimmed(report.end, 5);
+    let simulated = report.balance_over_time.steps();
+    if report.interrupted && simulated > steps {
+        return format!("INTERRUPTED at step {simulated} of {planned}, error until t = {end} s;");
+    }
     match report.held.map(|instants| instants.saturating_sub(1)) {
         _ if !report.interrupted => format!("{end} s in {};", counted(steps, "step")),
         Some(held) if held == steps => {

@@ -128,9 +128,11 @@ impl<const D: usize, const N: usize> Prepared<D, N> {
     ) -> Result<Option<Results<D>>, Failure> {
         let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
         match beside(ordered, &self.times, &analysis, nowhere, sink, observer).and_then(Outcome::stored) {
-            Ok(results) => Ok(Some(results).filter(|results| !results.simulation.interrupted)),
+            Ok(results) => Ok(Some(results).filter(|results| !results.interrupted())),
             // Nothing can be estimated of a run that was stopped at its start.
-            Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. }))) => Ok(None),
+            Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. } | EstimateError::Stopped))) => {
+                Ok(None)
+            }
             Err(other) => Err(other),
         }
     }

@@ -63,6 +63,7 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
             #[inline(always)]
             |now: Wide<R>, _: Wide<R>| now.store().0[last],
         );
+        so_far.before = so_far.course.integral;
         self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
     }
 

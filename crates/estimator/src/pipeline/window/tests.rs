@@ -51,7 +51,7 @@ impl Run<'_> {
         for mut some in levels {
             let parts =
                 |equilibration: &Equilibration<'_, 2, 3>, levels: &mut EquilibratedLevels<2>, then: Then<'_, 2>| {
-                    equilibration.parts().iter().for_each(|part| then(levels, part));
+                    equilibration.parts().for_each(|part| then(levels, part));
                     0.0
                 };
             self.window.sample(&mut some, parts).unwrap();
@@ -184,4 +184,32 @@ fn wrong_initial_conditions_show() {
         let rest = Residuals { initial_conditions: 0.0, ..found };
         assert!(rest.largest() < 1e-12, "{found:?}");
     }
+}
+
+/// Work that is stopped after some parts were sampled takes back what it added.
+#[test]
+fn a_stopped_window_changes_nothing() {
+    let (problem, times) = impact();
+    let mut run = run(&problem, &times);
+    let mut levels = run.solve();
+    let parts = |stopped: bool| {
+        move |all: &Equilibration<'_, 2, 3>, levels: &mut EquilibratedLevels<2>, then: Then<'_, 2>| {
+            all.parts().for_each(|part| then(levels, part));
+            all.stop.set(stopped);
+            0.0
+        }
+    };
+    let sums = |window: &LevelWindow<'_, 2, 3>| -> (usize, usize, Vec<f64>) {
+        let integrals = window.courses.iter().map(|far| far.course.integral).collect();
+        (window.intervals.len(), window.far.levels.len(), integrals)
+    };
+    assert!(run.window.sample(&mut levels[0], parts(false)).unwrap().is_some());
+    run.window.carried = levels[0].keep_last(&run.window.near_links);
+    let before = sums(&run.window);
+    assert!(before.0 > 0 && before.2.iter().any(|integral| *integral > 0.0));
+    assert!(run.window.sample(&mut levels[1], parts(true)).unwrap().is_none());
+    assert_eq!(sums(&run.window), before);
+    run.window.equilibration.stop.set(false);
+    assert!(run.window.sample(&mut levels[1], parts(false)).unwrap().is_some());
+    assert_ne!(sums(&run.window), before);
 }

@@ -35,6 +35,7 @@ use modes::{Modes, ModesPart, Numbers};
 use operator::Operator;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::{Mesh, Strips};
+use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use rayon::prelude::*;
@@ -114,11 +115,11 @@ impl TractionMinimisation {
         }
     }
 
-    /// Makes the change that reduces the energy with these slopes.
-    pub(in crate::reconstruction) fn minimise(&self, space: &mut Workspace) {
+    /// Makes the change that reduces the energy with these slopes, unless it is stopped.
+    pub(in crate::reconstruction) fn minimise(&self, space: &mut Workspace, stop: &StopFlag) {
         let Workspace { slopes, change, nodes, edges: [t, v] } = space;
         let mut arrays = Arrays { slopes: slopes.part(), change: change.part(), nodes, edges: [t, v] };
-        let work = Work { numbers: &self.numbers, operator: &self.operator, steps: &self.steps };
+        let work = Work { numbers: &self.numbers, operator: &self.operator, steps: &self.steps, stop };
         self.wavefront.run(work, &mut arrays);
     }
 
@@ -135,7 +136,7 @@ impl TractionMinimisation {
         let new = || Workspace::new(&self.numbers);
         self.spaces.lend(new, |space| {
             let miss = self.add_slopes(of, forces, levels, concentration, &mut space.slopes);
-            self.minimise(space);
+            self.minimise(space, &equilibration.stop);
             for part in equilibration.parts() {
                 let (nodes, moments) = equilibration.moments_mut(part, levels);
                 self.add(problem.mesh(), nodes, &space.change, moments);

@@ -212,3 +212,22 @@ fn the_order_of_the_work_does_not_matter() {
         assert!([2, 3].into_iter().all(|threads| change(threads) == alone));
     }
 }
+
+/// Work that is stopped leaves the change as it was.
+#[test]
+fn a_stop_leaves_the_change_alone() {
+    let case = Case::new(problem_of(
+        random_rectangle(0.05, 0.04, 12, 1).unwrap(),
+        Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap(),
+    ));
+    let slopes = case.in_modes(&case.random_slopes(&mut Random::new(6)));
+    let largest = |stopped: bool| {
+        let (mut space, stop) = (Workspace::new(&case.all.numbers), StopFlag::default());
+        space.slopes = slopes.clone();
+        stop.set(stopped);
+        case.all.minimise(&mut space, &stop);
+        space.change.all().flat_map(|lanes| lanes.0).fold(0.0_f64, |most, x| most.max(x.abs()))
+    };
+    assert_eq!(largest(true), 0.0);
+    assert!(largest(false) > 0.0);
+}

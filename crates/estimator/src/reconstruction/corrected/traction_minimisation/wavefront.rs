@@ -9,6 +9,7 @@ use super::modes::Numbers;
 use super::operator::{Block, Operator};
 use percute_core::ids::NodeId;
 use percute_core::mesh::Mesh;
+use percute_core::observer::StopFlag;
 use std::ops::Range;
 
 /// Nodes of a block.
@@ -30,11 +31,16 @@ pub(super) struct Work<'a> {
     pub(super) numbers: &'a Numbers,
     pub(super) operator: &'a Operator,
     pub(super) steps: &'a Steps,
+    /// Once it is up, blocks are left as they are.
+    pub(super) stop: &'a StopFlag,
 }
 
 impl Work<'_> {
     /// Takes block `k` through a stage; the arrays begin with block `first`.
     fn on_block(&self, stage: usize, k: usize, first: usize, arrays: &mut Arrays<'_>) {
+        if self.stop.is_up() {
+            return;
+        }
         let nodes = k * BLOCK..((k + 1) * BLOCK).min(self.numbers.nodes());
         self.operator.work(stage, self.steps, &Block::new(self.numbers, nodes, first * BLOCK), arrays);
     }

@@ -120,7 +120,7 @@ impl Case {
     pub(super) fn change(&self, slopes: &[[Lanes; MOMENTS]]) -> Modes {
         let mut space = Workspace::new(&self.all.numbers);
         space.slopes = self.in_modes(slopes);
-        self.all.minimise(&mut space);
+        self.all.minimise(&mut space, &StopFlag::default());
         space.change
     }
 
