@@ -22,10 +22,15 @@ const HEIGHT: f64 = 0.025;
 type Cells = [[usize; 2]; 2];
 
 /// Meshes, and the one of the reference, which has all their edges.
-const MESHES: [(Cells, Cells); 2] =
-    [([[7, 6], [10, 8]], [[112, 96], [120, 96]]), ([[14, 11], [20, 16]], [[112, 88], [120, 96]])];
+const MESHES: [(Cells, Cells); 4] = [
+    ([[7, 6], [10, 8]], [[112, 96], [120, 96]]),
+    ([[14, 11], [20, 16]], [[112, 88], [120, 96]]),
+    ([[20, 16], [20, 16]], [[120, 96], [120, 96]]),
+    ([[28, 22], [40, 32]], [[112, 88], [120, 96]]),
+];
 
-/// e_sup/e_ref and e_mean/e_ref that an independent prototype of the method gave on 7×6/10×8 and 14×11/20×16 cells.
+/// e_sup/e_ref and e_mean/e_ref that an independent prototype of the method gave on these meshes. It has no body that
+/// enters on the last one: there it is that of the mesh before.
 struct Row {
     name: &'static str,
     /// Of the upper and the lower block (m/s).
@@ -36,7 +41,7 @@ struct Row {
     width: f64,
     aside: f64,
     tilt: f64,
-    expected: [[f64; 2]; 2],
+    expected: [[f64; 2]; 4],
 }
 
 const HEAD_ON: Row = Row {
@@ -47,7 +52,7 @@ const HEAD_ON: Row = Row {
     width: 0.04,
     aside: 0.0,
     tilt: 0.0,
-    expected: [[1.14, 1.19], [1.11, 1.15]],
+    expected: [[1.14, 1.19], [1.11, 1.15], [1.12, 1.14], [1.13, 1.14]],
 };
 
 const ROWS: [Row; 7] = [
@@ -56,14 +61,14 @@ const ROWS: [Row; 7] = [
         name: "oblique",
         velocities: [[8.0, -20.0], [0.0, 20.0]],
         friction: 0.2,
-        expected: [[1.17, 1.20], [1.12, 1.15]],
+        expected: [[1.17, 1.2], [1.12, 1.15], [1.12, 1.14], [1.13, 1.14]],
         ..HEAD_ON
     },
     Row {
         name: "slides at 150 m/s",
         velocities: [[150.0, -20.0], [0.0, 20.0]],
         friction: 0.2,
-        expected: [[1.18, 1.24], [1.14, 1.19]],
+        expected: [[1.18, 1.24], [1.14, 1.19], [1.13, 1.19], [1.14, 1.18]],
         ..HEAD_ON
     },
     Row {
@@ -71,7 +76,7 @@ const ROWS: [Row; 7] = [
         velocities: [[400.0, -20.0], [0.0, 20.0]],
         friction: 0.2,
         aside: -0.012,
-        expected: [[1.52, 1.47], [1.48, 1.42]],
+        expected: [[1.52, 1.47], [1.48, 1.42], [1.52, 1.48], [1.52, 1.48]],
         ..HEAD_ON
     },
     Row {
@@ -80,7 +85,7 @@ const ROWS: [Row; 7] = [
         friction: 0.2,
         width: 0.02,
         aside: 0.0113,
-        expected: [[1.25, 1.30], [1.20, 1.24]],
+        expected: [[1.25, 1.3], [1.2, 1.24], [1.25, 1.29], [1.19, 1.23]],
         ..HEAD_ON
     },
     Row {
@@ -88,7 +93,7 @@ const ROWS: [Row; 7] = [
         velocities: [[0.0, -20.0], [0.0, 20.0]],
         friction: 0.2,
         steel: true,
-        expected: [[1.16, 1.21], [1.14, 1.17]],
+        expected: [[1.16, 1.21], [1.14, 1.17], [1.11, 1.14], [1.12, 1.16]],
         ..HEAD_ON
     },
     Row {
@@ -96,7 +101,7 @@ const ROWS: [Row; 7] = [
         velocities: [[0.0, -200.0], [0.0, 200.0]],
         friction: 0.2,
         tilt: 3.0,
-        expected: [[1.14, 1.13], [1.17, 1.14]],
+        expected: [[1.14, 1.13], [1.17, 1.14], [1.16, 1.12], [1.28, 1.21]],
         ..HEAD_ON
     },
 ];
@@ -128,8 +133,9 @@ impl Row {
     }
 }
 
-/// At least 1, and at most 0.05 above the prototype, whose tractions have more energy than those here: where its bound
-/// of the stress at the end of the other body is 2 to 25 %, the star of a node has a few per cent.
+/// At least 1, and at most 0.05 above the prototype. Where a surface ends on an edge of the other one, or enters beside it,
+/// indices are smaller by up to 0.2: the stress in the star of a node has less energy than that in an edge's element, and
+/// both surfaces give way, only while it is needed.
 #[test]
 #[ignore = "takes a minute"]
 fn effectivity_indices_against_a_finer_reference() {
@@ -137,12 +143,8 @@ fn effectivity_indices_against_a_finer_reference() {
         for ((mesh, reference), expected) in MESHES.into_iter().zip(&row.expected) {
             let found = row.indices(mesh, reference);
             println!("{}: {:.3} {:.3} ({expected:?})", row.name, found[0], found[1]);
-            // Of a body that enters from beside, both programs are less sharp: at most 1.6.
-            let near = |(found, most): (&f64, &f64)| {
-                let most = if row.aside < 0.0 { 1.6 } else { most + 0.05 };
-                (1.0..=most).contains(found)
-            };
-            assert!(found.iter().zip(expected).all(near), "{}: {found:?} {expected:?}", row.name);
+            let near = found.iter().zip(expected).all(|(found, most)| (1.0..=most + 0.05).contains(found));
+            assert!(near, "{}: {found:?} {expected:?}", row.name);
         }
     }
 }
@@ -151,8 +153,8 @@ fn effectivity_indices_against_a_finer_reference() {
 #[test]
 fn effectivity_indices_of_two_blocks_that_slide() {
     for row in &ROWS[1..3] {
-        let found = row.indices(MESHES[0].0, [[56, 48], [60, 48]]);
         // Against a reference half as fine, both are larger by up to 0.02 than above.
+        let found = row.indices(MESHES[0].0, [[56, 48], [60, 48]]);
         let near = found.iter().zip(&row.expected[0]).all(|(found, most)| (1.0..=most + 0.05).contains(found));
         assert!(near, "{}: {found:?} {:?}", row.name, row.expected[0]);
     }

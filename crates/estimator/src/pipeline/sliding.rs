@@ -126,7 +126,9 @@ fn measure<const D: usize, const N: usize>(
             [piece.slave_values(|node| instant.eta[0][node]), piece.master_values(|node| instant.eta[1][node])];
         let energy = piece.product(acting, [0, 1].map(|end| (slave[end] - master[end]).max(0.0)));
         let at_ends = |values: [f64; 2]| -> [f64; D] { std::array::from_fn(|end| values[end]) };
-        let (force, speed) = (at_ends(sudden), at_ends(piece.slave_values(|node| instant.speed[node])));
+        let [own, other] = &instant.speed;
+        let [own, other] = [piece.slave_values(|node| own[node]), piece.master_values(|node| other[node])];
+        let (force, speed) = (at_ends(sudden), at_ends([0, 1].map(|end| own[end] + other[end])));
         let power = |weights: &[f64; D]| along(weights, &force) * along(weights, &speed).abs();
         let power = piece.length * problem.mesh().simplex().facet_mean(&speed, &power);
         for facet in facets.of(&piece) {

@@ -1,11 +1,56 @@
 //! Penetration of two surfaces, and the lifts that remove it.
 
-use super::path::Lift;
 use super::record::Motion;
+use crate::kinematic::normal_motions::Pair;
 use crate::kinematic::window::least_of_parabola;
 use crate::partition::{Piece, pieces};
 use crate::residual::worse;
-use percute_core::contact::{Coupling, SlidingSurfaces};
+use percute_core::contact::SlidingSurfaces;
+
+/// Instants in which a node rises or falls, at least.
+const RISE: usize = 16;
+
+/// How high a node is lifted (m), and from which instant to which one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lift {
+    pub(super) height: f64,
+    pub(super) instants: [usize; 2],
+}
+
+impl Lift {
+    pub(super) const NONE: Self = Self { height: 0.0, instants: [usize::MAX, 0] };
+
+    /// The higher of both, or their sum, over the instants of both.
+    pub(super) fn with(&self, other: &Self, height: f64) -> Self {
+        let ([a, b], [c, d]) = (self.instants, other.instants);
+        Self { height, instants: [a.min(c), b.max(d)] }
+    }
+
+    /// Its speed (m/s) and height (m) at each instant at the ends of these half steps (s): it rises and falls evenly, in
+    /// a time as long as it is needed.
+    pub(super) fn motion(&self, halves: &[f64]) -> Vec<Pair> {
+        let (mut motion, last) = (vec![[0.0; 2]; halves.len()], halves.len() - 1);
+        if self.height == 0.0 {
+            return motion;
+        }
+        let [first, until] = [self.instants[0].clamp(2, last.max(2)), self.instants[1]];
+        let time = RISE.max(until.saturating_sub(first));
+        let mut ramp = |from: usize, to: usize, height: f64| {
+            // Speeds are linear between instants: those inside stand for half of both neighbours.
+            let inside = from + 1..to.min(halves.len());
+            let length: f64 = inside.clone().filter(|&j| j < last).map(|j| 0.5 * (halves[j] + halves[j + 1])).sum();
+            inside.for_each(|j| motion[j][0] = height / length);
+        };
+        ramp(first.saturating_sub(time), first, self.height);
+        if until + time <= last {
+            ramp(until, until + time, -self.height);
+        }
+        for j in 1..halves.len() {
+            motion[j][1] = motion[j - 1][1] + 0.5 * halves[j] * (motion[j - 1][0] + motion[j][0]);
+        }
+        motion
+    }
+}
 
 /// Where a hat has less than this, its node does not move the place.
 const BESIDE: f64 = 1e-9;
@@ -13,25 +58,27 @@ const BESIDE: f64 = 1e-9;
 /// The penetration of two surfaces during the run.
 #[derive(Clone, Debug)]
 pub(super) struct Penetration {
-    /// How much higher each node of the slave has to be, and by which instant.
-    pub(super) lifts: Vec<Lift>,
+    /// By how much each node of slave and master has to give way, and when.
+    pub(super) lifts: [Vec<Lift>; 2],
     /// The deepest point at the instants and between them (m).
     pub(super) deepest: [f64; 2],
+    shares: [f64; 2],
     /// The instant that is looked at, or the last one before.
     instant: usize,
     /// Depths below this are none (m).
     tolerance: f64,
-    size: f64,
 }
 
 impl Penetration {
-    pub(super) fn new(nodes: usize, [size, tolerance]: [f64; 2]) -> Self {
-        Self { lifts: vec![Lift::NONE; nodes], deepest: [0.0; 2], instant: 0, tolerance, size }
+    /// None so far, of surfaces with so many nodes. Of a depth, the slave takes this share.
+    pub(super) fn new(nodes: [usize; 2], share: f64, tolerance: f64) -> Self {
+        let lifts = nodes.map(|nodes| vec![Lift::NONE; nodes]);
+        Self { lifts, deepest: [0.0; 2], shares: [share, 1.0 - share], instant: 0, tolerance }
     }
 
     /// Whether a lift is wanted.
     pub(super) fn is_found(&self) -> bool {
-        self.lifts.iter().any(|lift| lift.height > 0.0)
+        self.lifts.iter().flatten().any(|lift| lift.height > 0.0)
     }
 
     /// Looks at an instant.
@@ -40,7 +87,7 @@ impl Penetration {
         let coupling = sliding.coupling_at(motion.shift[0]);
         for piece in pieces(sliding, &coupling) {
             let gap = difference(&piece, &motion.eta);
-            (0..2).for_each(|end| self.take_in(&coupling, &piece, end, gap[end], 0));
+            (0..2).for_each(|end| self.take_in(&piece, end, gap[end], 0));
         }
     }
 
@@ -59,7 +106,7 @@ impl Penetration {
                 for end in 0..2 {
                     let [before, after] = [a, b].map(|[speed, gap]| (speed[end], gap[end]));
                     let (_, least) = least_of_parabola(before, after, half, 0);
-                    self.take_in(&coupling, &piece, end, least, 1);
+                    self.take_in(&piece, end, least, 1);
                 }
             }
             return;
@@ -69,25 +116,26 @@ impl Penetration {
             let coupling = sliding.coupling_at(motion.shift[0]);
             for piece in pieces(sliding, &coupling) {
                 let gap = difference(&piece, &motion.eta);
-                (0..2).for_each(|end| self.take_in(&coupling, &piece, end, gap[end], 1));
+                (0..2).for_each(|end| self.take_in(&piece, end, gap[end], 1));
             }
         }
     }
 
-    /// Lifts the nodes of the slave at a point of a piece with this gap (m): its node, or both that have a multiplier.
-    fn take_in(&mut self, coupling: &Coupling, piece: &Piece, end: usize, gap: f64, which: usize) {
+    /// Lifts the nodes of both surfaces at a point of a piece with this gap (m): its node, or both of its edge.
+    fn take_in(&mut self, piece: &Piece, end: usize, gap: f64, which: usize) {
         self.deepest[which] = worse(self.deepest[which], -gap);
         if gap >= -0.5 * self.tolerance {
             return;
         }
-        let (first, second) = (piece.slave[1], piece.on_slave[end]);
-        let acts = |(node, hat): &(usize, f64)| *hat > BESIDE && coupling.is_active(*node);
-        let nodes = [(first, 1.0 - second), (first + 1, second)].into_iter().filter(acts);
-        let all: f64 = nodes.clone().map(|(_, hat)| hat).sum();
-        for (node, _) in nodes {
-            // Depth is at most the size of the body: a tiny hat must not throw the node away.
-            let lift = &mut self.lifts[node];
-            *lift = Lift { height: lift.height.max((-gap / all).min(self.size)), by: lift.by.min(self.instant) };
+        // Between two instants it is wanted from the first one to the second one.
+        let instants = [self.instant, self.instant + which];
+        let edges = [(piece.slave[1], piece.on_slave[end]), (piece.master[1], piece.on_master[end])];
+        for ((lifts, share), (first, second)) in self.lifts.iter_mut().zip(self.shares).zip(edges) {
+            let nodes = [(first, 1.0 - second), (first + 1, second)].into_iter().filter(|(_, hat)| *hat > BESIDE);
+            for (node, _) in nodes {
+                let here = Lift { height: -gap * share, instants };
+                lifts[node] = lifts[node].with(&here, lifts[node].height.max(here.height));
+            }
         }
     }
 }

@@ -3,8 +3,8 @@
 //! Contact of the simulation is between a node of the slave and a weighted part of the master. Problem P_CA is solved
 //! for this weighted relative motion x_k. Its change from the simulation, δ_k = ẋ_k − W_k, is shared by the nodes of both
 //! surfaces with the least kinetic energy: Δv = ±m⁻¹Gᵀ A⁻¹ (w δ). Where the surfaces still penetrate between their nodes,
-//! nodes of the slave are lifted: x_k is solved for again, at rest at a small height p_k to which the node rises until it
-//! is needed, and the change is that of the node alone. Zero gap at each point is not asked for, as it would make the interface straight.
+//! nodes of the slave are lifted by a small height while it is needed. Zero gap at each point is not asked for, as it
+//! would make the interface straight.
 //!
 //! Lifts follow from the whole run. So this motion is known at its end.
 
@@ -15,9 +15,10 @@ mod record;
 use super::normal_motions::{NormalMotions, Pair, most_bytes};
 use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
-use lift::Penetration;
-use path::{Lift, solve};
-use percute_core::contact::{Side, SlidingSurfaces};
+use lift::{Lift, Penetration};
+use path::solve;
+use percute_core::contact::{ContactFacet, Side, SlidingSurfaces};
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use record::{Motion, Record};
 use std::ops::Range;
@@ -36,8 +37,8 @@ pub(crate) struct SlidingMotion {
     record: Record,
     /// ẋ_k and x_k of the nodes of the slave, with their lifts (m/s, m), once they are known.
     relative: NormalMotions,
-    /// Lifts p_k.
-    lifts: Vec<Lift>,
+    /// Lifts of slave and master.
+    lifts: [Vec<Lift>; 2],
     rounds: usize,
 }
 
@@ -54,8 +55,8 @@ pub(crate) struct SlidingInstant {
     pub(crate) shift: f64,
     /// η of the nodes of the slave and of the master (m).
     pub(crate) eta: [Vec<f64>; 2],
-    /// ẋ_k of the nodes of the slave (m/s).
-    pub(crate) speed: Vec<f64>,
+    /// Normal speeds of opening (m/s): ẋ_k of the nodes of the slave, and of lifts of the nodes of the master.
+    pub(crate) speed: [Vec<f64>; 2],
 }
 
 impl SlidingMotion {
@@ -64,8 +65,8 @@ impl SlidingMotion {
         Self {
             index,
             record: Record::new(sliding, span),
-            relative: NormalMotions::new(sliding.slave().len(), span, ScratchFile::default()),
-            lifts: vec![Lift::NONE; sliding.slave().len()],
+            relative: NormalMotions::new(0, span, ScratchFile::default()),
+            lifts: sides(sliding).map(|side| vec![Lift::NONE; side.len()]),
             rounds: 0,
         }
     }
@@ -110,20 +111,17 @@ impl SlidingMotion {
         let sliding = &problem.surface().sliding()[self.index];
         let count = self.record.count();
         let scale = [problem.mesh().size(), problem.contact_tolerance()];
-        let slaves = sliding.slave().len();
-        // Without lifts; the difference to the target is shared.
         let mut change = Changes::new(sliding, count)?;
-        (0..count).try_for_each(|_| self.relative.extend())?;
-        for node in 0..slaves {
+        self.relative = zeros(nodes(sliding), count)?;
+        for node in 0..sliding.slave().len() {
             let Some(target) = self.record.target(node)? else { continue };
-            let path = solve(&self.record, node, &target, Lift::NONE, scale, residuals)?;
+            let path = solve(&self.record, node, &target, scale, residuals)?;
             self.relative.write(node, 0, &path)?;
             change.aim(node, &path, &target.0)?;
         }
         change.share(problem, sliding, &mut self.record)?;
-        let without = residuals.onset;
         loop {
-            let found = self.penetration(sliding, &mut change, scale)?;
+            let found = self.penetration(problem, &mut change)?;
             self.rounds += 1;
             if !found.is_found() || self.rounds > MOST_ROUNDS {
                 let [at, between] = found.deepest.map(|depth| depth / scale[0]);
@@ -131,30 +129,35 @@ impl SlidingMotion {
                 residuals.penetration_between_instants = worse(residuals.penetration_between_instants, between);
                 break;
             }
-            let mut onsets = Residuals::default();
-            for (node, more) in found.lifts.iter().enumerate().filter(|(_, more)| more.height > 0.0) {
-                let Some(target) = self.record.target(node)? else { continue };
-                let lift = &mut self.lifts[node];
-                *lift = Lift { height: lift.height + more.height, by: lift.by.min(more.by) };
-                let path = solve(&self.record, node, &target, self.lifts[node], scale, &mut onsets)?;
-                let mut last = Vec::with_capacity(count);
-                self.relative.read(node, 0..count, &mut last)?;
-                change.add(node, &path, &last)?;
-                self.relative.write(node, 0, &path)?;
+            let (mut first, halves) = (0, self.record.halves());
+            for ((lifts, found), sign) in self.lifts.iter_mut().zip(&found.lifts).zip(SIGNS) {
+                for (node, (lift, more)) in
+                    lifts.iter_mut().zip(found).enumerate().filter(|(_, (_, more))| more.height > 0.0)
+                {
+                    let last = lift.motion(halves);
+                    *lift = lift.with(more, lift.height + more.height);
+                    let now = lift.motion(halves);
+                    let rise: Vec<Pair> = now.iter().zip(&last).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+                    add(&mut change.all, first + node, sign, &rise)?;
+                    add(&mut self.relative, first + node, 1.0, &rise)?;
+                }
+                first += lifts.len();
             }
-            residuals.onset = worse(without, onsets.onset);
         }
         change.hand_on(sliding, write)
     }
 
     /// The penetration of the motion so far.
-    fn penetration<const D: usize>(
+    fn penetration<const D: usize, const N: usize>(
         &mut self,
-        sliding: &SlidingSurfaces<D>,
+        problem: &Problem<D, N>,
         change: &mut Changes,
-        scale: [f64; 2],
     ) -> Result<Penetration, ScratchError> {
-        let mut found = Penetration::new(sliding.slave().len(), scale);
+        let sliding = &problem.surface().sliding()[self.index];
+        // The stiffer surface gives way less.
+        let [own, other] = sides(sliding).map(|side| stiffness(problem, side));
+        let nodes = sides(sliding).map(Side::len);
+        let mut found = Penetration::new(nodes, other / (own + other), problem.contact_tolerance());
         let mut last: Option<Motion> = None;
         for instants in portions(self.record.count()) {
             let motions = change.motions(sliding, &mut self.record, instants.clone())?;
@@ -192,14 +195,17 @@ impl SlidingMotion {
             made.push(SlidingInstant {
                 shift: motion.shift[0],
                 eta: motion.eta,
-                speed: vec![0.0; sliding.slave().len()],
+                speed: sides(sliding).map(|side| vec![0.0; side.len()]),
             });
         }
-        let mut pairs = Vec::new();
-        for node in 0..sliding.slave().len() {
-            pairs.clear();
-            self.relative.read(node, instants.clone(), &mut pairs)?;
-            made.iter_mut().zip(&pairs).for_each(|(made, [speed, _])| made.speed[node] = *speed);
+        let (mut pairs, mut first) = (Vec::new(), 0);
+        for (k, side) in sides(sliding).into_iter().enumerate() {
+            for node in 0..side.len() {
+                pairs.clear();
+                self.relative.read(first + node, instants.clone(), &mut pairs)?;
+                made.iter_mut().zip(&pairs).for_each(|(made, [speed, _])| made.speed[k][node] = *speed);
+            }
+            first += side.len();
         }
         Ok(made)
     }
@@ -208,6 +214,22 @@ impl SlidingMotion {
 /// The normals of slave and master along that of the slave.
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
+/// ρc² of the elements at a surface (Pa), the least of them.
+fn stiffness<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
+    let element = |facet: &ContactFacet<D>| problem.mesh().facets()[facet.facet.index()].owner;
+    let own = |facet: &&ContactFacet<D>| side.node_at(facet.nodes[0]).is_some();
+    let stiffness = |facet| {
+        let law = problem.material(element(facet));
+        law.density() * law.wave_speed() * law.wave_speed()
+    };
+    problem.surface().facets().iter().filter(own).map(stiffness).fold(f64::INFINITY, f64::min)
+}
+
+/// Number of nodes of both surfaces.
+fn nodes<const D: usize>(sliding: &SlidingSurfaces<D>) -> usize {
+    sliding.slave().len() + sliding.master().len()
+}
+
 fn sides<const D: usize>(sliding: &SlidingSurfaces<D>) -> [&Side; 2] {
     [sliding.slave(), sliding.master()]
 }
@@ -215,6 +237,22 @@ fn sides<const D: usize>(sliding: &SlidingSurfaces<D>) -> [&Side; 2] {
 /// All instants, some at a time.
 fn portions(count: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(PIECE).map(move |first| first..(first + PIECE).min(count))
+}
+
+/// Numbers of so many nodes at so many instants: 0.
+fn zeros(nodes: usize, count: usize) -> Result<NormalMotions, ScratchError> {
+    let mut zeros = NormalMotions::new(nodes, count, ScratchFile::default());
+    (0..count).try_for_each(|_| zeros.extend())?;
+    (0..nodes).try_for_each(|node| zeros.write(node, 0, &vec![[0.0; 2]; count]))?;
+    Ok(zeros)
+}
+
+/// Adds numbers at all instants to those of a node.
+fn add(store: &mut NormalMotions, node: usize, sign: f64, more: &[Pair]) -> Result<(), ScratchError> {
+    let mut pairs = Vec::with_capacity(more.len());
+    store.read(node, 0..more.len(), &mut pairs)?;
+    pairs.iter_mut().zip(more).for_each(|(pair, more)| (0..2).for_each(|c| pair[c] += sign * more[c]));
+    store.write(node, 0, &pairs)
 }
 
 /// The changes of the normal motion of both surfaces (m/s, m), along the normal of the slave, its nodes first.
@@ -228,9 +266,7 @@ struct Changes {
 impl Changes {
     fn new<const D: usize>(sliding: &SlidingSurfaces<D>, count: usize) -> Result<Self, ScratchError> {
         let slaves = sliding.slave().len();
-        let mut all = NormalMotions::new(slaves + sliding.master().len(), count, ScratchFile::default());
-        (0..count).try_for_each(|_| all.extend())?;
-        Ok(Self { all, slaves, count })
+        Ok(Self { all: zeros(nodes(sliding), count)?, slaves, count })
     }
 
     /// Keeps δ of a node of the slave until it is shared.
@@ -276,15 +312,6 @@ impl Changes {
             }
         }
         Ok(())
-    }
-
-    /// Adds the change from one x_k to another to a node of the slave alone.
-    fn add(&mut self, node: usize, path: &[Pair], last: &[Pair]) -> Result<(), ScratchError> {
-        let mut pairs = self.read(node..node + 1, 0..self.count)?.remove(0);
-        for (pair, (now, last)) in pairs.iter_mut().zip(path.iter().zip(last)) {
-            (0..2).for_each(|c| pair[c] += now[c] - last[c]);
-        }
-        self.all.write(node, 0, &pairs)
     }
 
     /// The motion of both surfaces with these changes.
