@@ -42,6 +42,8 @@ pub(in crate::report) struct Facts {
     pub(super) corner: Option<f64>,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
+    /// Whether they have surfaces that slide along each other.
+    pub(super) slides: bool,
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
     pub(super) slip: f64,
     pub(super) supported: bool,
@@ -118,6 +120,7 @@ impl Facts {
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             corner: corner(problem, results),
             bodies,
+            slides: !problem.surface().sliding().is_empty(),
             slip: results.slip,
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
