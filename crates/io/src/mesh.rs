@@ -117,7 +117,7 @@ where
         elements.insert(name, members.indices(cells.len(), "elements")?);
         Ok(())
     })?;
-    Ok(Mesh::new(points, &cells, &facets, &elements)?)
+    Ok(Mesh::of_bodies(points, &cells, &facets, &elements)?)
 }
 
 fn for_each_group(

@@ -223,7 +223,7 @@ where
 {
     let made = bridge::blocking(py, None, move |_| {
         let bodies: Vec<_> = bodies.iter().map(|(name, mesh)| (name.as_str(), &**mesh)).collect();
-        Mesh::joined(&bodies).map_err(|error| match Mesh::touching(&bodies, &error) {
+        Mesh::joined(&bodies).map_err(|error| match Mesh::overlapping(&bodies, &error) {
             Some((second, told)) => format!("`bodies[{second}]`: \"{}\" {told}", bodies[second].0),
             None => format!("`bodies`: {error}"),
         })

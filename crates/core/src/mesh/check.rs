@@ -142,12 +142,28 @@ pub(super) fn cells<const N: usize>(node_count: usize, cells: &[[usize; N]]) -> 
     Ok(cells.iter().map(|cell| cell.map(NodeId::new)).collect())
 }
 
-/// Searches for duplicates in neighbouring cells of a fine grid.
-pub(super) fn duplicate_points<const D: usize>(points: &[[f64; D]], size: f64) -> Result<(), MeshError> {
+/// Searches for duplicates part by part, of which `part` has the first node for each node.
+pub(super) fn duplicate_points_of_parts<const D: usize>(
+    points: &[[f64; D]],
+    part: &[NodeId],
+    size: f64,
+) -> Result<(), MeshError> {
+    let mut nodes: Vec<usize> = (0..points.len()).collect();
+    nodes.sort_by_key(|&node| part[node]);
+    let of_one = |a: &usize, b: &usize| part[*a] == part[*b];
+    nodes.chunk_by(of_one).try_for_each(|nodes| duplicate_points(points, nodes.iter().copied(), size))
+}
+
+/// Searches for duplicates among some nodes in neighbouring cells of a fine grid.
+pub(super) fn duplicate_points<const D: usize>(
+    points: &[[f64; D]],
+    nodes: impl ExactSizeIterator<Item = usize>,
+    size: f64,
+) -> Result<(), MeshError> {
     let spacing = (DUPLICATE * size).max(f64::MIN_POSITIVE);
     let origin = points[0];
-    let mut grid: HashMap<[i64; D], usize> = HashMap::with_capacity(points.len());
-    for (second, point) in points.iter().enumerate() {
+    let mut grid: HashMap<[i64; D], usize> = HashMap::with_capacity(nodes.len());
+    for (second, point) in nodes.map(|node| (node, &points[node])) {
         let mut key = [0; D];
         for c in 0..D {
             key[c] = ((point[c] - origin[c]) / spacing).floor() as i64;

@@ -13,7 +13,7 @@ where
     /// are the group of its name; the groups of its mesh become "body.group".
     ///
     /// # Errors
-    /// Bodies that touch or overlap, or too many elements.
+    /// Bodies that overlap, or too many elements.
     pub fn joined(bodies: &[(&str, &Self)]) -> Result<Self, MeshError> {
         let (mut points, mut cells) = (Vec::new(), Vec::new());
         let (mut facet_groups, mut element_groups) = (FacetGroups::new(), ElementGroups::new());
@@ -31,7 +31,7 @@ where
             }
             element_groups.insert((*body).to_string(), (first_element..cells.len()).collect());
         }
-        let made = Self::new(points, &cells, &facet_groups, &element_groups)?;
+        let made = Self::of_bodies(points, &cells, &facet_groups, &element_groups)?;
         let import_warnings = bodies.iter().flat_map(|(_, mesh)| mesh.import_warnings.iter().cloned()).collect();
         Ok(Self {
             reoriented: bodies.iter().map(|(_, mesh)| mesh.reoriented).sum(),
@@ -39,29 +39,22 @@ where
         })
     }
 
-    /// The place of the body that touches or overlaps an earlier one, and what to say of it, if that is why
+    /// The place of the body that overlaps an earlier one, and what to say of it, if that is why
     /// [`Mesh::joined`] refused these bodies.
     #[must_use]
-    pub fn touching(bodies: &[(&str, &Self)], error: &MeshError) -> Option<(usize, String)> {
-        let body_of = |mut at: usize, count: fn(&Self) -> usize| {
+    pub fn overlapping(bodies: &[(&str, &Self)], error: &MeshError) -> Option<(usize, String)> {
+        let body_of = |mut at: usize| {
             bodies.iter().position(|(_, mesh)| {
-                let here = at < count(mesh);
-                at = at.wrapping_sub(count(mesh));
+                let here = at < mesh.element_count();
+                at = at.wrapping_sub(mesh.element_count());
                 here
             })
         };
-        let (first, second) = match *error {
-            MeshError::PartsTouch { elements: [first, second] } => {
-                (body_of(first, Self::element_count)?, body_of(second, Self::element_count)?)
-            }
-            MeshError::DuplicateNodes { first, second, .. } => {
-                (body_of(first, Self::node_count)?, body_of(second, Self::node_count)?)
-            }
-            _ => return None,
-        };
+        let MeshError::PartsTouch { elements: [first, second] } = *error else { return None };
+        let (first, second) = (body_of(first)?, body_of(second)?);
         let message = format!(
-            "touches or overlaps \"{}\"; leave a gap between bodies, of more than a quarter of their relative speed \
-             times the first step",
+            "overlaps \"{}\"; bodies may touch where they do not move against each other; else leave a gap between \
+             them, of more than a quarter of their relative speed times the first step",
             bodies[first].0
         );
         Some((second, message))
@@ -94,7 +87,7 @@ where
             .iter()
             .map(|(name, all)| (name.clone(), all.iter().filter_map(|e| elements.get(e).copied()).collect::<Vec<_>>()));
         let (facets, inside) = (facets.filter(|(_, all)| !all.is_empty()), inside.filter(|(_, all)| !all.is_empty()));
-        let made = Self::new(points, &cells, &facets.collect(), &inside.collect());
+        let made = Self::of_bodies(points, &cells, &facets.collect(), &inside.collect());
         Some(made.map(|mesh| mesh.with_import_warnings(self.import_warnings.clone())))
     }
 
@@ -105,7 +98,7 @@ where
     pub fn mapped(&self, map: impl Fn(&[f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
         let cells: Vec<_> = self.plain_cells().collect();
         let points = self.points().iter().map(map).collect();
-        let made = Self::new(points, &cells, &self.plain_facet_groups(), &self.plain_element_groups())?;
+        let made = Self::of_bodies(points, &cells, &self.plain_facet_groups(), &self.plain_element_groups())?;
         Ok(Self { reoriented: self.reoriented, ..made.with_import_warnings(self.import_warnings.clone()) })
     }
 

@@ -42,7 +42,8 @@ pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
 pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 
 /// A conforming mesh of simplices without degenerate elements, unused or duplicate nodes, or
-/// non-manifold facets and nodes. Elements are positively oriented; separate parts do not touch.
+/// non-manifold facets and nodes. Elements are positively oriented. Separate parts do not overlap, and touch only if
+/// the mesh is one of several bodies.
 #[derive(Clone, Debug)]
 pub struct Mesh<const D: usize, const N: usize> {
     simplex: &'static dyn Simplex<D, N>,
@@ -56,7 +57,16 @@ pub struct Mesh<const D: usize, const N: usize> {
     size: f64,
     reoriented: usize,
     parts: usize,
+    /// Elements of different parts that touch, in ascending order.
+    touching: Vec<[ElementId; 2]>,
     import_warnings: Vec<ImportWarning>,
+}
+
+/// How near the separate parts of a mesh may be.
+#[derive(Clone, Copy)]
+enum Parts {
+    Apart,
+    MayTouch,
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
@@ -76,25 +86,49 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     where
         Element<D, N>: Simplex<D, N>,
     {
-        Self::checked(&Element, points, cells, facet_groups, element_groups)
+        Self::checked(&Element, points, cells, (facet_groups, element_groups), Parts::Apart)
+    }
+
+    /// The same of bodies that may touch: parts of the mesh, of which nodes may be at one place. A problem has contact
+    /// where they do.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`], for parts that overlap.
+    pub fn of_bodies(
+        points: Vec<[f64; D]>,
+        cells: &[[usize; N]],
+        facet_groups: &FacetGroups<D>,
+        element_groups: &ElementGroups,
+    ) -> Result<Self, MeshError>
+    where
+        Element<D, N>: Simplex<D, N>,
+    {
+        Self::checked(&Element, points, cells, (facet_groups, element_groups), Parts::MayTouch)
     }
 
     fn checked(
         simplex: &'static dyn Simplex<D, N>,
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
-        facet_groups: &FacetGroups<D>,
-        element_groups: &ElementGroups,
+        (facet_groups, element_groups): (&FacetGroups<D>, &ElementGroups),
+        given: Parts,
     ) -> Result<Self, MeshError> {
         room(cells.len())?;
         check::points(&points)?;
         let mut cells = check::cells(points.len(), cells)?;
         let size = geometry::bounding_box_diagonal(&points);
-        check::duplicate_points(&points, size)?;
+        let part = parts::part_of_nodes(points.len(), &cells);
+        match given {
+            Parts::Apart => check::duplicate_points(&points, 0..points.len(), size)?,
+            Parts::MayTouch => check::duplicate_points_of_parts(&points, &part, size)?,
+        }
         let reoriented = check::orient(simplex, &points, &mut cells)?;
         let (facets, cell_facets) = topology::facets(&cells)?;
         let stars = Stars::new(simplex, points.len(), &cells, &facets, &cell_facets)?;
-        let parts = parts::separate(simplex, &points, &cells, &facets, check::DUPLICATE * size)?;
+        let (parts, touching) = parts::separate(simplex, (&points, &part), &cells, &facets, size)?;
+        if let (Parts::Apart, Some(pair)) = (given, touching.first()) {
+            return Err(MeshError::PartsTouch { elements: pair.map(ElementId::index) });
+        }
         let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
@@ -109,6 +143,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             size,
             reoriented,
             parts,
+            touching,
             import_warnings: Vec::new(),
         })
     }
@@ -171,6 +206,12 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     #[must_use]
     pub fn reoriented_elements(&self) -> usize {
         self.reoriented
+    }
+
+    /// Pairs of elements of different parts that touch, in ascending order: their parts are bodies.
+    #[must_use]
+    pub fn touching_elements(&self) -> &[[ElementId; 2]] {
+        &self.touching
     }
 
     /// For each node the first node of its part.

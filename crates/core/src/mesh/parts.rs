@@ -1,32 +1,44 @@
 //! The separate parts of a mesh, which must be apart.
 //!
-//! Elements that share a node belong to one part. There is no contact between parts: if they touched or overlapped, one
-//! would move through the other.
+//! Elements that share a node belong to one part. Parts may touch, but not overlap.
 
+use super::check::DUPLICATE;
 use super::{Facet, MeshError};
 use crate::ids::{ElementId, NodeId};
 use crate::simplex::Simplex;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-/// Counts the parts; if there are several, they must be further apart than `tolerance` (m).
+/// Parts that overlap by less than this part of the size of the mesh touch: rounding of places.
+const OVERLAP: f64 = 1e-12;
+
+/// Counts the parts, and finds all pairs of elements of different ones that touch in a mesh of this size (m): they are
+/// nearer than nodes that are one. `part` has the first node of the part of each node.
+///
+/// # Errors
+/// Parts that overlap.
 pub(super) fn separate<const D: usize, const N: usize>(
     simplex: &dyn Simplex<D, N>,
-    points: &[[f64; D]],
+    (points, part): (&[[f64; D]], &[NodeId]),
     cells: &[[NodeId; N]],
     facets: &[Facet<D>],
-    tolerance: f64,
-) -> Result<usize, MeshError> {
-    let part = part_of_nodes(points.len(), cells);
+    size: f64,
+) -> Result<(usize, Vec<[ElementId; 2]>), MeshError> {
+    let tolerance = DUPLICATE * size;
+    let mut touching = Vec::new();
     let count = part.iter().enumerate().filter(|&(node, &root)| node == root.index()).count();
     if count > 1 {
         let part_of = |e: ElementId| part[cells[e.index()][0].index()];
         let corners = |e: ElementId| cells[e.index()].map(|node| points[node.index()]);
         let grid = Grid::new(points[0], (0..cells.len()).map(|e| corners(ElementId::new(e))), tolerance);
-        let meet = |a: ElementId, b: ElementId| meet(simplex, &corners(a), &corners(b), tolerance);
-        apart(grid, cells.len(), facets, part_of, corners, meet)?;
+        let nearer = |a: ElementId, b: ElementId, by: f64| meet(simplex, &corners(a), &corners(b), by);
+        let meeting = |a: ElementId, b: ElementId| {
+            nearer(a, b, tolerance)
+                .then(|| if nearer(a, b, -OVERLAP * size) { Meeting::Overlaps } else { Meeting::Touches })
+        };
+        touching = touches(grid, cells.len(), facets, part_of, corners, meeting)?;
     }
-    Ok(count)
+    Ok((count, touching))
 }
 
 /// For each node the first node of its part.
@@ -54,16 +66,24 @@ fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
     node
 }
 
+/// How two elements meet.
+#[derive(Clone, Copy, PartialEq)]
+enum Meeting {
+    Touches,
+    Overlaps,
+}
+
 /// Where parts meet, an element at the boundary of one of them meets an element of the other: only
 /// cells of the grid with elements at the boundary are kept, far fewer than there are elements.
-fn apart<const D: usize, const N: usize>(
+fn touches<const D: usize, const N: usize>(
     mut grid: Grid<D>,
     element_count: usize,
     facets: &[Facet<D>],
     part_of: impl Fn(ElementId) -> NodeId,
     corners: impl Fn(ElementId) -> [[f64; D]; N],
-    meet: impl Fn(ElementId, ElementId) -> bool,
-) -> Result<(), MeshError> {
+    meeting: impl Fn(ElementId, ElementId) -> Option<Meeting>,
+) -> Result<Vec<[ElementId; 2]>, MeshError> {
+    let mut touching = Vec::new();
     let mut outer = vec![false; element_count];
     for facet in facets.iter().filter(|facet| facet.neighbour.is_none()) {
         outer[facet.owner.index()] = true;
@@ -75,16 +95,24 @@ fn apart<const D: usize, const N: usize>(
                     grid.cells.entry(key).or_default();
                 }
                 let Some(there) = grid.cells.get_mut(&key) else { continue };
-                let meets = |&other: &ElementId| part_of(other) != part_of(element) && meet(element, other);
-                if let Some(&other) = there.iter().find(|other| meets(other)) {
-                    let (first, second) = (element.min(other), element.max(other));
-                    return Err(MeshError::PartsTouch { elements: [first.index(), second.index()] });
+                for &other in there.iter().filter(|&&other| part_of(other) != part_of(element)) {
+                    let pair = [element.min(other), element.max(other)];
+                    match meeting(element, other) {
+                        None => {}
+                        Some(Meeting::Touches) => touching.push(pair),
+                        Some(Meeting::Overlaps) => {
+                            return Err(MeshError::PartsTouch { elements: pair.map(ElementId::index) });
+                        }
+                    }
                 }
                 there.push(element);
             }
         }
     }
-    Ok(())
+    // Two elements may meet in several cells of the grid.
+    touching.sort_unstable();
+    touching.dedup();
+    Ok(touching)
 }
 
 /// Elements by place, in cells of the elements' root mean square extent: an element of extent d lies
@@ -144,7 +172,9 @@ fn meet<const D: usize, const N: usize>(
     b: &[[f64; D]; N],
     tolerance: f64,
 ) -> bool {
+    // Corners at one place have no direction.
     let between = a.iter().flat_map(|p| b.iter().map(move |q| std::array::from_fn(|c| q[c] - p[c])));
+    let between = between.filter(|direction: &[f64; D]| *direction != [0.0; D]);
     !simplex.separating_directions(a, b).into_iter().chain(between).any(|direction| gap(a, b, direction) > tolerance)
 }
 

@@ -1,6 +1,6 @@
 //! Nested finer meshes.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError, room};
+use super::{ElementGroups, FacetGroups, Mesh, MeshError, Parts, room};
 use crate::simplex::Child;
 
 impl<const D: usize, const N: usize> Mesh<D, N> {
@@ -40,7 +40,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             (name.clone(), parts.collect())
         });
         let (facets, elements): (FacetGroups<D>, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(self.simplex, points, &cells, &facets, &elements)
+        Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
     /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the

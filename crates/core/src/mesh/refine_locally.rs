@@ -4,7 +4,7 @@
 //! Numer. Meth. Eng. 20 (1984) 745–756: the smallest angle of a triangle is at least half of that of the triangle it
 //! was cut from, however often it is refined.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError};
+use super::{ElementGroups, FacetGroups, Mesh, MeshError, Parts};
 use crate::ids::ElementId;
 
 /// The edges that are cut, and the order in which an element is cut by them.
@@ -51,7 +51,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             (name.clone(), group.iter().flat_map(|e| first[e.index()]..first[e.index() + 1]).collect())
         });
         let (facets, elements): (FacetGroups<D>, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(self.simplex, points, &cells, &facets, &elements)
+        Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
     /// All edges of the chosen elements, and the longest edge of each element that has an edge that is cut.

@@ -64,9 +64,23 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             size: self.size,
             reoriented: self.reoriented,
             parts: self.parts,
+            touching: self.touching_renumbered(&new),
             import_warnings: self.import_warnings.clone(),
         };
         (mesh, new)
+    }
+}
+
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// The elements that touch under new numbers, in ascending order.
+    fn touching_renumbered(&self, new: &NewNumbers) -> Vec<[ElementId; 2]> {
+        let ascending = |pair: &[ElementId; 2]| {
+            let [a, b] = pair.map(|element| new.element(element));
+            [a.min(b), a.max(b)]
+        };
+        let mut touching: Vec<_> = self.touching.iter().map(ascending).collect();
+        touching.sort_unstable();
+        touching
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::boundary::{self, Supports};
 use super::sides::Bodies;
-use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs, sliding};
+use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -185,6 +185,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             law: &|f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])],
         };
         let surface = contact_surface(&bodies, self.obstacles, &self.stated.interfaces, &initial_displacement)?;
+        sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let mut problem = Problem {
             materials,

@@ -269,6 +269,13 @@ pub enum Cause {
          its `group` the edges that may touch it"
     )]
     TwoContacts { node: usize },
+    /// Bodies that touch where they have no contact.
+    #[error(
+        "elements {} and {} of two bodies touch at the start, but no contact between them has edges there: one body \
+         would move through the other; state contact of the groups of these edges, or leave a gap",
+        .elements[0], .elements[1]
+    )]
+    TouchUnstated { elements: [usize; 2] },
     /// Bodies that overlap.
     #[error(
         "the bodies overlap: node {node} starts {} m inside the other body; move them apart by more than that along \
@@ -287,10 +294,11 @@ pub enum Cause {
          its normal, to {} or beyond", short(*.depth), vector(.clear)
     )]
     Penetrates { node: usize, depth: f64, clear: Vec<f64> },
-    /// A node on the plane that moves into it.
+    /// A node on its obstacle that moves into it.
     #[error(
-        "node {node} starts on the plane (gap {} m) and moves into it at {} m/s; leave a gap before the impact, of \
-         more than a quarter of this speed times the first time step", short(*.gap), short(*.speed)
+        "node {node} starts on the plane or body that it may touch (gap {} m) and moves into it at {} m/s; leave a \
+         gap before the impact, of more than a quarter of this speed times the first time step",
+        short(*.gap), short(*.speed)
     )]
     StrikesAtStart { node: usize, gap: f64, speed: f64 },
 }

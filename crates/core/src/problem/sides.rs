@@ -3,9 +3,10 @@
 use super::candidates::along_the_boundary;
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{ElementId, FacetId, NodeId};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
+use std::collections::BTreeMap;
 
 /// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
 const FACES: f64 = 0.5;
@@ -95,6 +96,33 @@ pub(super) fn check_nodes<const D: usize>(surface: &ContactSurface<D>, sides: &[
         }
     }
     Ok(())
+}
+
+/// Elements of different bodies that touch have nodes on the two sides of an interface.
+pub(super) fn check_touching<const D: usize, const N: usize>(
+    surface: &ContactSurface<D>,
+    mesh: &Mesh<D, N>,
+) -> Result<(), Cause> {
+    let touching = mesh.touching_elements();
+    if touching.is_empty() {
+        return Ok(());
+    }
+    let obstacle: BTreeMap<NodeId, usize> =
+        surface.nodes().iter().map(|contact| (contact.node, contact.obstacle)).collect();
+    // The two obstacles of an interface follow each other, after all planes.
+    let planes = surface.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
+    let sides = |element: ElementId| {
+        let nodes = mesh.cells()[element.index()].iter();
+        nodes.filter_map(|node| obstacle.get(node)?.checked_sub(planes)).collect::<Vec<_>>()
+    };
+    let faces = |&[first, second]: &[ElementId; 2]| {
+        let others = sides(second);
+        sides(first).iter().any(|side| others.contains(&(side ^ 1)))
+    };
+    match touching.iter().find(|pair| !faces(pair)) {
+        Some(pair) => Err(Cause::TouchUnstated { elements: pair.map(ElementId::index) }),
+        None => Ok(()),
+    }
 }
 
 /// A vector of length 1.

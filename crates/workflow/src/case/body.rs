@@ -141,7 +141,7 @@ where
     part.map_err(|error| table.error(error.to_string()))
 }
 
-/// Bodies that touch or overlap, by their names.
+/// Bodies that overlap, by their names.
 fn apart<const D: usize, const N: usize>(
     root: &Table<'_>,
     bodies: &[(&str, &Mesh<D, N>)],
@@ -151,6 +151,6 @@ where
     Element<D, N>: Simplex<D, N>,
 {
     let tables = root.tables("body").unwrap_or_default();
-    let Some((second, message)) = Mesh::touching(bodies, error) else { return root.error(error.to_string()) };
+    let Some((second, message)) = Mesh::overlapping(bodies, error) else { return root.error(error.to_string()) };
     tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))
 }

@@ -7,9 +7,9 @@ use percute_core::dynamics::critical_time_step;
 
 /// What contact did in a run.
 #[derive(Debug, Default)]
-struct Seen {
-    reactions: usize,
-    slips: usize,
+pub(super) struct Seen {
+    pub(super) reactions: usize,
+    pub(super) slips: usize,
     sticks: usize,
 }
 
@@ -50,15 +50,24 @@ fn check(run: &Run<'_, 2, 3>) -> Seen {
 }
 
 /// Momentum, and the law of contact for each multiplier.
-fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
-    let mut seen = Seen::default();
+pub(super) fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
     let start = run.momentum(0);
     let scale = run.problem.mass().iter().sum::<f64>() * fastest(run);
     for n in 0..run.last() {
         let momentum = run.momentum(n);
         // v from differences of u loses some 100 units in the last place.
         assert!((0..2).all(|c| (momentum[c] - start[c]).abs() <= 1e-12 * scale), "step {n}: {momentum:?} {start:?}");
-        check_multipliers(run, n, &mut seen);
+    }
+    check_law(run)
+}
+
+/// The law of contact for each multiplier, at each step.
+pub(super) fn check_law(run: &Run<'_, 2, 3>) -> Seen {
+    let mut seen = Seen::default();
+    for n in 0..run.last() {
+        for sliding in run.problem.surface().sliding() {
+            check_multipliers(run, n, sliding, &mut seen);
+        }
     }
     seen
 }
@@ -69,15 +78,15 @@ fn fastest(run: &Run<'_, 2, 3>) -> f64 {
 }
 
 /// The law of contact in the step from t_n.
-fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, seen: &mut Seen) {
+fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>, seen: &mut Seen) {
     let surface = run.problem.surface();
-    let sliding = &surface.sliding()[0];
     let (step, next) = (run.history.step(n).unwrap(), run.history.step(n + 1).unwrap());
     let coupling = sliding.coupling(surface, &predicted(run, n));
     let multipliers = sliding.multipliers(&coupling, step.reaction);
     let velocity = run.half_velocity(n);
     let points = run.problem.mesh().points();
     let places: Vec<[f64; 2]> = points.iter().zip(next.displacement).map(|(x, u)| [x[0] + u[0], x[1] + u[1]]).collect();
+    check_couple(run, (sliding, &coupling), step.reaction);
     let largest = multipliers.iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
     for k in 0..coupling.len() {
         let (normal, along) = sliding.frame().split(&multipliers[k]);
@@ -111,8 +120,26 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, seen: &mut Seen) {
     }
 }
 
+/// Normal forces on both sides have no resultant, and no couple at their places ξ in the step.
+fn check_couple(run: &Run<'_, 2, 3>, (sliding, coupling): (&SlidingSurfaces<2>, &Coupling), reaction: &[[f64; 2]]) {
+    let (mut force, mut couple, mut scale) = (0.0, 0.0, 0.0);
+    for (side, places) in [(sliding.slave(), sliding.slave().xi()), (sliding.master(), coupling.places())] {
+        for (node, xi) in places.iter().enumerate() {
+            let [x, y] = reaction[side.position(node)];
+            let normal = sliding.frame().normal();
+            let press = x * normal[0] + y * normal[1];
+            force += press;
+            couple += press * xi;
+            scale += press.abs();
+        }
+    }
+    // Sums of some thirty products.
+    assert!(force.abs() <= 1e-13 * scale, "{force} {scale}");
+    assert!(couple.abs() <= 1e-13 * scale * run.problem.mesh().size(), "{couple} {scale}");
+}
+
 /// v_{n−½}·M v_{n+½}/2 + ½u·Ku less the work of the recorded forces is constant.
-fn check_energy(run: &Run<'_, 2, 3>) {
+pub(super) fn check_energy(run: &Run<'_, 2, 3>) {
     let (mut work, mut start, mut scale) = (0.0, None, 0.0_f64);
     let nodes = run.contact_nodes();
     for n in 1..run.last() {

@@ -6,3 +6,5 @@ mod limits;
 mod patch;
 mod refusals;
 pub(crate) mod setup;
+mod stack;
+mod start;

@@ -28,6 +28,8 @@ pub(crate) struct Blocks {
     /// How far the upper one is to the right of the lower one (m).
     pub(crate) aside: f64,
     pub(crate) materials: [Elastic; 2],
+    /// Distance at the start (m).
+    pub(crate) gap: f64,
     /// Velocities (m/s).
     pub(crate) velocities: [[f64; 2]; 2],
     pub(crate) friction: f64,
@@ -41,6 +43,7 @@ impl Blocks {
             widths: [0.04; 2],
             aside: 0.0,
             materials: [aluminium(); 2],
+            gap: GAP,
             velocities: [[8.0, -20.0], [0.0, 20.0]],
             friction: 0.2,
         }
@@ -52,7 +55,7 @@ impl Blocks {
             let mesh = TriangleMesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
             translated(&mesh, at).unwrap()
         };
-        let (upper, lower) = (block(0, [self.aside, HEIGHT + GAP]), block(1, [0.0; 2]));
+        let (upper, lower) = (block(0, [self.aside, HEIGHT + self.gap]), block(1, [0.0; 2]));
         TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap()
     }
 
