@@ -63,12 +63,11 @@ pub(crate) struct Prediction<'a, const D: usize> {
 }
 
 impl<const D: usize> Prediction<'_, D> {
-    /// v_{n+½} of a node (m/s), h after v_{n−½}.
+    /// v_{n+½} of a node (m/s), from h_n over its mass (s/kg).
     #[inline]
-    pub(super) fn velocity_after(&self, node: NodeId, h: f64) -> [f64; D] {
-        let node = node.index();
+    pub(super) fn velocity_after(&self, node: usize, over_mass: f64) -> [f64; D] {
         let mut velocity = self.velocity[node];
-        (0..D).for_each(|c| velocity[c] += h * self.inverse_mass[node] * self.force[node][c]);
+        (0..D).for_each(|c| velocity[c] += over_mass * self.force[node][c]);
         velocity
     }
 
@@ -78,9 +77,10 @@ impl<const D: usize> Prediction<'_, D> {
         let ([dt, h], contact) = (self.steps, &surface.nodes()[at]);
         let displacement = surface.against_obstacle(at, self.displacement);
         let frame = surface.frame(at, &displacement);
-        let mut velocity = self.velocity_after(contact.node, h);
+        let velocity_of = |node: NodeId| self.velocity_after(node.index(), h * self.inverse_mass[node.index()]);
+        let mut velocity = velocity_of(contact.node);
         if let Some(opposite) = contact.opposite {
-            let other = self.velocity_after(surface.nodes()[opposite].node, h);
+            let other = velocity_of(surface.nodes()[opposite].node);
             (0..D).for_each(|c| velocity[c] -= other[c]);
         }
         let gap = surface.gap(at, &displacement) + dt * frame.split(&velocity).0;

@@ -70,11 +70,7 @@ impl<const D: usize> Contact<D> {
                 act(opposite, reaction.map(|r| -r));
             }
         });
-        for sliding in problem.surface().sliding() {
-            for (at, contact) in sliding.positions().map(|at| (at, &problem.surface().nodes()[at])) {
-                (0..D).for_each(|c| force[contact.node.index()][c] += self.reaction[at][c]);
-            }
-        }
+        self.sliding.iter().for_each(|sliding| sliding.add(problem.surface(), &self.reaction, force));
     }
 
     /// Reactions and touching status on surfaces that slide.

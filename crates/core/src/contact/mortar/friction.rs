@@ -1,27 +1,120 @@
 //! The tangential part of the contact problem of a step: A λ + b = 0 within |λ| ≤ μ λ_n.
 
-use super::normal::{NormalProblem, relax};
-use super::skyline::Skyline;
+use super::normal::{RESIDUAL, ROUNDS};
+use super::relaxation::relax;
+use super::skyline::{Factors, Skyline};
 
-/// Solves for the tangential multipliers `force` within these limits (N/m). The normal part does not depend on them.
-/// With `normal`, which has the factors of the same matrix, relaxation starts where all that is pressed sticks.
-pub(super) fn solve(
-    matrix: &Skyline,
-    right: &[f64],
-    limit: &[f64],
-    normal: Option<&NormalProblem>,
-    (force, reduced): (&mut Vec<f64>, &mut Vec<f64>),
-) {
-    force.clear();
-    force.resize(right.len(), 0.0);
-    if let Some(normal) = normal {
-        reduced.clear();
-        reduced.extend(normal.pressed().iter().map(|&k| -right[k]));
-        normal.factors().solve(reduced);
-        normal.pressed().iter().zip(&*reduced).for_each(|(&k, stick)| force[k] = *stick);
-        if force.iter().zip(limit).all(|(stick, limit)| stick.abs() <= *limit) {
-            return;
-        }
+/// Its solver, with its memory. The normal part does not depend on it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FrictionProblem {
+    /// For each pressed multiplier the sign of its force while it slips, 0 while it sticks.
+    slips: Vec<f64>,
+    set: Vec<usize>,
+    factors: Factors,
+    reduced: Vec<[f64; 1]>,
+    /// λ (N/m).
+    force: Vec<f64>,
+}
+
+impl FrictionProblem {
+    /// λ of the last problem (N/m).
+    #[inline]
+    pub(super) fn force(&self) -> &[f64] {
+        &self.force
     }
-    relax(matrix, right, force, |k, force| force.clamp(-limit[k], limit[k]));
+
+    /// No friction, for so many multipliers.
+    pub(super) fn clear(&mut self, count: usize) {
+        self.force.clear();
+        self.force.resize(count, 0.0);
+    }
+
+    /// Solves by the primal–dual active set of those that stick, for the pressed multipliers, within these limits (N/m)
+    /// of all. `sticking` has their normal and tangential forces (N/m) if all stick, or is empty. Returns the number of
+    /// rounds, 0 if these are within the limits.
+    pub(super) fn solve(
+        &mut self,
+        matrix: &Skyline,
+        right: impl Fn(usize) -> f64,
+        limit: &[f64],
+        (pressed, sticking): (&[usize], &[[f64; 2]]),
+    ) -> usize {
+        self.clear(limit.len());
+        self.slips.clear();
+        self.slips.resize(pressed.len(), 0.0);
+        if sticking.len() == pressed.len() {
+            pressed.iter().zip(sticking).for_each(|(&k, [_, force])| self.force[k] = *force);
+            if !self.slip(limit, pressed) {
+                return 0;
+            }
+        }
+        let bound = RESIDUAL * pressed.iter().fold(0.0_f64, |most, &k| most.max(right(k).abs()));
+        for round in 1..=ROUNDS {
+            if !self.solve_on_set(matrix, &right, limit, pressed) {
+                break;
+            }
+            if !self.change_sets(matrix, &right, (limit, bound), pressed) {
+                return round;
+            }
+        }
+        let project = |k: usize, force: f64| force.clamp(-limit[k], limit[k]);
+        relax(matrix, right, &mut self.force, pressed.iter().copied(), project);
+        ROUNDS
+    }
+
+    /// Solves as if the sets were right. Whether that is possible.
+    fn solve_on_set(
+        &mut self,
+        matrix: &Skyline,
+        right: impl Fn(usize) -> f64,
+        limit: &[f64],
+        pressed: &[usize],
+    ) -> bool {
+        self.set.clear();
+        for (&k, slips) in pressed.iter().zip(&self.slips) {
+            self.force[k] = slips * limit[k];
+            if *slips == 0.0 {
+                self.set.push(k);
+            }
+        }
+        if !self.factors.factorise(matrix, &self.set) {
+            return false;
+        }
+        self.reduced.clear();
+        self.reduced.extend(self.set.iter().map(|&k| [-matrix.product(k, &self.force) - right(k)]));
+        self.factors.solve(&mut self.reduced);
+        self.set.iter().zip(&self.reduced).for_each(|(&k, [force])| self.force[k] = *force);
+        true
+    }
+
+    /// What sticks beyond its limit slips, and what slips along its force sticks. Whether anything changes.
+    fn change_sets(
+        &mut self,
+        matrix: &Skyline,
+        right: impl Fn(usize) -> f64,
+        (limit, bound): (&[f64], f64),
+        pressed: &[usize],
+    ) -> bool {
+        let mut changed = false;
+        for (&k, slips) in pressed.iter().zip(&mut self.slips).filter(|(k, slips)| **slips != 0.0 && limit[**k] > 0.0) {
+            if *slips * (matrix.product(k, &self.force) + right(k)) > bound {
+                *slips = 0.0;
+                changed = true;
+            }
+        }
+        // Those that have just come to stick have forces at their limits, not beyond.
+        self.slip(limit, pressed) || changed
+    }
+
+    /// What sticks beyond its limit slips. Whether anything does.
+    fn slip(&mut self, limit: &[f64], pressed: &[usize]) -> bool {
+        let mut changed = false;
+        for (&k, slips) in pressed.iter().zip(&mut self.slips).filter(|(_, slips)| **slips == 0.0) {
+            if self.force[k].abs() > limit[k] {
+                *slips = self.force[k].signum();
+                changed = true;
+            }
+        }
+        changed
+    }
 }

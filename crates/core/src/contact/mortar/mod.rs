@@ -20,6 +20,7 @@ mod friction;
 mod gram;
 mod normal;
 mod partition;
+mod relaxation;
 mod sharing;
 mod side;
 mod skyline;

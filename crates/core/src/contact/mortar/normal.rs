@@ -1,11 +1,12 @@
 //! The normal part of the contact problem of a step: A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0.
 
+use super::relaxation::relax;
 use super::skyline::{Factors, Skyline};
 
 /// Rounds of the active set before relaxation takes over.
-const ROUNDS: usize = 60;
+pub(super) const ROUNDS: usize = 60;
 /// A residual above minus this part of the largest right-hand side is rounding.
-const RESIDUAL: f64 = 1e-14;
+pub(super) const RESIDUAL: f64 = 1e-14;
 
 /// Its solver, with its memory.
 #[derive(Clone, Debug, Default)]
@@ -13,7 +14,7 @@ pub(super) struct NormalProblem {
     set: Vec<usize>,
     inside: Vec<bool>,
     factors: Factors,
-    reduced: Vec<f64>,
+    reduced: Vec<[f64; 2]>,
     /// λ (N/m).
     force: Vec<f64>,
 }
@@ -31,21 +32,22 @@ impl NormalProblem {
         &self.set
     }
 
-    /// The factors of A for these.
-    #[inline]
-    pub(super) fn factors(&self) -> &Factors {
-        &self.factors
+    /// For each of these the normal and the tangential multiplier (N/m) if all of them stick and the same matrix holds
+    /// for both parts; empty if relaxation found the set.
+    pub(super) fn sticking(&self) -> &[[f64; 2]] {
+        &self.reduced
     }
 
-    /// Solves by the primal–dual active set, for the multipliers that act. Others are 0.
-    pub(super) fn solve(&mut self, matrix: &Skyline, right: &[f64], acts: impl Fn(usize) -> bool) {
+    /// Solves by the primal–dual active set, for the multipliers that act; others are 0. `right` has b of the normal
+    /// part, and that of the tangential one for [`NormalProblem::sticking`]. Returns the number of rounds.
+    pub(super) fn solve(&mut self, matrix: &Skyline, right: &[[f64; 2]], acts: impl Fn(usize) -> bool) -> usize {
         let count = right.len();
-        let bound = RESIDUAL * right.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+        let bound = RESIDUAL * right.iter().fold(0.0_f64, |most, [b, _]| most.max(b.abs()));
         self.inside.clear();
-        self.inside.extend((0..count).map(|k| right[k] < 0.0 && acts(k)));
+        self.inside.extend((0..count).map(|k| right[k][0] < 0.0 && acts(k)));
         self.force.clear();
         self.force.resize(count, 0.0);
-        for _ in 0..ROUNDS {
+        for round in 1..=ROUNDS {
             if !self.solve_on_set(matrix, right) {
                 break;
             }
@@ -54,19 +56,21 @@ impl NormalProblem {
                 let stays = if self.inside[k] {
                     self.force[k] > 0.0
                 } else {
-                    matrix.product(k, &self.force) + right[k] < -bound
+                    matrix.product(k, &self.force) + right[k][0] < -bound
                 };
                 changed |= stays != self.inside[k];
                 self.inside[k] = stays;
             }
             if !changed {
-                return;
+                return round;
             }
         }
-        relax(matrix, right, &mut self.force, |k, force| if acts(k) { force.max(0.0) } else { 0.0 });
+        let project = |k: usize, force: f64| if acts(k) { force.max(0.0) } else { 0.0 };
+        relax(matrix, |k| right[k][0], &mut self.force, 0..count, project);
         (0..count).for_each(|k| self.inside[k] = self.force[k] > 0.0);
         self.collect();
-        self.factors.factorise(matrix, &self.set);
+        self.reduced.clear();
+        ROUNDS
     }
 
     fn collect(&mut self) {
@@ -75,42 +79,16 @@ impl NormalProblem {
     }
 
     /// Solves as if the set were right. Whether that is possible.
-    fn solve_on_set(&mut self, matrix: &Skyline, right: &[f64]) -> bool {
+    fn solve_on_set(&mut self, matrix: &Skyline, right: &[[f64; 2]]) -> bool {
         self.collect();
         if !self.factors.factorise(matrix, &self.set) {
             return false;
         }
         self.reduced.clear();
-        self.reduced.extend(self.set.iter().map(|&k| -right[k]));
+        self.reduced.extend(self.set.iter().map(|&k| right[k].map(|b| -b)));
         self.factors.solve(&mut self.reduced);
         self.force.fill(0.0);
-        self.set.iter().zip(&self.reduced).for_each(|(&k, force)| self.force[k] = *force);
+        self.set.iter().zip(&self.reduced).for_each(|(&k, [force, _])| self.force[k] = *force);
         true
-    }
-}
-
-/// Projected Gauss–Seidel for A λ + b = 0 with λ projected by `project`, until no sweep changes more than 1e-13 of the
-/// largest.
-pub(super) fn relax(matrix: &Skyline, right: &[f64], force: &mut [f64], project: impl Fn(usize, f64) -> f64) {
-    const SWEEPS: usize = 10_000;
-    const SMALL: f64 = 1e-13;
-    for k in 0..force.len() {
-        force[k] = project(k, force[k]);
-    }
-    for _ in 0..SWEEPS {
-        let (mut change, mut largest) = (0.0_f64, 0.0_f64);
-        for k in 0..force.len() {
-            let diagonal = matrix.diagonal(k);
-            if diagonal <= 0.0 {
-                continue;
-            }
-            let next = project(k, force[k] - (matrix.product(k, force) + right[k]) / diagonal);
-            change = change.max((next - force[k]).abs());
-            largest = largest.max(next.abs());
-            force[k] = next;
-        }
-        if change <= SMALL * largest || !change.is_finite() {
-            return;
-        }
     }
 }

@@ -5,9 +5,9 @@ use super::gram::gram;
 use super::skyline::{Factors, Skyline};
 
 impl Coupling {
-    /// The changes of velocity of the nodes of the slave and of the master, by the least kinetic energy, that change the
-    /// values D v − M v' of the multipliers that act by these (m²/s): m⁻¹Dᵀy and −m'⁻¹Mᵀy with A y = `change`. `inverse`
-    /// has 1/m of the nodes of both (1/kg).
+    /// The changes of velocity of the nodes of the slave and of the master, by the least kinetic energy, that change
+    /// the values D v − M v' of the multipliers that act by these (m²/s): m⁻¹Dᵀy and −m'⁻¹Mᵀy with A y = `change`.
+    /// `inverse` has 1/m of the nodes of both (1/kg).
     #[must_use]
     pub fn share(&self, inverse: [&[f64]; 2], change: &[f64]) -> [Vec<f64>; 2] {
         let (mut matrix, mut factors) = (Skyline::default(), Factors::default());
@@ -17,9 +17,9 @@ impl Coupling {
         if !factors.factorise(&matrix, &acting) {
             return shared;
         }
-        let mut multipliers: Vec<f64> = acting.iter().map(|&k| change[k]).collect();
+        let mut multipliers: Vec<[f64; 1]> = acting.iter().map(|&k| [change[k]]).collect();
         factors.solve(&mut multipliers);
-        for (&k, multiplier) in acting.iter().zip(multipliers) {
+        for (&k, [multiplier]) in acting.iter().zip(multipliers) {
             for (at, part) in self.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
                 shared[0][k + at - 1] += part * multiplier * inverse[0][k + at - 1];
             }

@@ -100,21 +100,23 @@ impl Factors {
         true
     }
 
-    /// Solves for a right-hand side, in its place.
-    pub(super) fn solve(&self, vector: &mut [f64]) {
+    /// Solves for some right-hand sides, in their place.
+    pub(super) fn solve<const W: usize>(&self, vectors: &mut [[f64; W]]) {
         let count = self.inverse.len();
         for row in 0..count {
-            let first = self.lower.first[row];
-            let sum: f64 = self.lower.row(row)[..row - first].iter().zip(&vector[first..row]).map(|(l, x)| l * x).sum();
-            vector[row] -= sum;
+            let (first, mut own) = (self.lower.first[row], vectors[row]);
+            for (l, x) in self.lower.row(row)[..row - first].iter().zip(&vectors[first..row]) {
+                (0..W).for_each(|w| own[w] -= l * x[w]);
+            }
+            vectors[row] = own;
         }
-        for (value, inverse) in vector.iter_mut().zip(&self.inverse) {
-            *value *= inverse;
+        for (values, inverse) in vectors.iter_mut().zip(&self.inverse) {
+            values.iter_mut().for_each(|value| *value *= inverse);
         }
         for row in (0..count).rev() {
-            let (first, value) = (self.lower.first[row], vector[row]);
-            for (x, l) in vector[first..row].iter_mut().zip(self.lower.row(row)) {
-                *x -= l * value;
+            let (first, own) = (self.lower.first[row], vectors[row]);
+            for (x, l) in vectors[first..row].iter_mut().zip(self.lower.row(row)) {
+                (0..W).for_each(|w| x[w] -= l * own[w]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Two surfaces that slide along each other at one step.
 
 use super::coupling::Coupling;
-use super::friction;
+use super::friction::FrictionProblem;
 use super::gram::gram;
 use super::normal::NormalProblem;
 use super::side::Side;
@@ -27,16 +27,20 @@ pub(crate) struct SlidingContact {
     tangential_matrix: Option<Skyline>,
     scaled: Vec<f64>,
     normal: NormalProblem,
-    /// Tangential multipliers (N/m), and their limits.
-    tangential: Vec<f64>,
+    friction: FrictionProblem,
+    /// Limits of the tangential multipliers (N/m).
     limit: Vec<f64>,
-    right: Vec<f64>,
+    /// b of the normal and of the tangential part, for each multiplier.
+    right: Vec<[f64; 2]>,
     sides: [State; 2],
+    touches: bool,
 }
 
 /// One side at a step, node by node.
 #[derive(Clone, Debug)]
 struct State {
+    /// The nodes of the mesh.
+    nodes: Vec<usize>,
     /// 1/m (1/kg), for forces along n and along t.
     inverse_mass: [Vec<f64>; 2],
     guided: Vec<bool>,
@@ -51,11 +55,13 @@ struct State {
 impl State {
     fn new<const D: usize>(surface: &ContactSurface<D>, side: &Side, inverse_mass: &[f64]) -> Self {
         let entries = || (0..side.len()).map(|node| &surface.nodes()[side.position(node)]);
-        let normal: Vec<f64> = entries().map(|contact| inverse_mass[contact.node.index()]).collect();
+        let nodes: Vec<usize> = entries().map(|contact| contact.node.index()).collect();
+        let normal: Vec<f64> = nodes.iter().map(|&node| inverse_mass[node]).collect();
         let guided: Vec<bool> = entries().map(|contact| contact.guided).collect();
         let tangential = normal.iter().zip(&guided).map(|(inverse, guided)| if *guided { 0.0 } else { *inverse });
         let zero = vec![0.0; side.len()];
         Self {
+            nodes,
             inverse_mass: [normal.clone(), tangential.collect()],
             guided,
             eta: zero.clone(),
@@ -68,15 +74,15 @@ impl State {
     /// The motion of a step without contact.
     fn predict<const D: usize>(
         &mut self,
-        (surface, side): (&ContactSurface<D>, &Side),
+        side: &Side,
         (normal, tangent): (&[f64; D], &[f64; D]),
         prediction: &Prediction<'_, D>,
     ) {
         let [dt, h] = prediction.steps;
         for (node, eta) in side.eta().iter().enumerate() {
-            let of = surface.nodes()[side.position(node)].node;
-            let velocity = prediction.velocity_after(of, h);
-            let (u, speed) = (&prediction.displacement[of.index()], dot(&velocity, tangent));
+            let of = self.nodes[node];
+            let velocity = prediction.velocity_after(of, h * self.inverse_mass[0][node]);
+            let (u, speed) = (&prediction.displacement[of], dot(&velocity, tangent));
             self.eta[node] = eta + dot(u, normal) + dt * dot(&velocity, normal);
             self.along[node] = dot(u, tangent) + dt * speed;
             self.speed[node] = speed;
@@ -102,10 +108,11 @@ impl SlidingContact {
             tangential_matrix: guided.then(Skyline::default),
             scaled: Vec::new(),
             normal: NormalProblem::default(),
-            tangential: Vec::new(),
+            friction: FrictionProblem::default(),
             limit: Vec::new(),
             right: Vec::new(),
             sides,
+            touches: false,
         }
     }
 
@@ -120,9 +127,10 @@ impl SlidingContact {
         let sliding = &surface.sliding()[self.index];
         let (normal, tangent) = (sliding.frame().normal(), sliding.tangent());
         for (state, side) in self.sides.iter_mut().zip([sliding.slave(), sliding.master()]) {
-            state.predict((surface, side), (normal, tangent), prediction);
+            state.predict(side, (normal, tangent), prediction);
         }
-        if !self.touches(sliding, prediction) {
+        self.touches = self.is_touched(sliding, prediction);
+        if !self.touches {
             return;
         }
         self.solve(sliding, prediction.steps[1]);
@@ -141,7 +149,7 @@ impl SlidingContact {
     }
 
     /// Computes the coupling and b_n. Whether any weighted gap is negative.
-    fn touches<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
+    fn is_touched<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
         let [slave, master] = &self.sides;
         let (low, [bottom, top]) = (slave.range()[0], master.range());
         let shift = sliding.shift(|node| slave.along[node], |node| master.along[node]);
@@ -152,54 +160,74 @@ impl SlidingContact {
         let (coupling, [dt, h]) = (&self.coupling, prediction.steps);
         let gap = |k: usize| coupling.difference(k, |node| slave.eta[node], |node| master.eta[node]);
         self.right.clear();
-        self.right.extend((0..coupling.len()).map(gap));
-        let below =
-            |(k, gap): (usize, &f64)| coupling.is_active(k) && *gap < -prediction.tolerance * coupling.weight(k);
+        self.right.extend((0..coupling.len()).map(|k| [gap(k), 0.0]));
+        let below = |(k, [gap, _]): (usize, &[f64; 2])| {
+            coupling.is_active(k) && *gap < -prediction.tolerance * coupling.weight(k)
+        };
         let touches = self.right.iter().enumerate().any(below);
-        self.right.iter_mut().for_each(|b| *b /= dt * h);
+        self.right.iter_mut().for_each(|[b, _]| *b /= dt * h);
         touches
     }
 
     /// Solves for the multipliers.
     fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, h: f64) {
-        let Self { coupling, sides: [slave, master], normal, right, .. } = self;
+        let Self { coupling, sides: [slave, master], normal, friction, right, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
+        let rough = sliding.law().friction() > 0.0;
+        if rough {
+            let slip = |k: usize| coupling.difference(k, |node| slave.speed[node], |node| master.speed[node]) / h;
+            right.iter_mut().enumerate().for_each(|(k, right)| right[1] = slip(k));
+        }
         gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.scaled);
         normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
-        self.tangential.clear();
-        if sliding.law().friction() == 0.0 {
-            self.tangential.resize(coupling.len(), 0.0);
+        if !rough {
+            friction.clear(coupling.len());
             return;
         }
         let limit = |(k, force): (usize, &f64)| if slave.guided[k] { 0.0 } else { sliding.law().limit(*force) };
         self.limit.clear();
         self.limit.extend(normal.force().iter().enumerate().map(limit));
-        right.clear();
-        let slip = |k: usize| coupling.difference(k, |node| slave.speed[node], |node| master.speed[node]) / h;
-        right.extend((0..coupling.len()).map(slip));
-        let (matrix, start) = match &mut self.tangential_matrix {
+        let matrix = match &mut self.tangential_matrix {
             Some(matrix) => {
                 gram(matrix, coupling, inverse(1), &mut self.scaled);
-                (&*matrix, None)
+                &*matrix
             }
-            None => (&self.normal_matrix, Some(&*normal)),
+            None => &self.normal_matrix,
         };
-        friction::solve(matrix, right, &self.limit, start, (&mut self.tangential, &mut self.scaled));
+        friction.solve(matrix, |k| right[k][1], &self.limit, (normal.pressed(), normal.sticking()));
     }
 
     /// Forces Dᵀλ on the slave and −Mᵀλ on the master.
     fn add_up(&mut self) {
-        let Self { coupling, sides: [slave, master], normal, tangential, .. } = self;
+        let Self { coupling, sides: [slave, master], normal, friction, .. } = self;
         slave.force.fill([0.0; 2]);
         master.force.fill([0.0; 2]);
         for &k in normal.pressed() {
-            let multipliers = [normal.force()[k], tangential[k]];
+            let multipliers = [normal.force()[k], friction.force()[k]];
             let add = |force: &mut [f64; 2], part: f64| (0..2).for_each(|c| force[c] += part * multipliers[c]);
             for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
                 add(&mut slave.force[k + at - 1], part);
             }
             let (first, row) = coupling.master_row(k);
             row.iter().zip(&mut master.force[first..]).for_each(|(part, force)| add(force, -part));
+        }
+    }
+
+    /// Adds the reactions of the step (N), by their position in the contact surface, to the forces on all nodes (N).
+    pub(crate) fn add<const D: usize>(
+        &self,
+        surface: &ContactSurface<D>,
+        reaction: &[[f64; D]],
+        force: &mut [[f64; D]],
+    ) {
+        if !self.touches {
+            return;
+        }
+        let sliding = &surface.sliding()[self.index];
+        for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
+            for (&node, reaction) in state.nodes.iter().zip(&reaction[side.position(0)..]) {
+                (0..D).for_each(|c| force[node][c] += reaction[c]);
+            }
         }
     }
 

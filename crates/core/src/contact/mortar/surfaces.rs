@@ -72,7 +72,10 @@ impl<const D: usize> SlidingSurfaces<D> {
     /// How far the slave has moved along the tangent against the master (m), from the tangential displacements of their
     /// nodes: the difference of the means over both surfaces, by length.
     ///
-    /// The mean over the body would need all its nodes at each step, and would turn with the body.
+    /// The mean over the bodies, Σmu/Σm, is not better: D and M take linear fields exactly at any shift, so that
+    /// momentum, the couple of the normal forces at these places, and a uniform pressure are exact to rounding with
+    /// either. It would need all nodes of both bodies at each step, and would move the surfaces where a body turns
+    /// about its centre.
     #[inline]
     #[must_use]
     pub fn shift(&self, slave: impl Fn(usize) -> f64, master: impl Fn(usize) -> f64) -> f64 {
