@@ -36,6 +36,15 @@ fn a_corner_alone_is_admissible() {
     }
 }
 
+/// A node that reaches both planes at once and sticks to one of them has a velocity of rounding alone, in any direction.
+#[test]
+fn a_node_at_rest_is_admissible() {
+    for (opening, velocity, friction) in [(120.0, [-140.0, -50.0], [0.0, 0.4]), (105.0, [-160.0, -50.0], [0.1, 0.4])] {
+        let problem = Corner::of(opening, velocity, friction, [10, 8]).at_distance(2e-4);
+        assert!(check(&format!("{opening}°, at rest"), &problem, &steps(&problem, 0.9, 90)) > 20);
+    }
+}
+
 /// A second plane that is never reached changes rounding only: the friction beside its corner is summed apart.
 #[test]
 fn a_far_wall_changes_nothing() {
