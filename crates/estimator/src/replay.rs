@@ -12,9 +12,9 @@ use percute_core::problem::Problem;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// Estimates a history: from the same steps, the same bits as beside the run that made them. If the
-/// observer breaks, the steps taken so far are estimated, on a large mesh as far as [`Estimator::stopping`] says. The simulation is summed up from the steps.
-/// `beside` takes every step that is estimated too, so that they need not be read again.
+/// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,
+/// the steps taken so far are estimated, on a large mesh as far as [`Estimator::stopping`] says. The simulation is
+/// summed up from the steps. `beside` takes every step that is estimated too, so that they need not be read again.
 ///
 /// # Errors
 /// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps

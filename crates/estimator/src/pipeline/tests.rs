@@ -93,8 +93,8 @@ fn a_file_that_fails_is_an_error() {
     assert!(matches!(cause.downcast_ref(), Some(EstimateError::Scratch(_))), "{cause}");
 }
 
-/// The estimate of a short run that is stopped once this step was taken in; only a `large` mesh is left in the middle of
-/// its work.
+/// The estimate of a short run that is stopped once this step was taken in; only a `large` mesh is left in the middle
+/// of its work.
 fn stopped(
     problem: &TriangleProblem,
     times: &TimeGrid,

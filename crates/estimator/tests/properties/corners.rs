@@ -36,7 +36,8 @@ fn a_corner_alone_is_admissible() {
     }
 }
 
-/// A node that reaches both planes at once and sticks to one of them has a velocity of rounding alone, in any direction.
+/// A node that reaches both planes at once and sticks to one of them has a velocity of rounding alone, in any
+/// direction.
 #[test]
 fn a_node_at_rest_is_admissible() {
     for (opening, velocity, friction) in [(120.0, [-140.0, -50.0], [0.0, 0.4]), (105.0, [-160.0, -50.0], [0.1, 0.4])] {
