@@ -204,11 +204,12 @@ fn the_set_up_of_a_large_mesh_is_left_at_once() {
 /// Interrupts a run of 240 000 triangles, of which a window takes seconds here, after so many steps, with samples at
 /// these. Its history is closed.
 fn interrupted_after(steps: u64, every: &str) -> (Bench, Output) {
-    let block = BLOCK.replace("nx = 5, ny = 4", "nx = 400, ny = 300").replace("end = 5e-6", "end = 1e-4");
+    let block = BLOCK.replace("nx = 5, ny = 4", "nx = 400, ny = 300");
     let bench = Bench::new(&block.replace("every = 1", &format!("every = {every}")));
     let arguments = ["run", "case.toml", "--history", "h.vtkhdf", "--threads", "1", "--long", "--quiet"];
-    let child = start(&bench, &arguments);
+    let mut child = start(&bench, &arguments);
     while info_of(&bench, "h.vtkhdf")["steps"].as_u64() < Some(steps) {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before step {steps}");
         std::thread::sleep(Duration::from_millis(5));
     }
     let output = send_interrupt(child);
