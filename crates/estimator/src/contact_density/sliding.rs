@@ -355,3 +355,6 @@ impl<const D: usize> Load<D> {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests;
