@@ -59,8 +59,9 @@ def simulate(
     problem : Problem
         What to simulate.
     end : float or "rebound"
-        End T of the run (s); it may be left out with ``steps``. With "rebound" the run ends some time after the body has left its planes;
-        a first pass of the integrator looks for this end and takes as long as a simulation without its estimate.
+        End T of the run (s); it may be left out with ``steps``. With "rebound" the run ends some time after the last contact, with
+        planes or between bodies, has ended; a first pass of the integrator looks for this end and takes as long as a simulation
+        without its estimate.
     courant : float
         Time step over the critical one, above 0 and at most 1. Give exactly one of ``courant``, ``step`` and ``steps``.
     step : float
@@ -71,7 +72,7 @@ def simulate(
         The latest end (s); required with ``end="rebound"``, and for this only.
     after : float, optional
         With ``end="rebound"``, how long the run goes on after the last contact (s); by default twice the time of a wave along the
-        diagonal of the body.
+        diagonal of the mesh.
     store : str or path, optional
         A file, such as ``"block.vtkhdf"``, to which the steps are written during the run; they are then not kept in memory.
         See ``docs/history.md``. Disk space for the complete file is allocated at the start.

@@ -228,6 +228,31 @@ def test_bars_exchange_their_velocities() -> None:
     assert velocities == pytest.approx([0.0, 0.0, 10.0], abs=0.2) and sum(velocities) == pytest.approx(10.0, rel=1e-12)
 
 
+def test_a_run_ends_when_all_contact_has_ended() -> None:
+    """A cradle: its second impact comes later than the wait after the first one, and its first two bars stay beside each other."""
+    law = pc.Elastic(young=70e9, density=2700, section=1e-4)
+    bar = pc.Mesh.bar(0.1, elements=50)
+    places = [0.0, 0.10001, 0.2008]
+    bodies = [pc.Body(name=name, mesh=bar, material=law, origin=x, velocity=10.0 * (x == 0.0)) for name, x in zip("abc", places, strict=True)]
+    contacts = [pc.Interface(groups=("a.end", "b.start")), pc.Interface(groups=("b.end", "c.start"))]
+    problem, after = pc.Problem(bodies=bodies, contacts=contacts), 30e-6
+    history = pc.simulate(problem, end="rebound", longest=1e-3, after=after, courant=0.9)
+    impacts = history.impacts
+    assert impacts is not None and all(each.ended for each in impacts.interfaces)
+    first, second = (each.release for each in impacts.interfaces)
+    assert first is not None and second is not None and second > first + 2 * after
+    step = float(np.diff(history.time).max())
+    # The end is that of a pass whose steps differ, rounded up to four digits.
+    assert second + after - 2 * step <= history.time[-1] <= second + after + 3 * step + 1e-3 * history.time[-1]
+    with pytest.warns(pc.InputWarning, match="contact has not ended by 3e-5 s"):
+        pc.simulate(problem, end="rebound", longest=3e-5, courant=0.9)
+    apart = pc.Problem(problem.mesh, material=problem.material, contacts=contacts, initial_velocity=-problem.initial_velocity)
+    with pytest.warns(pc.InputWarning) as told:
+        pc.simulate(apart, end="rebound", longest=3e-5, courant=0.9)
+    for words in ("nothing has touched by 3e-5 s", "move apart at 10 m/s"):
+        assert any(words in str(each.message) for each in told)
+
+
 def test_pictures_and_tables_name_the_surfaces() -> None:
     pytest.importorskip("matplotlib")
     history = pc.simulate(blocks(), end=10e-6, courant=0.9)

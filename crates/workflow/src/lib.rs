@@ -11,6 +11,7 @@ pub mod foreign;
 pub mod grade;
 pub mod history;
 pub mod info;
+mod leaving;
 pub mod message;
 mod numbering;
 pub mod outline;

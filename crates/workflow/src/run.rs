@@ -5,13 +5,14 @@
 use crate::case::CaseOf;
 use crate::failure::Failure;
 use crate::info::memory;
+use crate::leaving::Leaving;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};
 use crate::report::Warning;
 use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
-use crate::until::{Found, Leaving, Stop, Until};
+use crate::until::{Found, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
@@ -79,7 +80,7 @@ pub fn simulate<const D: usize, const N: usize>(
     drive(&Ordered::new(problem), times, (None, None), storage, &mut Discard, observer)
 }
 
-/// Finds the end of a run that goes on until the body has left its planes: a pass of the integrator alone. None if the
+/// Finds the end of a run that goes on until all contact has ended: a pass of the integrator alone. None if the
 /// observer stops it.
 ///
 /// # Errors

@@ -1,8 +1,7 @@
-//! The end of a run that goes on until the body has left its planes.
+//! The end of a run that goes on until all contact has ended.
 
 use crate::message::trimmed;
 use crate::report::Warning;
-use percute_core::history::{SinkError, State, StateSink};
 use percute_core::material::Law;
 use percute_core::observer::{Observer, Progress};
 use percute_core::problem::Problem;
@@ -10,15 +9,17 @@ use percute_core::time::{TimeError, TimeGrid};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// How long a run goes on after the last contact, over the time of a wave along the diagonal of the body, unless it is
+/// How long a run goes on after the last contact, over the time of a wave along the diagonal of the mesh, unless it is
 /// stated.
 const AFTER: f64 = 2.0;
 
-/// A run that ends with the rebound of the body.
+/// A run that ends with the rebound: of a body from its planes, or of bodies from each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Until {
     /// The latest end (s).
     pub longest: f64,
+    /// Whether bodies may touch each other.
+    pub between_bodies: bool,
     /// How long the run goes on after the last contact (s).
     pub after: f64,
     /// The step that was stated, before it is fitted to an end (s).
@@ -44,7 +45,8 @@ impl Until {
         step: f64,
     ) -> Self {
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
-        Self { longest, after: after.unwrap_or(AFTER * problem.mesh().size() / wave_speed), step }
+        let between_bodies = !problem.statement().interfaces.is_empty();
+        Self { longest, between_bodies, after: after.unwrap_or(AFTER * problem.mesh().size() / wave_speed), step }
     }
 
     /// The instants to the latest end.
@@ -64,12 +66,19 @@ impl Until {
     }
 
     fn not_ended(&self, touched: bool) -> Warning {
-        let brief = match touched {
-            true => format!("the body has not left its plane by {} s", trimmed(self.longest, 4)),
-            false => format!("the body has not touched a plane by {} s", trimmed(self.longest, 4)),
+        let brief = match (self.between_bodies, touched) {
+            (false, true) => "the body has not left its plane",
+            (false, false) => "the body has not touched a plane",
+            (true, true) => "contact has not ended",
+            (true, false) => "nothing has touched",
         };
-        let advice = if touched { "give" } else { "does it move towards its plane? If it does, give" };
-        let message = format!("{brief}, the latest end: the run ends there; {advice} a larger `longest`");
+        let (brief, longest) = (format!("{brief} by {} s", trimmed(self.longest, 4)), "give a larger `longest`");
+        let advice = match (touched, self.between_bodies) {
+            (true, _) => longest.to_string(),
+            (false, false) => format!("does it move towards its plane? If it does, {longest}"),
+            (false, true) => format!("do the bodies move towards each other? If they do, {longest}"),
+        };
+        let message = format!("{brief}, the latest end: the run ends there; {advice}");
         Warning { name: "no_rebound", brief, message }
     }
 }
@@ -77,12 +86,8 @@ impl Until {
 /// Why a problem cannot end with a rebound, if it cannot.
 #[must_use]
 pub fn no_rebound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<&'static str> {
-    let interfaces = &problem.statement().interfaces;
-    if problem.obstacles().is_empty() {
-        return Some("\"rebound\" needs a plane that the body strikes: give one, or an end in s");
-    }
-    (!interfaces.is_empty())
-        .then_some("\"rebound\" is that of one body from a plane: for several bodies give an end in s")
+    let nothing = problem.obstacles().is_empty();
+    nothing.then_some("\"rebound\" needs a plane or another body that is struck: give one, or an end in s")
 }
 
 /// A positive number, rounded up to four digits, so that a summary shows all of it.
@@ -95,44 +100,7 @@ fn rounded_up(time: f64) -> f64 {
     format!("{mantissa}e{exponent}").parse().unwrap_or(time)
 }
 
-/// Sees when the body has left its planes.
-pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
-    after: f64,
-    /// Last instant with a contact force (s).
-    pub(crate) last: Option<f64>,
-    /// When the body had left (s).
-    pub(crate) left: Option<f64>,
-    seen: &'a AtomicBool,
-}
-
-impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
-    pub(crate) fn new(problem: &'a Problem<D, N>, after: f64, seen: &'a AtomicBool) -> Self {
-        Self { problem, after, last: None, left: None, seen }
-    }
-}
-
-impl<const D: usize, const N: usize> StateSink<D> for Leaving<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        let step = state.step();
-        if step.reaction.iter().any(|force| *force != [0.0; D]) {
-            self.last = Some(step.time);
-        } else if let Some(last) = self.last
-            && self.left.is_none()
-            && step.time - last >= self.after
-        {
-            let (_, momentum) = state.energies(self.problem.mass());
-            let away = |obstacle: &percute_core::contact::Obstacle<D>| obstacle.flat_frame().split(&momentum).0 > 0.0;
-            if self.problem.obstacles().iter().all(away) {
-                self.left = Some(step.time);
-                self.seen.store(true, Relaxed);
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Stops a run when the body has left, or when another observer wishes.
+/// Stops a run when all contact has ended, or when another observer wishes.
 pub(crate) struct Stop<'a> {
     pub(crate) inner: &'a mut dyn Observer,
     pub(crate) left: &'a AtomicBool,

@@ -220,9 +220,9 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         parts::part_of_nodes(self.points.len(), &self.cells)
     }
 
-    /// For each element the number of its part, from 0, in the order of their first nodes.
+    /// For each node the number of its part, from 0, in the order of their first nodes.
     #[must_use]
-    pub fn part_of_elements(&self) -> Vec<usize> {
+    pub fn part_numbers(&self) -> Vec<usize> {
         let part = self.part_of_nodes();
         let mut number = vec![0; part.len()];
         let mut count = 0;
@@ -232,7 +232,14 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
                 count += 1;
             }
         }
-        self.cells.iter().map(|cell| number[part[cell[0].index()].index()]).collect()
+        part.iter().map(|first| number[first.index()]).collect()
+    }
+
+    /// For each element the number of its part, likewise.
+    #[must_use]
+    pub fn part_of_elements(&self) -> Vec<usize> {
+        let of_node = self.part_numbers();
+        self.cells.iter().map(|cell| of_node[cell[0].index()]).collect()
     }
 
     /// Number of separate parts; elements that share a node belong to one part.

@@ -230,11 +230,21 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         first.is_none_or(|at| self.surface.is_of_first(at))
     }
 
+    fn planes(&self) -> usize {
+        self.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count()
+    }
+
+    /// Of two surfaces that may touch, each is an obstacle: the other one of the two; none for a plane.
+    #[must_use]
+    pub fn opposite_obstacle(&self, obstacle: usize) -> Option<usize> {
+        let planes = self.planes();
+        obstacle.checked_sub(planes).map(|after| planes + (after ^ 1))
+    }
+
     /// Where an obstacle is stated: a plane, or two surfaces of different bodies.
     #[must_use]
     pub fn place_of_obstacle(&self, obstacle: usize) -> Place {
-        let planes = self.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
-        match obstacle.checked_sub(planes) {
+        match obstacle.checked_sub(self.planes()) {
             None => Place { table: "obstacle", index: Some(obstacle), key: "point" },
             // Each of the two is an obstacle of the other.
             Some(after) => Place { table: "contact", index: Some(after / 2), key: "groups" },

@@ -93,7 +93,7 @@ struct Centres<'c, const D: usize> {
 
 impl<'c, const D: usize> Centres<'c, D> {
     fn new<const N: usize>(problem: &Problem<D, N>, contact: &'c ContactResults<D>) -> Self {
-        let of_node = bodies_of_nodes(problem.mesh());
+        let of_node = problem.mesh().part_numbers();
         let count = of_node.iter().max().map_or(0, |last| last + 1);
         let (mut mass, mut start) = (vec![0.0; count], vec![[0.0; D]; count]);
         for ((&body, m), v) in of_node.iter().zip(problem.mass()).zip(problem.initial_velocity()) {
@@ -188,15 +188,6 @@ fn rebound<const D: usize, const N: usize>(
         time_in_contact: time(last + 1) - time(first + 1),
         ended,
     }
-}
-
-/// The number of the body of each node.
-fn bodies_of_nodes<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<usize> {
-    let mut of_node = vec![0; mesh.node_count()];
-    for (cell, body) in mesh.cells().iter().zip(mesh.part_of_elements()) {
-        cell.iter().for_each(|node| of_node[node.index()] = body);
-    }
-    of_node
 }
 
 /// The names of the bodies: of the first group that has all elements of the body and no others.

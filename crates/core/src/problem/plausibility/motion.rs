@@ -101,21 +101,20 @@ struct Flight<const D: usize> {
     acceleration: [f64; D],
 }
 
-/// The flight of a body that nothing strains; `None` if that cannot be told beforehand.
-fn flight<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Flight<D>> {
-    let velocity = uniform(problem.initial_velocity())?;
-    uniform(problem.initial_displacement())?;
+/// The flight of each body, if nothing strains them; `None` if that cannot be told beforehand.
+fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &Bodies) -> Option<Vec<Flight<D>>> {
+    let velocity = bodies.uniform(problem.initial_velocity())?;
+    bodies.uniform(problem.initial_displacement())?;
     let steady = |motion: &crate::load::Table<1>| motion.value().iter().all(|v| v == &motion.value()[0]);
     if !problem.facet_loads().is_empty() || !problem.motions().iter().all(steady) {
         return None;
     }
-    if problem.body_loads().is_empty() {
-        return Some(Flight { velocity, acceleration: [0.0; D] });
-    }
-    if !problem.prescribed().is_empty() || problem.body_loads().iter().any(|load| load.value.value().len() > 1) {
+    let mut acceleration = vec![[0.0; D]; problem.mesh().node_count()];
+    if !problem.body_loads().is_empty()
+        && (!problem.prescribed().is_empty() || problem.body_loads().iter().any(|load| load.value.value().len() > 1))
+    {
         return None;
     }
-    let mut acceleration = vec![[0.0; D]; problem.mesh().node_count()];
     for load in problem.body_loads() {
         let force = load.value.at(0.0);
         for &(node, volume) in &load.nodal_volume {
@@ -124,43 +123,96 @@ fn flight<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<Fli
             }
         }
     }
-    Some(Flight { velocity, acceleration: uniform(&acceleration)? })
+    let flight = |(velocity, acceleration)| Flight { velocity, acceleration };
+    Some(velocity.into_iter().zip(bodies.uniform(&acceleration)?).map(flight).collect())
 }
 
-/// The value of a field that is the same everywhere.
-fn uniform<const D: usize>(field: &[[f64; D]]) -> Option<[f64; D]> {
-    let first = *field.first()?;
-    let largest = field.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let same = |value: &[f64; D]| value.iter().zip(&first).all(|(a, b)| (a - b).abs() <= SAME * largest);
-    field.iter().all(same).then_some(first)
+/// The separate bodies of a mesh.
+struct Bodies {
+    /// The body of each node, and the nodes of each body.
+    of_node: Vec<usize>,
+    nodes: Vec<Vec<usize>>,
 }
 
-/// The nearest candidate node of a plane, and when it will touch.
+impl Bodies {
+    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+        let mesh = problem.mesh();
+        let of_node = if mesh.parts() == 1 { vec![0; mesh.node_count()] } else { mesh.part_numbers() };
+        let mut nodes = vec![Vec::new(); mesh.parts()];
+        of_node.iter().enumerate().for_each(|(node, &body)| nodes[body].push(node));
+        Self { of_node, nodes }
+    }
+
+    /// The values of a field that is the same all over each body.
+    fn uniform<const D: usize>(&self, field: &[[f64; D]]) -> Option<Vec<[f64; D]>> {
+        let largest = field.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let same = |a: &[f64; D], b: &[f64; D]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME * largest);
+        let of_body = |nodes: &Vec<usize>| {
+            let first = field[*nodes.first()?];
+            nodes.iter().all(|&node| same(&field[node], &first)).then_some(first)
+        };
+        self.nodes.iter().map(of_body).collect()
+    }
+
+    /// Diagonal of the largest bounding box of a body (m).
+    fn largest<const D: usize>(&self, points: &[[f64; D]]) -> f64 {
+        let extent = |nodes: &Vec<usize>, c: usize| {
+            let ends = |[low, high]: [f64; 2], &node: &usize| [low.min(points[node][c]), high.max(points[node][c])];
+            let [low, high] = nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+            high - low
+        };
+        let diagonal = |nodes| (0..D).map(|c| extent(nodes, c).powi(2)).sum::<f64>().sqrt();
+        self.nodes.iter().map(diagonal).fold(0.0, f64::max)
+    }
+}
+
+/// The nearest candidate node of a plane or of another body, and when it will touch.
 struct Approach {
     obstacle: usize,
+    /// "plane", or "other body".
+    what: &'static str,
     /// The smallest gap (m).
     gap: f64,
-    /// Speed towards the plane (m/s).
+    /// Speed towards the obstacle (m/s).
     speed: f64,
     /// When the gap closes (s), infinite if it never does.
     time: f64,
 }
 
-/// A body in flight that reaches no plane before the end, or whose plane is very far. Its motion
-/// after a first touch is not predicted.
+/// Bodies in flight that reach no plane and no other body before the end, or the first of them from very far. Their
+/// motion after a first touch is not predicted, nor where surfaces face each other that do not do so at the start.
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
-    let flight = flight(problem)?;
+    let bodies = Bodies::new(problem);
+    let flights = flights(problem, &bodies)?;
+    let flight = |obstacle: usize| {
+        let on_it = problem.surface().nodes().iter().find(|contact| contact.obstacle == obstacle)?;
+        Some(&flights[bodies.of_node[on_it.node.index()]])
+    };
     let approach = |obstacle: usize| {
         let (at, gap) = problem.nearest(obstacle)?;
         let node = problem.surface().nodes()[at].node.index();
-        let frame = problem.surface().frame(at, &problem.initial_displacement()[node]);
-        let (speed, push) = (-dot(&flight.velocity, frame.normal()), -dot(&flight.acceleration, frame.normal()));
+        let normal = *problem.obstacles()[obstacle].flat_frame().normal();
+        let opposite = problem.opposite_obstacle(obstacle);
+        let (own, other) = (&flights[bodies.of_node[node]], opposite.and_then(flight));
+        let towards =
+            |of: fn(&Flight<D>) -> &[f64; D]| other.map_or(0.0, |o| dot(of(o), &normal)) - dot(of(own), &normal);
+        let (speed, push) = (towards(|flight| &flight.velocity), towards(|flight| &flight.acceleration));
         // A gap within rounding is closed.
         let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
-        Some(Approach { obstacle, gap, speed, time: closing_time(gap, speed, push) })
+        let what = if opposite.is_some() { "other body" } else { "plane" };
+        Some(Approach { obstacle, what, gap, speed, time: closing_time(gap, speed, push) })
     };
-    let first = (0..problem.obstacles().len()).filter_map(approach).min_by(|a, b| a.time.total_cmp(&b.time))?;
-    if first.time > times.end() { never(&first, times.end()) } else { far(&first, problem.mesh().size()) }
+    let leading = (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle));
+    let (interfaces, planes): (Vec<usize>, Vec<usize>) =
+        leading.partition(|&obstacle| problem.opposite_obstacle(obstacle).is_some());
+    let mut approaches = interfaces.into_iter().map(approach).collect::<Option<Vec<_>>>()?;
+    approaches.extend(planes.into_iter().filter_map(approach));
+    let first = approaches.into_iter().min_by(|a, b| a.time.total_cmp(&b.time))?;
+    if first.time > times.end() {
+        never(problem, &first, times.end())
+    } else {
+        far(problem, &first, bodies.largest(problem.mesh().points()))
+    }
 }
 
 /// When gap − speed t − push t²/2 becomes 0 (s).
@@ -181,51 +233,70 @@ fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
     if root > 0.0 { 2.0 * gap / root } else { f64::INFINITY }
 }
 
-fn never(first: &Approach, end: f64) -> Option<PlausibilityWarning> {
-    let Approach { obstacle, gap, speed, time } = *first;
+fn never<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    first: &Approach,
+    end: f64,
+) -> Option<PlausibilityWarning> {
+    let Approach { obstacle, what, gap, speed, time } = *first;
+    let place = problem.place_of_obstacle(obstacle);
     let (gap, towards, end) = (short(gap), short(speed), short(end));
     if time.is_finite() {
         let when = short(time);
         let message = format!(
-            "the gap of {gap} m closes after {when} s (the body starts at {towards} m/s towards the plane), but the \
+            "the gap of {gap} m closes after {when} s (the body starts at {towards} m/s towards the {what}), but the \
              run ends at {end} s: use a later `end`, start nearer, or check the units of gap and velocity"
         );
         let brief = format!("no contact before {when} s");
-        return Some(plausibility_warning(at("obstacle", Some(obstacle), "point"), "never_touches", brief, message));
+        return Some(plausibility_warning(place, "never_touches", brief, message));
     }
     let away = short(-speed);
-    let message = if speed < 0.0 {
-        format!("moves the body away from the plane at {away} m/s, so the body never touches: is the sign correct?")
-    } else {
-        format!(
-            "does not move the body towards the plane, {gap} m away: it never touches; give it a velocity towards the \
-             plane"
-        )
+    let (message, place) = match (what, speed < 0.0) {
+        ("plane", true) => (
+            format!(
+                "moves the body away from the plane at {away} m/s, so the body never touches: is the sign correct?"
+            ),
+            at("initial", None, "velocity"),
+        ),
+        ("plane", false) => (
+            format!(
+                "does not move the body towards the plane, {gap} m away: it never touches; give it a velocity towards \
+                 the plane"
+            ),
+            at("initial", None, "velocity"),
+        ),
+        (_, true) => (format!("the bodies move apart at {away} m/s and never touch: is a sign wrong?"), place),
+        (_, false) => (
+            format!(
+                "the bodies do not move towards each other, {gap} m apart, and never touch; give one of them a \
+                 velocity towards the other one"
+            ),
+            place,
+        ),
     };
-    Some(plausibility_warning(
-        at("initial", None, "velocity"),
-        "never_touches",
-        "the body never touches the plane",
-        message,
-    ))
+    let brief = if what == "plane" { "the body never touches the plane" } else { "the bodies never touch" };
+    Some(plausibility_warning(place, "never_touches", brief, message))
 }
 
-fn far(first: &Approach, size: f64) -> Option<PlausibilityWarning> {
-    let Approach { obstacle, gap, time, .. } = *first;
+fn far<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    first: &Approach,
+    size: f64,
+) -> Option<PlausibilityWarning> {
+    let Approach { obstacle, what, gap, time, .. } = *first;
     if gap <= FAR * size {
         return None;
     }
     let (gap, size, time) = (short(gap), short(size), short(time));
+    let (name, subject, point) = match what {
+        "plane" => ("far_plane", "the plane is", "is the point in metres?"),
+        _ => ("far_body", "the other body is", "is its place in metres?"),
+    };
     let message = format!(
-        "the plane is {gap} m away from a body of {size} m, which takes {time} s to reach it: is the point in metres? \
-         Start nearer to save the steps before contact"
+        "{subject} {gap} m away from a body of {size} m, which takes {time} s to reach it: {point} Start nearer to save \
+         the steps before contact"
     );
-    Some(plausibility_warning(
-        at("obstacle", Some(obstacle), "point"),
-        "far_plane",
-        format!("a gap of {gap} m"),
-        message,
-    ))
+    Some(plausibility_warning(problem.place_of_obstacle(obstacle), name, format!("a gap of {gap} m"), message))
 }
 
 #[cfg(test)]

@@ -1,0 +1,100 @@
+//! When all contact has ended: bodies have left their planes and each other.
+
+use percute_core::contact::Frame;
+use percute_core::history::{SinkError, State, StateSink};
+use percute_core::problem::Problem;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Bodies that stay at rest to each other after an impact, as the first ones of a cradle, still approach each other by
+/// some part of the speed of the impact: the oscillations that it leaves. Slower approach is none.
+const SLOW: f64 = 1e-2;
+
+/// Two bodies, or a body and a plane, that may touch: the normal points to the first body.
+struct Meeting<const D: usize> {
+    frame: Frame<D>,
+    body: usize,
+    other: Option<usize>,
+}
+
+/// Sees when all contact has ended.
+pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
+    problem: &'a Problem<D, N>,
+    after: f64,
+    body_of_node: Vec<usize>,
+    meetings: Vec<Meeting<D>>,
+    /// The largest speed at which bodies met (m/s).
+    fastest: f64,
+    /// Last instant with a contact force (s).
+    pub(crate) last: Option<f64>,
+    /// When all had left (s).
+    pub(crate) left: Option<f64>,
+    seen: &'a AtomicBool,
+}
+
+impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
+    pub(crate) fn new(problem: &'a Problem<D, N>, after: f64, seen: &'a AtomicBool) -> Self {
+        let body_of_node = problem.mesh().part_numbers();
+        let meetings = meetings(problem, &body_of_node);
+        Self { problem, after, body_of_node, meetings, fastest: 0.0, last: None, left: None, seen }
+    }
+
+    /// How fast the centres of mass of each two that may touch move away from each other (m/s).
+    fn away(&self, state: &State<'_, D>) -> Vec<f64> {
+        let bodies = self.body_of_node.iter().max().map_or(0, |last| last + 1);
+        let (mut mass, mut momentum) = (vec![0.0; bodies], vec![[0.0; D]; bodies]);
+        for (node, (&body, m)) in self.body_of_node.iter().zip(self.problem.mass()).enumerate() {
+            let velocity = state.velocity_of(node);
+            mass[body] += m;
+            (0..D).for_each(|c| momentum[body][c] += m * velocity[c]);
+        }
+        let velocity = |body: usize| momentum[body].map(|p| p / mass[body]);
+        let away = |Meeting { frame, body, other }: &Meeting<D>| {
+            let (own, other) = (velocity(*body), other.map_or([0.0; D], velocity));
+            frame.split(&std::array::from_fn(|c| own[c] - other[c])).0
+        };
+        self.meetings.iter().map(away).collect()
+    }
+}
+
+/// The bodies of each obstacle, each with the body whose surface it is.
+fn meetings<const D: usize, const N: usize>(problem: &Problem<D, N>, body_of_node: &[usize]) -> Vec<Meeting<D>> {
+    let mut bodies = vec![Vec::new(); problem.obstacles().len()];
+    for contact in problem.surface().nodes() {
+        let body = body_of_node[contact.node.index()];
+        if !bodies[contact.obstacle].contains(&body) {
+            bodies[contact.obstacle].push(body);
+        }
+    }
+    let of_obstacle = |(at, of): (usize, &Vec<usize>)| {
+        let (opposite, frame) = (problem.opposite_obstacle(at), problem.obstacles()[at].flat_frame());
+        let other = opposite.and_then(|opposite| bodies[opposite].first().copied());
+        let first = opposite.is_none_or(|opposite| at < opposite);
+        let of = if first { of.clone() } else { Vec::new() };
+        of.into_iter().map(move |body| Meeting { frame, body, other })
+    };
+    bodies.iter().enumerate().flat_map(of_obstacle).collect()
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for Leaving<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let step = state.step();
+        let touches = step.reaction.iter().any(|force| *force != [0.0; D]);
+        if step.index == 0 || (touches && self.last.is_none()) {
+            self.fastest = self.away(state).into_iter().fold(self.fastest, |most, away| most.max(away.abs()));
+        }
+        if touches {
+            self.last = Some(step.time);
+        } else if let Some(last) = self.last
+            && self.left.is_none()
+            && step.time - last >= self.after
+        {
+            let several = self.meetings.iter().any(|meeting| meeting.other.is_some());
+            let slow = if several { SLOW * self.fastest } else { 0.0 };
+            if self.away(state).into_iter().all(|away| away > -slow) {
+                self.left = Some(step.time);
+                self.seen.store(true, Relaxed);
+            }
+        }
+        Ok(())
+    }
+}
