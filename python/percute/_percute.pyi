@@ -130,6 +130,7 @@ class ProblemData:
         body_forces: Sequence[object],
         velocity: _Floats | None,
         displacement: _Floats | None,
+        automatic: bool,
     ) -> ProblemData: ...
     def mesh(self) -> MeshData: ...
     critical_time_step: Final[float]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import instance, number, text
+from percute.checks import flag, instance, number, text
 from percute.errors import InputError
 from percute.mesh import Mesh
 from percute.statement import Elastic, Vector, vector
@@ -69,28 +69,49 @@ class Body:
         return Mesh._of(self.mesh._data.placed(cast("Vector", self.origin), self.rotation))
 
 
+def _two(name: str, given: object, what: str) -> tuple[str, ...]:
+    """Give two names."""
+    names = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
+    if len(names) != 2:
+        raise InputError(f"`{name}` is {given!r}; it must be two {what}")
+    return tuple(text(name, each) for each in names)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Interface:
-    """Two groups of edges of different bodies that may touch, with Coulomb friction, eq. [1] to [3].
+    """Two bodies that may touch, with Coulomb friction, eq. [1] to [3].
+
+    Give ``bodies`` or ``groups``. With neither, it is the contact of all bodies of which no other one is stated.
 
     Parameters
     ----------
-    groups : (str, str)
-        The two groups, as in ``("anvil.top", "hammer.bottom")``. Their nodes face each other in pairs: the two of a pair
-        differ by a gap along one common normal only, and stay a pair during the run. A pair that slips by more than a
-        small part of an edge leaves the range of the method.
+    bodies : (str, str), optional
+        The names of two bodies. The edges that see each other are looked for, from their places and velocities.
+    groups : (str, str), optional
+        A group of edges of each of two bodies, as in ``("anvil.top", "hammer.bottom")``.
     friction : float
         Coefficient of friction μ, 0 without friction. Required but for bars, which have none.
+    matching : bool, optional
+        True: the nodes face each other in pairs, which differ by a gap along one common normal only and stay pairs during the
+        run. A pair that slips by more than a small part of an edge leaves the range of the method. False: surfaces of any
+        nodes, which may slide along each other. By default pairs where the nodes face each other; without ``groups`` only if
+        the bodies slide by less than a tenth of an edge, as far as their velocities tell.
     """
 
-    groups: tuple[str, str] | Sequence[str]
+    groups: tuple[str, str] | Sequence[str] | None = None
     friction: float | None = None
+    bodies: tuple[str, str] | Sequence[str] | None = None
+    matching: bool | None = None
 
     def __post_init__(self) -> None:
-        groups = tuple(self.groups) if isinstance(self.groups, Iterable) and not isinstance(self.groups, str) else (self.groups,)
-        if len(groups) != 2:
-            raise InputError(f"`groups` is {self.groups!r}; it must be two groups of edges, as in ('anvil.top', 'hammer.bottom')")
-        object.__setattr__(self, "groups", tuple(text("groups", group) for group in groups))
+        if self.groups is not None and self.bodies is not None:
+            raise InputError("`groups` stands beside `bodies`, which has the edges looked for; leave one of the two out")
+        if self.groups is not None:
+            object.__setattr__(self, "groups", _two("groups", self.groups, "groups of edges, as in ('anvil.top', 'hammer.bottom')"))
+        if self.bodies is not None:
+            object.__setattr__(self, "bodies", _two("bodies", self.bodies, "names of bodies, as in ('anvil', 'hammer')"))
+        if self.matching is not None:
+            object.__setattr__(self, "matching", flag("matching", self.matching))
         if self.friction is not None:
             object.__setattr__(self, "friction", number("friction", self.friction))
 

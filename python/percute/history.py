@@ -288,7 +288,7 @@ class History(HistoryViews):
     @cached_property
     def contact(self) -> Contact:
         """Contact results at each node, and their resultants; computed on first access."""
-        surfaces = [None] * len(self.problem.obstacles) + [group for each in self.problem.contacts for group in each.groups]
+        surfaces = [None] * len(self.problem.obstacles) + [group for each in self.problem.contacts for group in each.groups or ()]
         return Contact._of(self._data.contact(), self.problem.mesh, surfaces)
 
     @cached_property

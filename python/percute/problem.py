@@ -59,7 +59,8 @@ class Problem(Immutable):
         Several bodies, each with its mesh, its material and its velocity, instead of ``mesh``, ``material`` and
         ``initial_velocity``. The groups of a body are "name.group".
     contacts : sequence of Interface, default: ()
-        Surfaces of different bodies that may touch.
+        Bodies that may touch. With ``bodies``, all that could touch need one with their coefficient of friction: an
+        `Interface` of their own or one of all, ``Interface(friction=0.2)``; bars need none.
     obstacles : sequence of Plane, default: ()
         Planes that the body may touch, a node one with each of its edges.
     supports : sequence of Support, default: ()
@@ -104,17 +105,22 @@ class Problem(Immutable):
             mesh, material, initial_velocity = join(several)
         mesh = instance("mesh", mesh, Mesh)
         self._mesh = mesh
+        between = _contacts(contacts, mesh)
         self._data = _percute.ProblemData(
             mesh._data,
             _materials(material),
             items("obstacles", obstacles, Plane),
-            _contacts(contacts, mesh),
+            between,
             items("supports", supports, Support),
             items("tractions", tractions, Traction),
             items("body_forces", body_forces, BodyForce),
             _field("initial_velocity", initial_velocity, mesh),
             _field("initial_displacement", initial_displacement, mesh),
+            bool(several),
         )
+        if several or between:
+            # Edges that were looked for are groups of the mesh.
+            self._mesh = Mesh._of(self._data.mesh())
 
     @classmethod
     def _of(cls, data: _percute.ProblemData) -> Problem:

@@ -4,12 +4,12 @@ use crate::any::AnyProblem;
 use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
-use percute_core::contact::{Interface, Obstacle};
+use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Support, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, InputError, Problem};
+use percute_core::problem::{Contact, Initial, InputError, Problem};
 use percute_core::simplex::ByDimension;
 use percute_core::{each_dimension, map_dimension};
 use pyo3::prelude::*;
@@ -33,7 +33,9 @@ struct Stated<const D: usize> {
     groups: Vec<Option<String>>,
     materials: Vec<Elastic>,
     obstacles: Vec<Obstacle<D>>,
-    interfaces: Vec<Interface>,
+    contacts: Vec<Contact>,
+    /// Whether all bodies may touch each other.
+    automatic: bool,
     supports: Vec<Support<D>>,
     tractions: Vec<Traction<D>>,
     body_forces: Vec<BodyForce<D>>,
@@ -59,7 +61,8 @@ impl ProblemData {
 
 #[pymethods]
 impl ProblemData {
-    /// Checks and builds; `materials` pairs each group of elements, or none, with its material.
+    /// Checks and builds; `materials` pairs each group of elements, or none, with its material. With `automatic` all
+    /// bodies may touch each other.
     #[new]
     #[allow(clippy::too_many_arguments)]
     fn build(
@@ -73,12 +76,13 @@ impl ProblemData {
         body_forces: Objects<'_>,
         velocity: Field<'_>,
         displacement: Field<'_>,
+        automatic: bool,
     ) -> PyResult<Self> {
         let lists = [&obstacles, &contacts, &supports, &tractions, &body_forces];
         let fields = [&velocity, &displacement];
         let problem = match &mesh.mesh {
-            ByDimension::Bar(mesh) => ByDimension::Bar(build(py, mesh, &materials, lists, fields)?),
-            ByDimension::Plane(mesh) => ByDimension::Plane(build(py, mesh, &materials, lists, fields)?),
+            ByDimension::Bar(mesh) => ByDimension::Bar(build(py, mesh, &materials, lists, fields, automatic)?),
+            ByDimension::Plane(mesh) => ByDimension::Plane(build(py, mesh, &materials, lists, fields, automatic)?),
         };
         Ok(Self::new(problem))
     }
@@ -193,6 +197,7 @@ fn build<const D: usize, const N: usize>(
     materials: &[(Option<String>, Bound<'_, PyAny>)],
     lists: [&Objects<'_>; 5],
     fields: [&Field<'_>; 2],
+    automatic: bool,
 ) -> PyResult<Arc<Problem<D, N>>> {
     let law = |(group, law): &(Option<String>, Bound<'_, PyAny>)| {
         let name = group.as_ref().map_or_else(|| "material".to_string(), |group| format!("material[{group:?}]"));
@@ -202,7 +207,8 @@ fn build<const D: usize, const N: usize>(
         groups: materials.iter().map(|(group, _)| group.clone()).collect(),
         materials: materials.iter().map(law).collect::<PyResult<_>>()?,
         obstacles: each(lists[0], "obstacles", statement::plane)?,
-        interfaces: each(lists[1], "contacts", statement::contact::<D>)?,
+        contacts: each(lists[1], "contacts", statement::contact::<D>)?,
+        automatic,
         supports: each(lists[2], "supports", statement::support)?,
         tractions: each(lists[3], "tractions", statement::traction)?,
         body_forces: each(lists[4], "body_forces", statement::body_force)?,
@@ -224,7 +230,10 @@ fn assemble<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: Stated<D>
         };
     }
     builder = stated.obstacles.into_iter().fold(builder, |b, plane| b.obstacle(plane));
-    builder = stated.interfaces.into_iter().fold(builder, |b, interface| b.interface(interface));
+    builder = stated.contacts.into_iter().fold(builder, |b, contact| b.contact(contact));
+    if stated.automatic {
+        builder = builder.automatic_contact();
+    }
     builder = stated.supports.into_iter().fold(builder, |b, support| b.support(support));
     builder = stated.tractions.into_iter().fold(builder, |b, traction| b.traction(traction));
     builder = stated.body_forces.into_iter().fold(builder, |b, force| b.body_force(force));

@@ -4,6 +4,7 @@ use crate::errors;
 use percute_core::contact::{Interface, Obstacle, ObstacleError, Plane};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
+use percute_core::problem::{Between, Contact};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -73,11 +74,12 @@ pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyR
     made.map_err(|error: ObstacleError| errors::input(py, format!("`{name}`: {error}")))
 }
 
-/// Two surfaces of different bodies.
-pub(crate) fn contact<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Interface> {
-    let [first, second] = attribute::<[String; 2]>(given, "groups")?;
+/// Contact between bodies.
+pub(crate) fn contact<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Contact> {
+    let [bodies, groups] = [attribute::<Option<[String; 2]>>(given, "bodies")?, attribute(given, "groups")?];
+    let between = bodies.map(Between::Bodies).or(groups.map(Between::Groups)).unwrap_or(Between::All);
     let friction = attribute::<Option<f64>>(given, "friction")?.unwrap_or(0.0);
-    let made = Interface::matching::<D>(first, second, friction);
+    let made = Contact::new::<D>(between, friction, attribute(given, "matching")?);
     made.map_err(|error: ObstacleError| errors::input(given.py(), format!("`{name}`: {error}")))
 }
 
@@ -193,6 +195,9 @@ pub(crate) fn contact_arguments<'py>(py: Python<'py>, interface: &Interface) -> 
     let arguments = PyDict::new(py);
     arguments.set_item("groups", PyTuple::new(py, interface.groups())?)?;
     arguments.set_item("friction", interface.law().friction())?;
+    if !interface.is_matching() {
+        arguments.set_item("matching", false)?;
+    }
     Ok(arguments)
 }
 

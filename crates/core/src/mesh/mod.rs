@@ -235,6 +235,28 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         part.iter().map(|first| number[first.index()]).collect()
     }
 
+    /// The names of the parts: of the first group that has all elements of a part and no others, or "body 0".
+    #[must_use]
+    pub fn part_names(&self) -> Vec<String> {
+        let of_element = self.part_of_elements();
+        let mut sizes = vec![0; self.parts];
+        of_element.iter().for_each(|&part| sizes[part] += 1);
+        let name = |(part, size): (usize, &usize)| {
+            let whole = |members: &Vec<ElementId>| {
+                members.len() == *size && members.iter().all(|element| of_element[element.index()] == part)
+            };
+            let found = self.element_groups.iter().find(|(_, members)| whole(members));
+            found.map_or_else(|| format!("body {part}"), |(name, _)| name.clone())
+        };
+        sizes.iter().enumerate().map(name).collect()
+    }
+
+    /// The same mesh with more groups of facets.
+    pub(crate) fn with_facet_groups(mut self, groups: impl IntoIterator<Item = (String, Vec<FacetId>)>) -> Self {
+        self.facet_groups.extend(groups);
+        self
+    }
+
     /// For each element the number of its part, likewise.
     #[must_use]
     pub fn part_of_elements(&self) -> Vec<usize> {

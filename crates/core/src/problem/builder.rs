@@ -1,8 +1,10 @@
 //! From what the user states to a checked problem.
 
+use super::bodies::{Contact, Start};
 use super::boundary::{self, Supports};
+use super::contacts::{self, Choice, Surfaces};
 use super::sides::Bodies;
-use super::{Cause, InputError, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
+use super::{Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -55,6 +57,8 @@ pub struct Builder<const D: usize, const N: usize> {
     displacement: Initial<D>,
     velocity: Initial<D>,
     obstacles: Vec<Obstacle<D>>,
+    contacts: Vec<Contact>,
+    automatic: bool,
 }
 
 impl<const D: usize, const N: usize> Builder<D, N> {
@@ -65,6 +69,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             displacement: Initial::Uniform([0.0; D]),
             velocity: Initial::Uniform([0.0; D]),
             obstacles: Vec::new(),
+            contacts: Vec::new(),
+            automatic: false,
         }
     }
 
@@ -132,8 +138,22 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
     /// Adds two surfaces of different bodies that may touch.
     #[must_use]
-    pub fn interface(mut self, interface: Interface) -> Self {
-        self.stated.interfaces.push(interface);
+    pub fn interface(self, interface: Interface) -> Self {
+        self.contact(interface.into())
+    }
+
+    /// Adds contact between bodies.
+    #[must_use]
+    pub fn contact(mut self, contact: Contact) -> Self {
+        self.contacts.push(contact);
+        self
+    }
+
+    /// All bodies that could touch each other may do so, and not only those of which contact is stated; plane bodies
+    /// need a contact between all for its coefficient of friction.
+    #[must_use]
+    pub fn automatic_contact(mut self) -> Self {
+        self.automatic = true;
         self
     }
 
@@ -153,7 +173,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
-    pub fn build(self) -> Result<Problem<D, N>, InputError> {
+    pub fn build(mut self) -> Result<Problem<D, N>, InputError> {
         self.check_counts()?;
         let mesh = &self.mesh;
         let (materials, element_material) = materials(mesh, &self.stated.materials)?;
@@ -161,11 +181,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
         let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
 
-        let mut mass = vec![0.0; mesh.node_count()];
-        for e in (0..mesh.element_count()).map(ElementId::new) {
-            let share = materials[usize::from(element_material[e.index()])].density() * volume(e) / N as f64;
-            mesh.cells()[e.index()].iter().for_each(|node| mass[node.index()] += share);
-        }
+        let density = |e: ElementId| materials[usize::from(element_material[e.index()])].density();
+        let mass = lumped_mass(mesh, |e| density(e) * volume(e));
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
@@ -176,15 +193,18 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
+        let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
         let bodies = Bodies {
             mesh,
-            // A search over all elements, which planes alone do not need.
-            body: if self.stated.interfaces.is_empty() { Vec::new() } else { mesh.part_of_nodes() },
+            body: Vec::new(),
             held: boundary::held(mesh, &self.stated),
             fixed: fixed(mesh.node_count(), &prescribed),
-            law: &|f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])],
+            law: &of_facet,
         };
-        let surface = contact_surface(&bodies, self.obstacles, &self.stated.interfaces, &initial_displacement)?;
+        let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
+        let stated = contacts::Stated { contacts: &self.contacts, automatic: self.automatic };
+        let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, &stated, &start)?;
+        self.stated.interfaces = interfaces;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let mut problem = Problem {
@@ -201,13 +221,24 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             body_loads,
             element_body_loads,
             surface,
+            contacts: places,
             stated: self.stated,
-            mesh: self.mesh,
+            mesh: self.mesh.with_facet_groups(groups),
         };
         start_with_supports(&mut problem)?;
         check_start_of_contact(&problem)?;
         Ok(problem)
     }
+}
+
+/// The mass of each node (kg), from those of the elements.
+fn lumped_mass<const D: usize, const N: usize>(mesh: &Mesh<D, N>, of_element: impl Fn(ElementId) -> f64) -> Vec<f64> {
+    let mut mass = vec![0.0; mesh.node_count()];
+    for e in (0..mesh.element_count()).map(ElementId::new) {
+        let share = of_element(e) / N as f64;
+        mesh.cells()[e.index()].iter().for_each(|node| mass[node.index()] += share);
+    }
+    mass
 }
 
 /// Which components of each node are prescribed.
@@ -217,13 +248,42 @@ fn fixed<const D: usize>(nodes: usize, prescribed: &[PrescribedComponent]) -> Ve
     fixed
 }
 
+/// All contact of a problem.
+struct AllContact<const D: usize> {
+    surface: ContactSurface<D>,
+    interfaces: Vec<Interface>,
+    /// Where each interface is stated.
+    places: Vec<Place>,
+    /// Groups of facets of the interfaces that the mesh does not have.
+    groups: Vec<(String, Vec<FacetId>)>,
+}
+
+/// Finds the surfaces that may touch, and makes the contact surface of them.
+fn all_contact<const D: usize, const N: usize>(
+    bodies: Bodies<'_, D, N>,
+    obstacles: Vec<Obstacle<D>>,
+    stated: &contacts::Stated<'_>,
+    start: &Start<'_, D>,
+) -> Result<AllContact<D>, InputError> {
+    let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, stated, start)?;
+    let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
+    // A search over all elements, which planes alone do not need.
+    let body = if choices.is_empty() { Vec::new() } else { bodies.mesh.part_of_nodes() };
+    let Bodies { mesh, held, fixed, law, .. } = bodies;
+    let bodies = Bodies { mesh: with_groups.as_ref().unwrap_or(mesh), body, held, fixed, law: &|facet| law(facet) };
+    let (surface, interfaces) = contact_surface(&bodies, obstacles, &choices, start.displacement)?;
+    groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
+    let places = choices.into_iter().map(|(_, place)| place).collect();
+    Ok(AllContact { surface, interfaces, places, groups })
+}
+
 /// The planes with the facets that face them, then the surfaces of different bodies that may touch.
 fn contact_surface<const D: usize, const N: usize>(
     bodies: &Bodies<'_, D, N>,
     obstacles: Vec<Obstacle<D>>,
-    interfaces: &[Interface],
+    choices: &[(Choice, Place)],
     displacement: &[[f64; D]],
-) -> Result<ContactSurface<D>, InputError> {
+) -> Result<(ContactSurface<D>, Vec<Interface>), InputError> {
     let mut surface = ContactSurface::default();
     for (index, obstacle) in obstacles.into_iter().enumerate() {
         let Some(plane) = obstacle.as_plane().cloned() else { continue };
@@ -231,15 +291,29 @@ fn contact_surface<const D: usize, const N: usize>(
         let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
         candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
     }
-    for (index, interface) in interfaces.iter().enumerate() {
-        let added = if interface.is_matching() {
-            pairs::add(&mut surface, bodies, interface)
-        } else {
-            sliding::add(&mut surface, bodies, interface, displacement)
-        };
-        added.map_err(|cause| cause.at("contact", Some(index), "groups"))?;
+    let mut used = Vec::new();
+    for (choice, place) in choices {
+        let added = add_interface(&mut surface, bodies, choice, displacement);
+        used.push(added.map_err(|cause| InputError { place: *place, cause })?);
     }
-    Ok(surface)
+    Ok((surface, used))
+}
+
+/// Adds the first one of two ways of contact that the surfaces allow.
+fn add_interface<const D: usize, const N: usize>(
+    surface: &mut ContactSurface<D>,
+    bodies: &Bodies<'_, D, N>,
+    Choice { first, otherwise }: &Choice,
+    displacement: &[[f64; D]],
+) -> Result<Interface, Cause> {
+    let mut add = |interface: &Interface| match interface.is_matching() {
+        true => pairs::add(surface, bodies, interface),
+        false => sliding::add(surface, bodies, interface, displacement),
+    };
+    match (add(first), otherwise) {
+        (Err(Cause::NotMatching { .. } | Cause::EdgesDiffer { .. }), Some(other)) => add(other).map(|()| other.clone()),
+        (added, _) => added.map(|()| first.clone()),
+    }
 }
 
 /// One material for each element.

@@ -211,6 +211,44 @@ pub enum Cause {
         /// The coefficient that this obstacle must stay below, if there is one.
         limit: Option<f64>,
     },
+    /// A name of no body.
+    #[error("there is no body \"{name}\"; there are {}", quoted(.known))]
+    UnknownBody { name: String, known: Vec<String> },
+    /// Contact of one body.
+    #[error("is \"{name}\" twice; a body cannot touch itself: name two bodies")]
+    OneBody { name: String },
+    /// Two contacts of the same bodies.
+    #[error("contact of \"{}\" and \"{}\" is already stated; leave one of the two out", .bodies[0], .bodies[1])]
+    SamePair { bodies: [String; 2] },
+    /// Two contacts of all bodies.
+    #[error("contact of all other bodies is already stated; name two bodies by `bodies`, or leave one of the two out")]
+    TwoDefaults,
+    /// Bodies that could touch, and no coefficient of friction.
+    #[error(
+        "\"{}\" and \"{}\" could touch each other, but their coefficient of friction is missing: state a contact with \
+         `bodies` and `friction` for the two, or one with `friction` alone for all bodies; 0 is without friction",
+        .bodies[0], .bodies[1]
+    )]
+    NoFriction { bodies: [String; 2] },
+    /// Bodies that no straight line separates.
+    #[error(
+        "no straight line separates \"{}\" and \"{}\": one reaches around the other, and the surfaces that may touch \
+         cannot be found; name them by `groups`, for each direction two of their own", .bodies[0], .bodies[1]
+    )]
+    Interlocked { bodies: [String; 2] },
+    /// Bodies of which no edges see each other.
+    #[error(
+        "no free edges of \"{}\" and \"{}\" see each other: another body, a support or a load is on or between them, \
+         or they pass each other; leave the contact out, or name the surfaces by `groups`", .bodies[0], .bodies[1]
+    )]
+    NothingSees { bodies: [String; 2] },
+    /// An edge that could touch two bodies.
+    #[error(
+        "the {} of \"{}\" or \"{}\" could touch a third body as well, and a node can touch one only; name the surfaces \
+         by `groups` that share no node, or give the bodies a gap of more than an edge", facet(.nodes), .bodies[0],
+        .bodies[1]
+    )]
+    Contested { nodes: Vec<usize>, bodies: Box<[String; 2]> },
     /// An interface of a body with itself.
     #[error(
         "\"{}\" and \"{}\" belong to one body, which cannot touch itself; name groups of two bodies",

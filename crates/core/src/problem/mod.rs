@@ -1,8 +1,10 @@
 //! The reference problem, eq. \[3\]–\[11\], stated and checked.
 
+mod bodies;
 mod boundary;
 mod builder;
 mod candidates;
+mod contacts;
 mod error;
 mod pairs;
 mod plausibility;
@@ -10,11 +12,12 @@ mod renumber;
 mod sides;
 mod sliding;
 
+pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub use plausibility::{PlausibilityWarning, cause_of_refused_start, plausibility_warnings};
 
-use crate::contact::{ContactSurface, Facing, Obstacle};
+use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
@@ -69,6 +72,8 @@ pub struct Problem<const D: usize, const N: usize> {
     body_loads: Vec<BodyLoad<D>>,
     element_body_loads: Vec<Vec<u16>>,
     surface: ContactSurface<D>,
+    /// Where each of the interfaces is stated.
+    contacts: Vec<Place>,
 }
 
 /// A problem on a mesh of bars.
@@ -241,13 +246,19 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         obstacle.checked_sub(planes).map(|after| planes + (after ^ 1))
     }
 
+    /// The two surfaces that may touch of which an obstacle is one; none for a plane.
+    #[must_use]
+    pub fn interface_of(&self, obstacle: usize) -> Option<&Interface> {
+        obstacle.checked_sub(self.planes()).map(|after| &self.stated.interfaces[after / 2])
+    }
+
     /// Where an obstacle is stated: a plane, or two surfaces of different bodies.
     #[must_use]
     pub fn place_of_obstacle(&self, obstacle: usize) -> Place {
         match obstacle.checked_sub(self.planes()) {
             None => Place { table: "obstacle", index: Some(obstacle), key: "point" },
             // Each of the two is an obstacle of the other.
-            Some(after) => Place { table: "contact", index: Some(after / 2), key: "groups" },
+            Some(after) => self.contacts[after / 2],
         }
     }
 

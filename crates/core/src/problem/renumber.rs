@@ -43,6 +43,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
             traction_tables: self.traction_tables.clone(),
             body_loads: self.body_loads.iter().map(body_load).collect(),
             element_body_loads: self.element_body_loads.first().map_or_else(Vec::new, body_forces),
+            contacts: self.contacts.clone(),
             surface: self.surface.renumbered(&self.mesh, &new),
             mesh,
         }

@@ -1,29 +1,47 @@
-//! `[[contact]]`: surfaces of two bodies that may touch.
+//! `[[contact]]`: bodies, or surfaces of them, that may touch.
 
 use super::source::CaseError;
 use super::table::Table;
-use percute_core::contact::{Interface, ObstacleError};
+use super::value::Value;
+use percute_core::contact::ObstacleError;
+use percute_core::problem::{Between, Contact};
 use percute_core::simplex::Shape;
 
 const GROUPS: &str = "the groups of edges of two bodies that may touch, such as [\"anvil.top\", \"hammer.bottom\"]";
+const BODIES: &str = "the names of two bodies that may touch, such as [\"anvil\", \"hammer\"]";
 
-/// Reads all interfaces.
-pub(super) fn read<const D: usize>(root: &Table<'_>, shape: Shape) -> Result<Vec<Interface>, CaseError> {
+/// Reads all contacts.
+pub(super) fn read<const D: usize>(root: &Table<'_>, shape: Shape) -> Result<Vec<Contact>, CaseError> {
     root.tables("contact")?.iter().map(|table| one::<D>(table, shape)).collect()
 }
 
-fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Interface, CaseError> {
-    table.only(&["groups", "friction"])?;
-    let groups = table.require("groups", GROUPS)?;
-    let names = groups.list("two groups of edges")?;
-    let [first, second] = names.as_slice() else { return Err(groups.must_be(GROUPS)) };
-    let [first, second] = [first, second].map(|name| name.text("the name of a group of edges"));
+fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Contact, CaseError> {
+    table.only(&["bodies", "groups", "friction", "matching"])?;
+    let between = match (table.get("bodies"), table.get("groups")) {
+        (Some(_), Some(groups)) => {
+            return Err(
+                groups.error("stands beside `bodies`, which has the edges looked for; leave one of the two out")
+            );
+        }
+        (Some(bodies), None) => Between::Bodies(two(&bodies, BODIES)?),
+        (None, Some(groups)) => Between::Groups(two(&groups, GROUPS)?),
+        (None, None) => Between::All,
+    };
     let friction = super::obstacle::friction(table, shape)?;
-    Interface::matching::<D>(first?, second?, friction).map_err(|error| {
+    let matching = table.get("matching").map(|value| value.flag()).transpose()?;
+    Contact::new::<D>(between, friction, matching).map_err(|error| {
         let key = match error {
             ObstacleError::Friction { .. } | ObstacleError::FrictionInOneDimension { .. } => "friction",
             ObstacleError::Normal { .. } | ObstacleError::Point { .. } => "groups",
         };
         table.get(key).map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
     })
+}
+
+/// Two names.
+fn two(value: &Value<'_>, needed: &str) -> Result<[String; 2], CaseError> {
+    let names = value.list("two names")?;
+    let [first, second] = names.as_slice() else { return Err(value.must_be(needed)) };
+    let name = |value: &Value<'_>| value.text("a name").map(str::to_string);
+    Ok([name(first)?, name(second)?])
 }

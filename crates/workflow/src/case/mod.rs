@@ -14,7 +14,8 @@
 //!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
 //! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
 //! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
-//! - `[[contact]]`: `groups` of two bodies whose nodes face each other in pairs, `friction` (not for bars);
+//! - `[[contact]]`: `bodies`, two names, or `groups`, a group of edges of each, or neither for all other bodies;
+//!   `friction` (not for bars), `matching`;
 //! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
 //!   one component, else a list in the order of `components`;
 //! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;

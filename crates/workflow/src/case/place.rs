@@ -29,6 +29,7 @@ fn in_bodies(root: &Table<'_>, place: Place) -> Option<At> {
     let of = |key: &str| bodies.iter().find_map(|body| Some(body.get(key)?.at));
     match place.table {
         "mesh" => Some(first),
+        "contact" if place.index.is_none() => Some(first),
         "material" => Some(bodies.get(place.index.unwrap_or(0))?.get("material")?.at),
         "initial" => Some(of("velocity").unwrap_or(first)),
         _ => None,

@@ -24,7 +24,7 @@ pub(super) fn of_bodies<const D: usize, const N: usize>(
     bodies: Bodies<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
     let Bodies { mesh, materials, velocity, .. } = bodies;
-    let mut builder = Problem::builder(mesh).initial_velocity(Initial::Nodal(velocity));
+    let mut builder = Problem::builder(mesh).initial_velocity(Initial::Nodal(velocity)).automatic_contact();
     for (body, law) in materials {
         builder = builder.material_of(body, law);
     }
@@ -86,8 +86,8 @@ fn surroundings<const D: usize, const N: usize>(
     mut builder: Builder<D, N>,
 ) -> Result<Builder<D, N>, CaseError> {
     let shape = builder.mesh().simplex().shape();
-    for interface in contact::read::<D>(root, shape)? {
-        builder = builder.interface(interface);
+    for contact in contact::read::<D>(root, shape)? {
+        builder = builder.contact(contact);
     }
     for plane in obstacle::read(root, shape)? {
         builder = builder.obstacle(plane);

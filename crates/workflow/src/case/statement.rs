@@ -149,6 +149,10 @@ fn interface(text: &mut Writer, interface: &Interface) {
     let [first, second] = interface.groups().map(quoted);
     text.key("groups", format!("[{first}, {second}]"));
     text.number("friction", interface.law().friction());
+    // Groups whose nodes face each other are pairs.
+    if !interface.is_matching() {
+        text.key("matching", "false");
+    }
 }
 
 fn support<const D: usize>(text: &mut Writer, support: &Support<D>) {

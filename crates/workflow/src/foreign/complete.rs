@@ -59,14 +59,23 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// A node that may touch two planes; steps that cannot be read; forces on two nodes of different bodies that are
-    /// not opposite; fewer than three instants of which the last is not known.
+    /// A node that may touch two planes; surfaces that slide along each other; steps that cannot be read; forces on two
+    /// nodes of different bodies that are not opposite; fewer than three instants of which the last is not known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
         if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
                  plane a `group` so that no node lies in two, or simulate with percute",
                 contact.node.index()
+            );
+            return Err(told.into());
+        }
+        if let Some(interface) = problem.statement().interfaces.iter().find(|interface| !interface.is_matching()) {
+            let [first, second] = interface.groups();
+            let told = format!(
+                "histories of other programs are read for bodies whose nodes face each other in pairs, and those of \
+                 \"{first}\" and \"{second}\" do not, or slide; give both the same nodes and state the contact as \
+                 matching, or simulate with percute"
             );
             return Err(told.into());
         }

@@ -1,6 +1,7 @@
 //! What a case is about: materials, and planes and other bodies with their gaps, so that a slip shows before the run.
 
 use crate::message::{counted, trimmed};
+use percute_core::contact::Interface;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use serde::Serialize;
@@ -21,6 +22,8 @@ pub struct MaterialInfo {
 pub struct PlaneInfo {
     /// The groups of edges of two bodies; none for a plane.
     pub groups: Option<[String; 2]>,
+    /// Whether their nodes face each other in pairs; none for a plane.
+    pub matching: Option<bool>,
     /// Smallest gap of the nodes that may touch it (m).
     pub gap: f64,
     pub contact_nodes: usize,
@@ -42,14 +45,14 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
 
 /// The planes, in their order, and the surfaces of different bodies.
 pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
+    let starts = problem.starts_of_contact();
     let told = |obstacle: usize| {
         let surface = problem.surface().nodes().iter().enumerate();
         let mine = surface.filter(|(_, node)| node.obstacle == obstacle && node.free);
-        let speeds = mine.clone().map(|(at, _)| -problem.start_of_contact(at).1);
-        let place = problem.place_of_obstacle(obstacle);
-        let interface = place.index.filter(|_| place.table == "contact").map(|at| &problem.statement().interfaces[at]);
+        let speeds = mine.clone().map(|(at, _)| -starts[at].1);
         PlaneInfo {
-            groups: interface.map(|interface| interface.groups().map(str::to_string)),
+            groups: problem.interface_of(obstacle).map(|interface| interface.groups().map(str::to_string)),
+            matching: problem.interface_of(obstacle).map(Interface::is_matching),
             gap: problem.initial_gap(obstacle),
             contact_nodes: mine.count(),
             approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
@@ -79,8 +82,11 @@ impl PlaneInfo {
         match &self.groups {
             None => ("plane", format!("gap {gap} m{when}, {} may touch", counted(self.contact_nodes, "node"))),
             Some([first, second]) => {
-                let pairs = counted(self.contact_nodes, "pair");
-                ("contact", format!("\"{first}\" with \"{second}\": gap {gap} m{when}, {pairs} of nodes may touch"))
+                let nodes = match self.matching {
+                    Some(false) => format!("{} of \"{first}\" may slide", counted(self.contact_nodes, "node")),
+                    _ => format!("{} of nodes may touch", counted(self.contact_nodes, "pair")),
+                };
+                ("contact", format!("\"{first}\" with \"{second}\": gap {gap} m{when}, {nodes}"))
             }
         }
     }

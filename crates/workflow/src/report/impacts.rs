@@ -1,7 +1,6 @@
 //! What contact did to several bodies: the velocity of each before and after, and the rebound at each interface.
 
 use percute_core::contact::{ContactResults, Frame};
-use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use serde::Serialize;
 
@@ -62,7 +61,7 @@ impl Impacts {
         }
         let centres = Centres::new(problem, contact);
         let last = contact.instants.len().saturating_sub(1);
-        let names = names(problem.mesh());
+        let names = problem.mesh().part_names();
         let bodies = names.into_iter().enumerate().map(|(body, name)| BodyMotion {
             name,
             mass: centres.mass[body],
@@ -188,19 +187,4 @@ fn rebound<const D: usize, const N: usize>(
         time_in_contact: time(last + 1) - time(first + 1),
         ended,
     }
-}
-
-/// The names of the bodies: of the first group that has all elements of the body and no others.
-fn names<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<String> {
-    let of_element = mesh.part_of_elements();
-    let mut sizes = vec![0; mesh.parts()];
-    of_element.iter().for_each(|&body| sizes[body] += 1);
-    let name = |(body, size): (usize, &usize)| {
-        let whole = |members: &Vec<percute_core::ids::ElementId>| {
-            members.len() == *size && members.iter().all(|element| of_element[element.index()] == body)
-        };
-        let found = mesh.element_groups().iter().find(|(_, members)| whole(members));
-        found.map_or_else(|| format!("body {body}"), |(name, _)| name.clone())
-    };
-    sizes.iter().enumerate().map(name).collect()
 }

@@ -63,8 +63,8 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     let moves = |a: usize| bodies.iter().any(|&b| velocity[a] != velocity[b]);
     let alone = *bodies.iter().find(|&&a| !touches[a] && moves(a))?;
     let message = format!(
-        "the body of node {alone} moves against others, but no contact with them is stated: it moves through them; \
-         give the groups of edges that may touch"
+        "the body of node {alone} moves against others, but no contact with them is stated: the run ends with an error \
+         where it enters one; give the groups of edges that may touch"
     );
     Some(plausibility_warning(
         at("contact", None, ""),
@@ -293,8 +293,8 @@ fn far<const D: usize, const N: usize>(
         _ => ("far_body", "the other body is", "is its place in metres?"),
     };
     let message = format!(
-        "{subject} {gap} m away from a body of {size} m, which takes {time} s to reach it: {point} Start nearer to save \
-         the steps before contact"
+        "{subject} {gap} m away from a body of {size} m, which takes {time} s to reach it: {point} Start nearer to \
+         save the steps before contact"
     );
     Some(plausibility_warning(problem.place_of_obstacle(obstacle), name, format!("a gap of {gap} m"), message))
 }

@@ -1,0 +1,198 @@
+//! The surfaces of bodies that could touch each other, from their shapes and velocities.
+//!
+//! Each two bodies are looked at along one direction, when nothing else has met either of them: the one in which they
+//! meet with their velocities at the start or, if they do not, in which they are furthest apart. Edges see the other
+//! body if nothing else is between.
+
+mod approach;
+mod contact;
+mod facing;
+mod outline;
+#[cfg(test)]
+mod tests;
+
+pub use contact::{Between, Contact};
+
+use super::Cause;
+use crate::ids::{FacetId, NodeId};
+use approach::{Approach, approach, dot};
+use facing::{Facing, View};
+use outline::{Edge, Outline, Vector};
+pub(super) use outline::{Start, outlines};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Surfaces reach beyond what faces the other body at first by this part of the smaller one of the two, and by twice
+/// the way that bodies slide while they touch.
+const BEYOND: f64 = 0.5;
+/// Bodies touch for about so many passages of a wave through both: there and back.
+const PASSAGES: f64 = 2.0;
+
+/// Two bodies, by their numbers, whose surfaces are wanted; `named` if the user named them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub(super) pair: [usize; 2],
+    pub(super) named: bool,
+}
+
+/// The surfaces of two bodies that could touch.
+#[derive(Debug)]
+pub(super) struct Found {
+    /// Its place among the wanted ones.
+    pub(super) wanted: usize,
+    pub(super) pair: [usize; 2],
+    /// The facets that see the other body, ascending, and those beside them.
+    pub(super) seeing: [Vec<FacetId>; 2],
+    pub(super) beside: [Vec<FacetId>; 2],
+    /// How far they slide along each other while they touch, with their velocities at the start (m).
+    pub(super) slide: f64,
+}
+
+/// Two bodies in the view in which they could meet.
+struct Candidates<'w> {
+    at: usize,
+    wanted: &'w Wanted,
+    gap: f64,
+    slide: f64,
+    sides: [Facing; 2],
+}
+
+/// The surfaces of all wanted pairs; none for a pair that is not named and does not see each other. `held` says which
+/// components of a node are prescribed, `taken` are nodes of other surfaces.
+///
+/// # Errors
+/// What is wrong with a wanted pair, by its place.
+pub(super) fn find(
+    outlines: &[Outline],
+    wanted: &[Wanted],
+    held: impl Fn(NodeId) -> [bool; 2],
+    taken: &BTreeSet<NodeId>,
+) -> Result<Vec<Found>, (usize, Cause)> {
+    let ways = Ways::new(outlines);
+    let held = |edge: &Edge, normal: &Vector| {
+        edge.nodes.iter().any(|&node| (0..2).any(|c| held(node)[c] && normal[c].abs() > super::candidates::ALIGNED))
+    };
+    let mut all = Vec::new();
+    for (at, one) in wanted.iter().enumerate() {
+        let names = || one.pair.map(|body| outlines[body].name.clone());
+        let Some((normal, time, way)) = ways.view(one.pair) else {
+            return Err((at, Cause::Interlocked { bodies: names() }));
+        };
+        let sides = View::new(outlines, time, normal).facing(one.pair, held);
+        if sides.iter().any(|side| side.seeing.is_empty()) {
+            if one.named {
+                return Err((at, Cause::NothingSees { bodies: names() }));
+            }
+            continue;
+        }
+        let slide = slide(one.pair.map(|body| &outlines[body]), &normal);
+        all.push(Candidates { at, wanted: one, gap: way.gap, slide, sides });
+    }
+    all.sort_by(|a, b| a.gap.total_cmp(&b.gap));
+    claimed(outlines, all, taken)
+}
+
+/// How far two bodies slide along each other while they touch (m).
+fn slide([first, second]: [&Outline; 2], normal: &Vector) -> f64 {
+    let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
+    dot(&relative, &[-normal[1], normal[0]]).abs() * PASSAGES * (first.passage + second.passage)
+}
+
+impl Candidates<'_> {
+    /// How far surfaces reach beyond what faces the other body at first (m).
+    fn room(&self, outlines: &[Outline]) -> f64 {
+        let lengths = [0, 1].map(|side| {
+            let edges = &outlines[self.wanted.pair[side]].edges;
+            self.sides[side].seeing.iter().map(|&(at, _)| length(&edges[at])).sum::<f64>()
+        });
+        BEYOND * lengths[0].min(lengths[1]) + 2.0 * self.slide
+    }
+}
+
+fn length(edge: &Edge) -> f64 {
+    let [a, b] = edge.ends;
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Gives each node to one pair: where surfaces of several see each other, to the nearest; those beside get the
+/// rest.
+fn claimed(
+    outlines: &[Outline],
+    mut all: Vec<Candidates<'_>>,
+    taken: &BTreeSet<NodeId>,
+) -> Result<Vec<Found>, (usize, Cause)> {
+    let mut owner: BTreeMap<NodeId, usize> = taken.iter().map(|&node| (node, usize::MAX)).collect();
+    for (k, Candidates { at: place, wanted, sides, .. }) in all.iter_mut().enumerate() {
+        for (side, &body) in sides.iter_mut().zip(&wanted.pair) {
+            let edges = &outlines[body].edges;
+            let other = |at: usize| edges[at].nodes.iter().find(|node| owner.get(node).is_some_and(|&of| of != k));
+            // Two bodies that are both about to touch an edge would need a node at two surfaces.
+            let contested = |&&(at, distance): &&(usize, f64)| distance < length(&edges[at]) && other(at).is_some();
+            if let Some(&(at, _)) = side.seeing.iter().find(contested) {
+                let bodies = Box::new(wanted.pair.map(|body| outlines[body].name.clone()));
+                let nodes = edges[at].nodes.iter().map(|node| node.index()).collect();
+                return Err((*place, Cause::Contested { nodes, bodies }));
+            }
+            side.seeing.retain(|&(at, _)| other(at).is_none());
+            owner.extend(side.seeing.iter().flat_map(|&(at, _)| &edges[at].nodes).map(|&node| (node, k)));
+        }
+    }
+    let mut found = Vec::new();
+    for (k, candidates) in all.iter().enumerate() {
+        let (room, Candidates { at, wanted, slide, sides, .. }) = (candidates.room(outlines), candidates);
+        let beside = [0, 1].map(|side| {
+            let edges = &outlines[wanted.pair[side]].edges;
+            let near = sides[side].beside.iter().filter(|(_, aside)| *aside <= room).map(|&(at, _)| &edges[at]);
+            let mut chosen = Vec::new();
+            for edge in near {
+                if edge.nodes.iter().all(|node| owner.get(node).is_none_or(|&of| of == k)) {
+                    owner.extend(edge.nodes.iter().map(|&node| (node, k)));
+                    chosen.push(edge.facet);
+                }
+            }
+            chosen.sort_unstable();
+            chosen
+        });
+        let seeing = [0, 1].map(|side| {
+            let edges = &outlines[wanted.pair[side]].edges;
+            let mut facets: Vec<FacetId> = sides[side].seeing.iter().map(|&(at, _)| edges[at].facet).collect();
+            facets.sort_unstable();
+            facets
+        });
+        if seeing.iter().all(|facets| !facets.is_empty()) {
+            found.push(Found { wanted: *at, pair: wanted.pair, seeing, beside, slide: *slide });
+        }
+    }
+    found.sort_by_key(|found| found.wanted);
+    Ok(found)
+}
+
+/// How all bodies come together.
+struct Ways {
+    of_pair: BTreeMap<[usize; 2], Option<Approach>>,
+    /// When each body first meets another one (s).
+    first: Vec<f64>,
+}
+
+impl Ways {
+    fn new(outlines: &[Outline]) -> Self {
+        let (mut of_pair, mut first) = (BTreeMap::new(), vec![f64::INFINITY; outlines.len()]);
+        for a in 0..outlines.len() {
+            for b in a + 1..outlines.len() {
+                let way = approach(&outlines[a], &outlines[b]);
+                if let Some(Approach { meeting: Some((_, time)), .. }) = way {
+                    [a, b].into_iter().for_each(|body| first[body] = f64::min(first[body], time));
+                }
+                of_pair.insert([a, b], way);
+            }
+        }
+        Self { of_pair, first }
+    }
+
+    /// The direction and the time (s) at which to look at two bodies; none if no straight line separates them.
+    fn view(&self, [a, b]: [usize; 2]) -> Option<(Vector, f64, &Approach)> {
+        let way = self.of_pair.get(&[a.min(b), a.max(b)])?.as_ref()?;
+        let reliable = |time: f64| time <= self.first[a] && time <= self.first[b];
+        let (normal, time) = way.meeting.filter(|(_, time)| reliable(*time)).unwrap_or((way.normal, 0.0));
+        Some((if a < b { normal } else { normal.map(|x| -x) }, time, way))
+    }
+}

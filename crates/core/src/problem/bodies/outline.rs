@@ -1,0 +1,124 @@
+//! The outer edges of the bodies of a mesh, in the plane: a bar has the height 2.
+
+use crate::ids::{FacetId, NodeId};
+use crate::mesh::Mesh;
+
+/// A point or a vector of the plane.
+pub(in crate::problem) type Vector = [f64; 2];
+
+/// An outer edge, or an end of a bar.
+pub(in crate::problem) struct Edge {
+    pub(in crate::problem) facet: FacetId,
+    pub(in crate::problem) nodes: Vec<NodeId>,
+    /// Where it ends at the start (m).
+    pub(in crate::problem) ends: [Vector; 2],
+    /// Outward unit normal.
+    pub(in crate::problem) normal: Vector,
+    /// Whether neither a support nor a load is on it.
+    pub(in crate::problem) free: bool,
+}
+
+/// A body.
+pub(in crate::problem) struct Outline {
+    pub(in crate::problem) name: String,
+    pub(in crate::problem) edges: Vec<Edge>,
+    /// Corners of its convex hull, counterclockwise.
+    pub(in crate::problem) hull: Vec<Vector>,
+    /// Velocity of the centre of mass at the start (m/s).
+    pub(in crate::problem) velocity: Vector,
+    /// How long a wave takes from end to end (s).
+    pub(in crate::problem) passage: f64,
+}
+
+impl Outline {
+    /// The place of a point after a time (s).
+    pub(in crate::problem) fn moved(&self, point: &Vector, time: f64) -> Vector {
+        std::array::from_fn(|c| point[c] + self.velocity[c] * time)
+    }
+}
+
+/// What is known of the nodes: displacements at the start (m), velocities (m/s) and masses (kg).
+pub(in crate::problem) struct Start<'a, const D: usize> {
+    pub(in crate::problem) displacement: &'a [[f64; D]],
+    pub(in crate::problem) velocity: &'a [[f64; D]],
+    pub(in crate::problem) mass: &'a [f64],
+}
+
+/// The bodies of a mesh, with these names; `free` says whether an edge may touch, `wave_speed` is that at an edge
+/// (m/s).
+pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    names: Vec<String>,
+    start: &Start<'_, D>,
+    free: impl Fn(FacetId) -> bool,
+    wave_speed: impl Fn(FacetId) -> f64,
+) -> Vec<Outline> {
+    let body_of_node = mesh.part_numbers();
+    let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
+    let place = |node: NodeId| -> [f64; D] {
+        std::array::from_fn(|c| mesh.points()[node.index()][c] + start.displacement[node.index()][c])
+    };
+    for facet in mesh.boundary() {
+        let nodes = mesh.facets()[facet.index()].nodes;
+        let mut ends = [nodes[0], nodes[D - 1]].map(|node| in_plane(&place(node)));
+        if D == 1 {
+            (ends[0][1], ends[1][1]) = (-1.0, 1.0);
+        }
+        let normal = in_plane(&mesh.facet_normal(facet).0);
+        let edge = Edge { facet, nodes: nodes.to_vec(), ends, normal, free: free(facet) };
+        edges[body_of_node[nodes[0].index()]].push(edge);
+    }
+    let (mut mass, mut momentum) = (vec![0.0; names.len()], vec![[0.0; 2]; names.len()]);
+    for (node, &body) in body_of_node.iter().enumerate() {
+        let velocity = in_plane(&start.velocity[node]);
+        mass[body] += start.mass[node];
+        (0..2).for_each(|c| momentum[body][c] += start.mass[node] * velocity[c]);
+    }
+    let outline = |(body, (name, edges)): (usize, (String, Vec<Edge>))| {
+        let hull = hull(edges.iter().flat_map(|edge| edge.ends).collect());
+        let apart = |a: &Vector| hull.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+        let size = hull.iter().map(apart).fold(0.0, f64::max);
+        let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
+        let velocity = momentum[body].map(|p| p / mass[body]);
+        Outline { name, edges, hull, velocity, passage: size / slowest }
+    };
+    names.into_iter().zip(edges).enumerate().map(outline).collect()
+}
+
+fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {
+    [vector[0], vector.get(1).copied().unwrap_or(0.0)]
+}
+
+/// The corners of the convex hull of some points, counterclockwise.
+fn hull(mut points: Vec<Vector>) -> Vec<Vector> {
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    points.dedup();
+    let turns = |a: &Vector, b: &Vector, c: &Vector| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let half = |points: &mut dyn Iterator<Item = &Vector>| {
+        let mut chain: Vec<Vector> = Vec::new();
+        for point in points {
+            while let [.., a, b] = chain.as_slice()
+                && turns(a, b, point) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(*point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut corners = half(&mut points.iter());
+    corners.extend(half(&mut points.iter().rev()));
+    corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hull;
+
+    #[test]
+    fn a_hull_has_the_corners_alone() {
+        let points = vec![[1.0, 1.0], [0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.5, 0.5], [0.0, 1.0], [1.0, 0.25]];
+        assert_eq!(hull(points), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+    }
+}

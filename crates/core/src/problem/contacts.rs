@@ -1,0 +1,208 @@
+//! From contacts as users state them to pairs of surfaces.
+
+use super::bodies::{Between, Contact, Found, Start, Wanted, find, outlines};
+use super::sides::Bodies;
+use super::{Cause, InputError, Place};
+use crate::contact::{Interface, ObstacleError};
+use crate::ids::{FacetId, NodeId};
+use crate::material::Law;
+use crate::mesh::Mesh;
+use std::collections::BTreeSet;
+
+/// Bodies slide by less than this part of the shortest edge if pairs of nodes shall stay pairs.
+const SLIDES: f64 = 0.1;
+
+/// Pairs of surfaces.
+#[derive(Default)]
+pub(super) struct Surfaces {
+    /// The interfaces, and where they are stated.
+    pub(super) choices: Vec<(Choice, Place)>,
+    /// Groups of facets that the mesh does not have, as many as the choices may need.
+    pub(super) groups: Vec<(String, Vec<FacetId>)>,
+}
+
+/// An interface, and another one if the nodes of the first one do not face each other in pairs.
+pub(super) struct Choice {
+    pub(super) first: Interface,
+    pub(super) otherwise: Option<Interface>,
+}
+
+/// The contacts of a problem as they are stated.
+pub(super) struct Stated<'a> {
+    pub(super) contacts: &'a [Contact],
+    /// Whether all bodies may touch each other, and not only those of which contact is stated.
+    pub(super) automatic: bool,
+}
+
+/// The pairs of surfaces of all contacts.
+pub(super) fn surfaces<const D: usize, const N: usize>(
+    bodies: &Bodies<'_, D, N>,
+    stated: &Stated<'_>,
+    start: &Start<'_, D>,
+) -> Result<Surfaces, InputError> {
+    let Stated { contacts, automatic } = stated;
+    let mut made = Surfaces::default();
+    let by_groups = contacts.iter().all(|contact| matches!(contact.between, Between::Groups(_)));
+    let pairs = if by_groups && !automatic { Pairs::default() } else { Pairs::new(bodies, stated, start)? };
+    for (index, contact) in contacts.iter().enumerate() {
+        let place = Place { table: "contact", index: Some(index), key: contact.key() };
+        let choice = match &contact.between {
+            Between::Groups(groups) => made.of_groups::<D>(contact, groups),
+            Between::Bodies(_) => {
+                let Some(found) = pairs.of_contact(Some(index)).next() else { continue };
+                made.of_found(bodies.mesh, contact, (&pairs.names, found))
+            }
+            Between::All => continue,
+        };
+        made.choices.push((choice.map_err(|cause| InputError { place, cause: cause.into() })?, place));
+    }
+    let default = contacts.iter().position(|contact| contact.between == Between::All);
+    let place = Place { table: "contact", index: default, key: "" };
+    for found in pairs.of_contact(None) {
+        let Some(contact) = default.map(|index| &contacts[index]).or((D == 1).then_some(&Contact::FRICTIONLESS)) else {
+            let bodies = found.pair.map(|body| pairs.names[body].clone());
+            return Err(Cause::NoFriction { bodies }.at("contact", None, "friction"));
+        };
+        let choice = made.of_found(bodies.mesh, contact, (&pairs.names, found));
+        made.choices.push((choice.map_err(|cause| InputError { place, cause: cause.into() })?, place));
+    }
+    Ok(made)
+}
+
+impl Surfaces {
+    fn of_groups<const D: usize>(&self, contact: &Contact, groups: &[String; 2]) -> Result<Choice, ObstacleError> {
+        let groups = groups.each_ref().map(String::as_str);
+        let otherwise = contact.matching.is_none().then(|| contact.interface::<D>(groups, false)).transpose()?;
+        Ok(Choice { first: contact.interface::<D>(groups, contact.matching != Some(false))?, otherwise })
+    }
+
+    fn of_found<const D: usize, const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        contact: &Contact,
+        (names, found): (&[String], &Found),
+    ) -> Result<Choice, ObstacleError> {
+        let shortest =
+            found.seeing.iter().flatten().map(|&facet| mesh.facet_normal(facet).1).fold(f64::INFINITY, f64::min);
+        let stays = found.slide <= SLIDES * shortest;
+        let mut make = |matching: bool| {
+            let groups = self.groups_of(mesh, names, found, matching);
+            contact.interface::<D>(groups.each_ref().map(String::as_str), matching)
+        };
+        match contact.matching.or((!stays).then_some(false)) {
+            Some(matching) => Ok(Choice { first: make(matching)?, otherwise: None }),
+            None => Ok(Choice { first: make(true)?, otherwise: Some(make(false)?) }),
+        }
+    }
+
+    /// The names of both surfaces: those of groups of the mesh, if there are such, else of new ones.
+    fn groups_of<const D: usize, const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        names: &[String],
+        found: &Found,
+        matching: bool,
+    ) -> [String; 2] {
+        let relation = if matching { "facing" } else { "sliding on" };
+        [0, 1].map(|side| {
+            let mut facets = found.seeing[side].clone();
+            if !matching {
+                facets.extend(&found.beside[side]);
+                facets.sort_unstable();
+            }
+            let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
+            if let Some((name, _)) = mesh.facet_groups().iter().find(|(_, group)| **group == facets) {
+                return name.clone();
+            }
+            let name = format!("{own} {relation} {other}");
+            self.groups.push((name.clone(), facets));
+            name
+        })
+    }
+}
+
+/// The pairs of bodies whose surfaces were looked for.
+#[derive(Default)]
+struct Pairs {
+    names: Vec<String>,
+    found: Vec<Found>,
+    /// The contact that names the bodies of each.
+    contact: Vec<Option<usize>>,
+}
+
+impl Pairs {
+    /// Those that a contact names, or no one.
+    fn of_contact(&self, contact: Option<usize>) -> impl Iterator<Item = &Found> {
+        self.found.iter().zip(&self.contact).filter(move |(_, of)| **of == contact).map(|(found, _)| found)
+    }
+
+    fn new<const D: usize, const N: usize>(
+        bodies: &Bodies<'_, D, N>,
+        stated: &Stated<'_>,
+        start: &Start<'_, D>,
+    ) -> Result<Self, InputError> {
+        let (mesh, names, of_node) = (bodies.mesh, bodies.mesh.part_names(), bodies.mesh.part_numbers());
+        let (mut wanted, mut contact): (Vec<Wanted>, Vec<Option<usize>>) = (Vec::new(), Vec::new());
+        let (mut known, mut taken, mut default) = (BTreeSet::new(), BTreeSet::new(), None);
+        for (index, one) in stated.contacts.iter().enumerate() {
+            match &one.between {
+                Between::Groups(groups) => {
+                    let facets =
+                        groups.each_ref().map(|group| mesh.facet_groups().get(group).map_or(&[][..], Vec::as_slice));
+                    let nodes = facets.map(|all| all.iter().flat_map(|facet| mesh.facets()[facet.index()].nodes));
+                    let nodes: [Vec<NodeId>; 2] = nodes.map(Iterator::collect);
+                    if let [Some(a), Some(b)] = nodes.each_ref().map(|nodes| nodes.first()) {
+                        known.insert(ordered([a, b].map(|node| of_node[node.index()])));
+                    }
+                    taken.extend(nodes.into_iter().flatten());
+                }
+                Between::Bodies(pair) => {
+                    let fail = |cause: Cause| cause.at("contact", Some(index), "bodies");
+                    let pair = self::pair(&names, pair).map_err(fail)?;
+                    if wanted.iter().any(|earlier: &Wanted| ordered(earlier.pair) == ordered(pair)) {
+                        return Err(fail(Cause::SamePair { bodies: pair.map(|body| names[body].clone()) }));
+                    }
+                    known.insert(ordered(pair));
+                    wanted.push(Wanted { pair, named: true });
+                    contact.push(Some(index));
+                }
+                Between::All if default.is_some() => return Err(Cause::TwoDefaults.at("contact", Some(index), "")),
+                Between::All => default = Some(index),
+            }
+        }
+        if stated.automatic || default.is_some() {
+            let all = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| [a, b]));
+            for pair in all.filter(|pair| !known.contains(pair)) {
+                wanted.push(Wanted { pair, named: false });
+                contact.push(None);
+            }
+        }
+        let law = |facet| (bodies.law)(facet);
+        let free = |facet: FacetId| bodies.held[facet.index()].is_none();
+        let outlines = outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed());
+        let held = |node: NodeId| {
+            let held = &bodies.fixed[node.index()];
+            [held[0], held.get(1).copied().unwrap_or(false)]
+        };
+        let found = find(&outlines, &wanted, held, &taken).map_err(|(at, cause)| match contact[at] {
+            Some(index) => cause.at("contact", Some(index), "bodies"),
+            None => cause.at("contact", default, ""),
+        })?;
+        let contact = found.iter().map(|found| contact[found.wanted]).collect();
+        Ok(Self { names, found, contact })
+    }
+}
+
+fn ordered([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The numbers of two different bodies.
+fn pair(names: &[String], [first, second]: &[String; 2]) -> Result<[usize; 2], Cause> {
+    let number = |name: &String| {
+        let unknown = || Cause::UnknownBody { name: name.clone(), known: names.to_vec() };
+        names.iter().position(|known| known == name).ok_or_else(unknown)
+    };
+    let pair = [number(first)?, number(second)?];
+    if pair[0] == pair[1] { Err(Cause::OneBody { name: first.clone() }) } else { Ok(pair) }
+}
