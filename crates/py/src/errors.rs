@@ -112,7 +112,9 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
             Some(MemoryError::Full { .. }) => input(py, format!("`store`: {cause}")),
             _ => steps(py, cause),
         },
-        SimulationError::Unstable { .. } => exception(py, "SimulationError", &error.to_string()),
+        SimulationError::Unstable { .. } | SimulationError::Missed { .. } => {
+            exception(py, "SimulationError", &error.to_string())
+        }
     }
 }
 

@@ -135,6 +135,10 @@ impl Failure {
             Ok(error) => return Self::File(*error),
             Err(error) => error,
         };
+        let error = match error.downcast::<SimulationError>() {
+            Ok(error) => return Self::Run(RunError::Simulation(*error)),
+            Err(error) => error,
+        };
         match error.downcast::<EstimateError>() {
             Ok(error) => Self::Run(RunError::Estimate(*error)),
             Err(error) => Self::Run(otherwise(error)),

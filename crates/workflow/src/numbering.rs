@@ -127,7 +127,10 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     fn simulation(&self, mut error: SimulationError) -> SimulationError {
-        if let SimulationError::Unstable { node, .. } | SimulationError::StartsTooNear { node, .. } = &mut error {
+        if let SimulationError::Unstable { node, .. }
+        | SimulationError::Missed { node, .. }
+        | SimulationError::StartsTooNear { node, .. } = &mut error
+        {
             *node = self.node(*node);
         }
         error

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::numbering::{Fields, Ordered, TakeStep};
-use percute_core::dynamics::{Simulation, SimulationError, resume, simulate_threaded};
+use percute_core::dynamics::{MissedContact, Simulation, SimulationError, resume, simulate_threaded};
 use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step};
 use percute_core::observer::Observer;
 use percute_core::time::TimeGrid;
@@ -95,7 +95,8 @@ pub(crate) fn drive<const D: usize, const N: usize>(
     let stored = file.is_some() || memory.is_some();
     // The history first: a step that cannot be estimated is still stored.
     let storing = stored.then(|| Storing { ordered, file, memory, fields: Fields::default() });
-    let (problem, mut sinks) = (ordered.problem(), (storing, beside));
+    let problem = ordered.problem();
+    let mut sinks = (storing, (beside, MissedContact::new(problem, times.step_count())));
     let simulation = match checkpoint {
         None => simulate_threaded(problem, times, threads, &mut sinks, observer),
         Some(checkpoint) => resume(problem, times, threads, checkpoint, &mut sinks, observer),

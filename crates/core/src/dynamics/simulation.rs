@@ -50,6 +50,24 @@ pub enum SimulationError {
         /// The largest first step that will do (s).
         largest_step: f64,
     },
+    /// A body enters another one where no contact is stated or found.
+    #[error(
+        "at step {step}, t = {time:.6e} s, node {node} of \"{}\" is {depth:.3e} m inside \"{}\": the two meet where no \
+         contact was stated, and none was found from their places and velocities at the start; name the edges that \
+         touch there by a contact with `groups`, or end the run before", .bodies[0], .bodies[1]
+    )]
+    Missed {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        time: f64,
+        /// The node.
+        node: usize,
+        /// The names of its body and of the other one.
+        bodies: [String; 2],
+        /// How deep it is (m).
+        depth: f64,
+    },
     /// The sink of the steps failed.
     #[error("step {step} could not be passed on: {cause}")]
     Sink {

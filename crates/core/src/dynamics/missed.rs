@@ -1,0 +1,150 @@
+//! Bodies that enter each other where no contact is solved for: an error, never silence.
+
+use super::SimulationError;
+use crate::history::{SinkError, State, StateSink};
+use crate::ids::{FacetId, NodeId};
+use crate::problem::Problem;
+use std::collections::BTreeSet;
+
+/// Bodies are looked at after so many steps. A wave passes an element in a step, and bodies move at a small part of its
+/// speed: at a hundredth by less than the depth that is allowed.
+const EVERY: usize = 8;
+/// How deep a node may be in another body, over the height of the element there.
+const DEEP: f64 = 0.1;
+
+/// A point of the plane; a bar is on the first axis.
+type Point = [f64; 2];
+
+/// Looks for nodes inside other bodies.
+pub struct MissedContact<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    last: usize,
+    bodies: Vec<Body>,
+    /// Nodes that may touch another body, with that body: contact is solved for.
+    solved: BTreeSet<(NodeId, usize)>,
+}
+
+/// The boundary of a body.
+struct Body {
+    nodes: Vec<NodeId>,
+    /// Facets, each with the height of its element there (m).
+    facets: Vec<(FacetId, f64)>,
+}
+
+impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
+    /// For a run with so many steps; it costs nothing with a single body.
+    #[must_use]
+    pub fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
+        let mesh = problem.mesh();
+        let mut made = Self { problem, last: steps, bodies: Vec::new(), solved: BTreeSet::new() };
+        if mesh.parts() == 1 {
+            return made;
+        }
+        let of_node = mesh.part_numbers();
+        made.bodies = (0..mesh.parts()).map(|_| Body { nodes: Vec::new(), facets: Vec::new() }).collect();
+        for facet in mesh.boundary() {
+            let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
+            let height = D as f64 * mesh.cell_geometry(owner).volume / mesh.facet_normal(facet).1;
+            let body = &mut made.bodies[of_node[nodes[0].index()]];
+            body.facets.push((facet, height));
+            body.nodes.extend(nodes);
+        }
+        for body in &mut made.bodies {
+            body.nodes.sort_unstable();
+            body.nodes.dedup();
+        }
+        let on = |obstacle: usize| problem.surface().nodes().iter().find(|contact| contact.obstacle == obstacle);
+        for contact in problem.surface().nodes() {
+            if let Some(other) = problem.opposite_obstacle(contact.obstacle).and_then(on) {
+                made.solved.insert((contact.node, of_node[other.node.index()]));
+            }
+        }
+        made
+    }
+
+    fn place(&self, displacement: &[[f64; D]], node: NodeId) -> Point {
+        let (x, u) = (&self.problem.mesh().points()[node.index()], &displacement[node.index()]);
+        std::array::from_fn(|c| if c < D { x[c] + u[c] } else { 0.0 })
+    }
+
+    /// The ends of a facet; one of a bar stands across it.
+    fn ends(&self, displacement: &[[f64; D]], facet: FacetId) -> [Point; 2] {
+        let nodes = self.problem.mesh().facets()[facet.index()].nodes;
+        let [mut a, mut b] = [nodes[0], nodes[D - 1]].map(|node| self.place(displacement, node));
+        if D == 1 {
+            (a[1], b[1]) = (-1.0, 1.0);
+        }
+        [a, b]
+    }
+
+    /// Lower and upper ends of a body along each axis (m).
+    fn limits(&self, displacement: &[[f64; D]], body: &Body) -> [[f64; 2]; 2] {
+        let mut limits = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for &node in &body.nodes {
+            let place = self.place(displacement, node);
+            limits.iter_mut().zip(place).for_each(|([low, high], x)| (*low, *high) = (low.min(x), high.max(x)));
+        }
+        limits
+    }
+
+    /// How deep a point is in a body (m), if it is deeper than allowed.
+    fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point) -> Option<f64> {
+        let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
+        for &(facet, height) in &body.facets {
+            let [a, b] = self.ends(displacement, facet);
+            // How often a line to the right crosses the boundary.
+            if (a[1] > point[1]) != (b[1] > point[1]) {
+                let x = a[0] + (b[0] - a[0]) * (point[1] - a[1]) / (b[1] - a[1]);
+                inside ^= x > point[0];
+            }
+            let distance = distance(point, &a, &b);
+            if distance < nearest.0 {
+                nearest = (distance, height);
+            }
+        }
+        (inside && nearest.0 > DEEP * nearest.1).then_some(nearest.0)
+    }
+
+    /// The first node that is in another body, the number of its own body and of that one, and how deep it is (m).
+    fn found(&self, displacement: &[[f64; D]]) -> Option<(NodeId, [usize; 2], f64)> {
+        let limits: Vec<_> = self.bodies.iter().map(|body| self.limits(displacement, body)).collect();
+        for (a, own) in self.bodies.iter().enumerate() {
+            for (b, other) in self.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
+                let apart = (0..D).any(|c| limits[a][c][1] <= limits[b][c][0] || limits[b][c][1] <= limits[a][c][0]);
+                if apart {
+                    continue;
+                }
+                for &node in own.nodes.iter().filter(|node| !self.solved.contains(&(**node, b))) {
+                    let place = self.place(displacement, node);
+                    let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
+                    if near && let Some(depth) = self.depth(displacement, other, &place) {
+                        return Some((node, [a, b], depth));
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+/// The distance of a point from a straight line between two others (m).
+fn distance(point: &Point, a: &Point, b: &Point) -> f64 {
+    let (along, from) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
+    let length = along[0] * along[0] + along[1] * along[1];
+    let part = ((from[0] * along[0] + from[1] * along[1]) / length).clamp(0.0, 1.0);
+    (from[0] - part * along[0]).hypot(from[1] - part * along[1])
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for MissedContact<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let step = state.step();
+        if self.bodies.is_empty() || !(step.index.is_multiple_of(EVERY) || step.index == self.last) {
+            return Ok(());
+        }
+        let Some((node, bodies, depth)) = self.found(step.displacement) else { return Ok(()) };
+        let names = self.problem.mesh().part_names();
+        let bodies = bodies.map(|body| names[body].clone());
+        let error = SimulationError::Missed { step: step.index, time: step.time, node: node.index(), bodies, depth };
+        Err(Box::new(error))
+    }
+}
