@@ -78,7 +78,6 @@ BEYOND = {
     "two contacts at a node": "the groups of the mesh",
     "a contact of a surface that is held": "two groups of the mesh",
     "a contact of a surface that is loaded": "two groups of the mesh",
-    "a rebound of several bodies": "values of two tables",
     "two supports with two motions": "values of two tables",
     "an edge that is loaded and supported": "two groups of the mesh",
     "supports that leave no freedom": "the groups of the mesh",

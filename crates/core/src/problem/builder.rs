@@ -265,11 +265,13 @@ fn all_contact<const D: usize, const N: usize>(
     stated: &contacts::Stated<'_>,
     start: &Start<'_, D>,
 ) -> Result<AllContact<D>, InputError> {
+    // A search over all elements, which planes alone do not need.
+    let none = stated.contacts.is_empty() && !stated.automatic;
+    let body = if none { Vec::new() } else { bodies.mesh.part_of_nodes() };
+    let bodies = Bodies { body, ..bodies };
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, stated, start)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
-    // A search over all elements, which planes alone do not need.
-    let body = if choices.is_empty() { Vec::new() } else { bodies.mesh.part_of_nodes() };
-    let Bodies { mesh, held, fixed, law, .. } = bodies;
+    let Bodies { mesh, body, held, fixed, law } = bodies;
     let bodies = Bodies { mesh: with_groups.as_ref().unwrap_or(mesh), body, held, fixed, law: &|facet| law(facet) };
     let (surface, interfaces) = contact_surface(&bodies, obstacles, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));

@@ -42,6 +42,14 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
 ) -> Result<Surfaces, InputError> {
     let Stated { contacts, automatic } = stated;
     let mut made = Surfaces::default();
+    // A mistake in what is stated comes before one of what is found.
+    for (index, contact) in contacts.iter().enumerate() {
+        let Between::Groups(groups) = &contact.between else { continue };
+        let place = Place { table: "contact", index: Some(index), key: contact.key() };
+        let fail = |cause| InputError { place, cause };
+        let choice = made.of_groups::<D>(contact, groups).map_err(|cause| fail(cause.into()))?;
+        bodies.sides(&choice.first).map_err(fail)?;
+    }
     let by_groups = contacts.iter().all(|contact| matches!(contact.between, Between::Groups(_)));
     let pairs = if by_groups && !automatic { Pairs::default() } else { Pairs::new(bodies, stated, start)? };
     for (index, contact) in contacts.iter().enumerate() {

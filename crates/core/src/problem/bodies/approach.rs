@@ -2,6 +2,9 @@
 
 use super::outline::{Outline, Vector};
 
+/// Bodies that are nearer than this part of the largest coordinate touch.
+const TOUCHES: f64 = 1e-12;
+
 /// Two bodies that a straight line separates.
 #[derive(Debug, PartialEq)]
 pub(super) struct Approach {
@@ -24,8 +27,14 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
     let gaps: Vec<f64> = normals.iter().map(gap).collect();
     let widest = (0..gaps.len()).reduce(|a, b| if gaps[b] > gaps[a] { b } else { a })?;
-    if gaps[widest] <= 0.0 {
+    let far = |p: &Vector| p.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let tolerance = TOUCHES * first.hull.iter().chain(&second.hull).map(far).fold(0.0, f64::max);
+    if gaps[widest] < -tolerance {
         return None;
+    }
+    if gaps[widest] <= tolerance {
+        // They touch: whatever moves them, there is contact.
+        return Some(Approach { normal: normals[widest], gap: 0.0, meeting: Some((normals[widest], 0.0)) });
     }
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
     for (k, (normal, &gap)) in normals.iter().zip(&gaps).enumerate() {
@@ -87,6 +96,8 @@ mod tests {
         // Away, and at rest.
         assert_eq!(found([0.0, 1.5], [0.0, 1.0]).meeting, None);
         assert_eq!(found([0.0, 1.5], [0.0, 0.0]).meeting, None);
+        // In contact, and inside.
+        assert_eq!(found([0.0, 1.0], [0.0, 0.0]).meeting, Some(([0.0, 1.0], 0.0)));
         assert_eq!(approach(&fixed, &square([0.5, 0.5], 1.0, [0.0, 0.0])), None);
     }
 }
