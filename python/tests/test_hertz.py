@@ -48,7 +48,7 @@ def test_the_mesh_is_what_the_study_needs(study: Any, hertz: Any) -> None:
 @pytest.mark.parametrize("reconstruction", ["published", "consistent", "corrected"])
 def test_all_reconstructions_are_admissible(reconstruction: str, study: Any) -> None:
     residuals = study.estimates[reconstruction].residuals
-    assert len(residuals) == 17
+    assert len(residuals) == 18
     assert all(value <= 1e-10 for value in residuals.values()), residuals
 
 

@@ -128,7 +128,14 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         let surface = self.problem.surface();
         let at = |at: usize| surface.point(at);
         let length = (0..D).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
-        (self.gap[a] - self.gap[b]).abs() <= PARALLEL * length
+        let apart = if self.gap[a].is_finite() && self.gap[b].is_finite() {
+            self.gap[a] - self.gap[b]
+        } else {
+            // Beside a surface along which it slides: along the common tangent.
+            let frame = self.problem.obstacles()[surface.nodes()[a].obstacle].flat_frame();
+            frame.split(&std::array::from_fn(|c| at(a)[c] - at(b)[c])).0
+        };
+        apart.abs() <= PARALLEL * length
     }
 
     fn node(&self, at: usize) -> NodeId {
