@@ -59,8 +59,7 @@ fn examples_run_with_every_option() {
         let body = case.split("[estimate]").next().unwrap();
         let slides = SLIDING.contains(&name.as_str());
         let all = Reconstruction::ALL.iter().filter(|force| !slides || **force == Reconstruction::Corrected);
-        let pairs =
-            all.flat_map(|force| Acceleration::of(*force).iter().map(move |a| (force, a)));
+        let pairs = all.flat_map(|force| Acceleration::of(*force).iter().map(move |a| (force, a)));
         for (force, acceleration) in pairs {
             let options = format!("reconstruction = \"{force}\"\nacceleration = \"{acceleration}\"");
             let bench = Bench::new(&format!("{body}\n[estimate]\n{options}\nevery = 7\n"));
