@@ -68,9 +68,9 @@ impl SlidingFacets {
     }
 }
 
-/// C over the thickness, with the energy C ℓ ∫r² ds of a traction r without resultant and moment on an edge of length ℓ:
-/// (0.3 + max(0, cot θ)²)/E with the smaller angle θ of the element at the edge. It is above the largest eigenvalue of
-/// the edge in nine shapes of triangles.
+/// C over the thickness, with the energy C ℓ ∫r² ds of a traction r without resultant and moment on an edge of length
+/// ℓ: (0.3 + max(0, cot θ)²)/E with the smaller angle θ of the element at the edge. It is above the largest eigenvalue
+/// of the edge in nine shapes of triangles.
 fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: usize) -> f64 {
     let (mesh, facet) = (problem.mesh(), problem.surface().facets()[facet].facet);
     let owner: ElementId = mesh.facets()[facet.index()].owner;
@@ -149,8 +149,8 @@ impl<const D: usize> SlidingDensity<D> {
         }
     }
 
-    /// How far it is outside of Coulomb's cone, and how far the tractions on both surfaces (Pa) are from opposite forces
-    /// and couples. Both are relative.
+    /// How far it is outside of Coulomb's cone, and how far the tractions on both surfaces (Pa) are from opposite
+    /// forces and couples. Both are relative.
     pub(crate) fn residuals<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),

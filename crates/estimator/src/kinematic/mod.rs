@@ -204,8 +204,8 @@ pub(crate) fn gather_common<const D: usize, const N: usize>(
 }
 
 /// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
-/// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components, one of
-/// surfaces that slide the change of its own.
+/// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components, one
+/// of surfaces that slide the change of its own.
 pub(crate) fn settle<const D: usize, const N: usize>(
     (problem, at): (&Problem<D, N>, usize),
     [displacement, velocity]: [&mut [f64; D]; 2],

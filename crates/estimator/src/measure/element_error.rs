@@ -31,8 +31,8 @@ impl<T: Value> ElementError<T> {
 }
 
 impl ElementError {
-    /// The error with a stress beside that in it, of which this is the root of the energy (J^½): the norm of the sum is at
-    /// most the sum of both.
+    /// The error with a stress beside that in it, of which this is the root of the energy (J^½): the norm of the sum is
+    /// at most the sum of both.
     pub(crate) fn beside(self, root: f64) -> Self {
         if root == 0.0 {
             return self;

@@ -1,7 +1,7 @@
 //! The normal contact law of surfaces that slide along each other.
 //!
-//! It is measured on the partition of an instant, with the admissible motion of both surfaces. Half of each piece counts
-//! in each of its elements.
+//! It is measured on the partition of an instant, with the admissible motion of both surfaces. Half of each piece
+//! counts in each of its elements.
 
 use crate::contact_density::{LevelDensities, NormalMisfit, SlidingFacets, density_on};
 use crate::direction::along;

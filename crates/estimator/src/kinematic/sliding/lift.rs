@@ -26,8 +26,8 @@ impl Lift {
         Self { height, instants: [a.min(c), b.max(d)] }
     }
 
-    /// Its speed (m/s) and height (m) at each instant at the ends of these half steps (s): it rises and falls evenly, in
-    /// a time as long as it is needed.
+    /// Its speed (m/s) and height (m) at each instant at the ends of these half steps (s): it rises and falls evenly,
+    /// in a time as long as it is needed.
     pub(super) fn motion(&self, halves: &[f64]) -> Vec<Pair> {
         let (mut motion, last) = (vec![[0.0; 2]; halves.len()], halves.len() - 1);
         if self.height == 0.0 {
@@ -91,8 +91,8 @@ impl Penetration {
         }
     }
 
-    /// Looks at the half step of this length (s) between the last instant and the next one: the exact least gap of each point where the
-    /// bodies do not slide, else those after each quarter of it.
+    /// Looks at the half step of this length (s) between the last instant and the next one: the exact least gap of each
+    /// point where the bodies do not slide, else those after each quarter of it.
     pub(super) fn between<const D: usize>(
         &mut self,
         sliding: &SlidingSurfaces<D>,

@@ -1,10 +1,10 @@
 //! The admissible motion of two surfaces that slide along each other.
 //!
 //! Contact of the simulation is between a node of the slave and a weighted part of the master. Problem P_CA is solved
-//! for this weighted relative motion x_k. Its change from the simulation, δ_k = ẋ_k − W_k, is shared by the nodes of both
-//! surfaces with the least kinetic energy: Δv = ±m⁻¹Gᵀ A⁻¹ (w δ). Where the surfaces still penetrate between their nodes,
-//! nodes of the slave are lifted by a small height while it is needed. Zero gap at each point is not asked for, as it
-//! would make the interface straight.
+//! for this weighted relative motion x_k. Its change from the simulation, δ_k = ẋ_k − W_k, is shared by the nodes of
+//! both surfaces with the least kinetic energy: Δv = ±m⁻¹Gᵀ A⁻¹ (w δ). Where the surfaces still penetrate between their
+//! nodes, nodes of the slave are lifted by a small height while it is needed. Zero gap at each point is not asked for,
+//! as it would make the interface straight.
 //!
 //! Lifts follow from the whole run. So this motion is known at its end.
 
@@ -172,8 +172,8 @@ impl SlidingMotion {
         Ok(found)
     }
 
-    /// Both surfaces at some instants of the admissible motion; `change` gives the change of the normal displacement (m)
-    /// of a node of the contact surface along its own normal.
+    /// Both surfaces at some instants of the admissible motion; `change` gives the change of the normal displacement
+    /// (m) of a node of the contact surface along its own normal.
     ///
     /// # Errors
     /// A temporary file that fails.

@@ -6,8 +6,8 @@ use crate::kinematic::normal_motions::{NormalMotions, Pair};
 use crate::residual::Residuals;
 use crate::scratch_file::{ScratchError, ScratchFile};
 
-/// x_k over the run: ẋ_k (m/s) and x_k (m) at each instant, with the size of the bodies and the tolerance of distances (m).
-/// The residual of its onsets is added.
+/// x_k over the run: ẋ_k (m/s) and x_k (m) at each instant, with the size of the bodies and the tolerance of distances
+/// (m). The residual of its onsets is added.
 pub(super) fn solve(
     record: &Record,
     node: usize,

@@ -49,8 +49,8 @@ impl Record {
         }
     }
 
-    /// Takes in an instant, at the end of a half step of this length (s), with displacement (m) and velocity (m/s) of the
-    /// nodes of the mesh.
+    /// Takes in an instant, at the end of a half step of this length (s), with displacement (m) and velocity (m/s) of
+    /// the nodes of the mesh.
     pub(super) fn push<const D: usize>(
         &mut self,
         (surface, sliding): (&ContactSurface<D>, &SlidingSurfaces<D>),
@@ -131,8 +131,8 @@ impl Record {
         &self.changes[node]
     }
 
-    /// The weighted normal velocities of a node of the slave (m/s) with the part of sliding, and its gap at t_0 (m): c is
-    /// constant before its multiplier acts and after that. None if it never acts.
+    /// The weighted normal velocities of a node of the slave (m/s) with the part of sliding, and its gap at t_0 (m): c
+    /// is constant before its multiplier acts and after that. None if it never acts.
     pub(super) fn target(&mut self, node: usize) -> Result<Option<Target>, ScratchError> {
         let count = self.count();
         let mut pairs = Vec::with_capacity(count);

@@ -70,8 +70,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
     }
 
     /// The forces (N) of step n, of which reactions and total accelerations are given, and what those of surfaces that
-    /// slide stop. All their impulse is kept, but for the rest after the last step. Nothing depends on the length of later
-    /// steps.
+    /// slide stop. All their impulse is kept, but for the rest after the last step. Nothing depends on the length of
+    /// later steps.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,

@@ -119,7 +119,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
     }
 
-    /// The densities of a level: those that were kept, or those of its forces and reactions without surfaces that slide.
+    /// The densities of a level: those that were kept, or those of its forces and reactions without surfaces that
+    /// slide.
     fn kept<'a>(&self, step: &'a SurfaceStep<D>) -> Cow<'a, LevelDensities<D>> {
         let around = Around { gap: &step.gap, couplings: &[] };
         let made = || Cow::Owned(self.level([&step.force, &step.reaction], &around));

@@ -1,8 +1,8 @@
 //! Forces of surfaces that slide along each other.
 //!
-//! The nodal forces of the simulation, Dᵀλ and −Mᵀλ, are those of multipliers of the nodes of the slave. The force of such
-//! a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions by a
-//! correction over all nodes that act.
+//! The nodal forces of the simulation, Dᵀλ and −Mᵀλ, are those of multipliers of the nodes of the slave. The force of
+//! such a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions
+//! by a correction over all nodes that act.
 
 use super::impulse_smoothing::Stopped;
 use super::moment_correction::{CorrectedNode, Group};
@@ -70,8 +70,8 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         forces
     }
 
-    /// What a force of each node of a slave stops, with the coupling at an instant and total accelerations (m/s²), by the
-    /// position in the contact surface.
+    /// What a force of each node of a slave stops, with the coupling at an instant and total accelerations (m/s²), by
+    /// the position in the contact surface.
     pub(super) fn stopped(
         &self,
         couplings: &[Arc<Coupling>],

@@ -84,8 +84,8 @@ pub(super) const RULES: [Rule; 26] = [
         situation: "impacts just after the first touch",
         doubt: None,
     },
-    // python/percute/verification/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30 and
-    // 8.5 at 20.
+    // python/percute/verification/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30
+    // and 8.5 at 20.
     Rule {
         applies: |f| f.is_cornered() && f.corner.is_some_and(|opening| opening < ACUTE),
         range: [0.9, 10.0],
@@ -126,8 +126,8 @@ pub(super) const RULES: [Rule; 26] = [
         range: [1.0, 15.0],
         situation: "corners and curves on surfaces that slide",
         doubt: Some(
-            "on surfaces that slide, tractions are as wide as edges, too wide for a corner or a curve at low speed; give \
-             both surfaces the same nodes, if they do not slide, and state the contact as matching",
+            "on surfaces that slide, tractions are as wide as edges, too wide for a corner or a curve at low speed; \
+             give both surfaces the same nodes, if they do not slide, and state the contact as matching",
         ),
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
