@@ -168,6 +168,7 @@ impl<const D: usize> BalanceKeeper<D> {
         if now.step().index == 0 {
             b.initial = energy;
             self.initial_momentum = b.momentum;
+            b.largest_impulse = b.largest_impulse.max(momentum_of_bodies(problem));
         }
         let forward = times.velocity_step(now.step().index) - now.back();
         for c in 0..D {
@@ -256,4 +257,12 @@ fn rounding_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, time
     let step = (0..times.step_count()).map(|n| times.step(n)).fold(f64::INFINITY, f64::min);
     let speed = 1e-10 * largest / step;
     problem.mass().iter().sum::<f64>() * speed * speed
+}
+/// Σ m|v| along the axis on which it is largest (kg m/s), of several bodies, whose momenta may cancel; 0 of one.
+fn momentum_of_bodies<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+    if problem.mesh().parts() == 1 {
+        return 0.0;
+    }
+    let nodes = || problem.mass().iter().zip(problem.initial_velocity());
+    (0..D).map(|c| nodes().map(|(m, v)| m * v[c].abs()).sum()).fold(0.0, f64::max)
 }

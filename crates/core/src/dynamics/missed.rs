@@ -4,7 +4,7 @@ use super::SimulationError;
 use crate::history::{SinkError, State, StateSink};
 use crate::ids::{FacetId, NodeId};
 use crate::problem::Problem;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// Bodies are looked at after so many steps. A wave passes an element in a step, and bodies move at a small part of its
 /// speed: at a hundredth by less than the depth that is allowed.
@@ -20,8 +20,9 @@ pub struct MissedContact<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
     bodies: Vec<Body>,
-    /// Nodes that may touch another body, with that body: contact is solved for.
-    solved: BTreeSet<(NodeId, usize)>,
+    /// Nodes that may touch another body, with that body: contact is solved for. With the place in the contact surface,
+    /// where it is only while the node faces the other surface.
+    solved: BTreeMap<(NodeId, usize), Option<usize>>,
 }
 
 /// The boundary of a body.
@@ -36,7 +37,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
         let mesh = problem.mesh();
-        let mut made = Self { problem, last: steps, bodies: Vec::new(), solved: BTreeSet::new() };
+        let mut made = Self { problem, last: steps, bodies: Vec::new(), solved: BTreeMap::new() };
         if mesh.parts() == 1 {
             return made;
         }
@@ -54,9 +55,10 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             body.nodes.dedup();
         }
         let on = |obstacle: usize| problem.surface().nodes().iter().find(|contact| contact.obstacle == obstacle);
-        for contact in problem.surface().nodes() {
+        for (at, contact) in problem.surface().nodes().iter().enumerate() {
             if let Some(other) = problem.opposite_obstacle(contact.obstacle).and_then(on) {
-                made.solved.insert((contact.node, of_node[other.node.index()]));
+                let slides = problem.surface().sliding_of(at).map(|_| at);
+                made.solved.insert((contact.node, of_node[other.node.index()]), slides);
             }
         }
         made
@@ -108,13 +110,18 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     /// The first node that is in another body, the number of its own body and of that one, and how deep it is (m).
     fn found(&self, displacement: &[[f64; D]]) -> Option<(NodeId, [usize; 2], f64)> {
         let limits: Vec<_> = self.bodies.iter().map(|body| self.limits(displacement, body)).collect();
+        let facing = self.problem.surface().facing(displacement);
+        let is_solved = |node: NodeId, body: usize| match self.solved.get(&(node, body)) {
+            Some(Some(at)) => facing.gap(*at, displacement).is_finite(),
+            other => other.is_some(),
+        };
         for (a, own) in self.bodies.iter().enumerate() {
             for (b, other) in self.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
                 let apart = (0..D).any(|c| limits[a][c][1] <= limits[b][c][0] || limits[b][c][1] <= limits[a][c][0]);
                 if apart {
                     continue;
                 }
-                for &node in own.nodes.iter().filter(|node| !self.solved.contains(&(**node, b))) {
+                for &node in own.nodes.iter().filter(|node| !is_solved(**node, b)) {
                     let place = self.place(displacement, node);
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
                     if near && let Some(depth) = self.depth(displacement, other, &place) {

@@ -5,7 +5,7 @@ use super::boundary::{self, Supports};
 use super::contacts::{self, Choice, Surfaces};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
-use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
+use crate::contact::{ContactSurface, Interface, Obstacle, Plane, Side};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
 use crate::material::{Elastic, Law};
@@ -431,6 +431,26 @@ fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N
             None => Cause::Overlaps { node, depth },
         };
         return Err(InputError { place: problem.place_of_obstacle(obstacle), cause });
+    }
+    for sliding in problem.surface.sliding() {
+        // Surfaces that do not face each other yet must not be behind each other.
+        let displacement = &problem.initial_displacement;
+        if !sliding.coupling(&problem.surface, displacement).segments().is_empty() {
+            continue;
+        }
+        let eta = |side: &Side, k: usize| {
+            let contact = &nodes[side.position(k)];
+            (side.eta()[k] + sliding.frame().split(&displacement[contact.node.index()]).0, contact)
+        };
+        let (slave, master) = (sliding.slave(), sliding.master());
+        let low = (0..slave.len()).map(|k| eta(slave, k)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let high = (0..master.len()).map(|k| eta(master, k).0).max_by(f64::total_cmp);
+        if let (Some((low, contact)), Some(high)) = (low, high)
+            && low < high - tolerance
+        {
+            let cause = Cause::Overlaps { node: contact.node.index(), depth: high - low };
+            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
+        }
     }
     for at in (0..nodes.len()).filter(decides) {
         let ((gap, normal), contact) = (starts[at], &nodes[at]);

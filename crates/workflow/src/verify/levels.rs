@@ -130,7 +130,10 @@ impl Level {
     pub(super) fn new(report: &Report) -> Self {
         let (e, contact) = (&report.error, report.contact.as_ref().filter(|contact| contact.first_touch.is_some()));
         let impulse = |plane: (&crate::report::ContactResultants, &crate::report::ObstacleSummary)| -> f64 {
-            plane.0.impulse.last().map_or(0.0, |last| last.iter().zip(&plane.1.normal).map(|(a, b)| a * b).sum())
+            let all: f64 =
+                plane.0.impulse.last().map_or(0.0, |l| l.iter().zip(&plane.1.normal).map(|(a, b)| a * b).sum());
+            // Two surfaces that touch are two obstacles with one impulse.
+            if plane.1.point.is_some() { all } else { 0.5 * all }
         };
         Self {
             elements: report.problem.elements,
