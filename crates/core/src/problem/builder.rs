@@ -203,8 +203,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
-        let automatic = self.automatic && mesh.parts() > 1;
-        let stated = contacts::Stated { contacts: &self.contacts, automatic };
+        let stated = contacts::Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
         let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, &stated, &start)?;
         self.stated.interfaces = interfaces;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
