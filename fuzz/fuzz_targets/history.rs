@@ -1,6 +1,6 @@
 #![no_main]
 
-use percute_fuzz::{entry, in_proportion};
+use percute_fuzz::{entry, in_proportion, keep_objects};
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -8,4 +8,4 @@ use std::sync::LazyLock;
 static FILE: LazyLock<PathBuf> =
     LazyLock::new(|| std::env::temp_dir().join(format!("percute-fuzz-{}.vtkhdf", std::process::id())));
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| in_proportion(bytes, |bytes| drop(entry::history(bytes, &FILE))));
+libfuzzer_sys::fuzz_target!(init: keep_objects(), |bytes: &[u8]| in_proportion(bytes, |bytes| drop(entry::history(bytes, &FILE))));

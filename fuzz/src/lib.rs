@@ -3,4 +3,4 @@
 pub mod entry;
 mod memory;
 
-pub use memory::in_proportion;
+pub use memory::{in_proportion, keep_objects};

@@ -1,6 +1,7 @@
 //! Reading with HDF5: every size is checked against the stored bytes before memory is allocated.
 
 mod attribute;
+mod blocks;
 mod data;
 mod groups;
 mod heap;

@@ -3,7 +3,7 @@
 //! Nor does it compare the sizes in the headers of objects with each other: it reads behind a part that is too short
 //! for its messages, and takes memory for a part that is longer than the file. Other damage is left to the library.
 
-use percute_system::read_exact_at;
+use super::blocks::Blocks;
 use std::collections::HashSet;
 use std::fs::File;
 use std::io;
@@ -18,7 +18,7 @@ const LAST: u64 = 1;
 
 /// A file, and the place from which addresses count.
 struct Groups<'f> {
-    file: &'f File,
+    blocks: Blocks<'f>,
     length: u64,
     base: u64,
     /// Places that were looked at: a damaged file may have circles.
@@ -33,7 +33,8 @@ struct Groups<'f> {
 /// # Errors
 /// What is wrong with them; a file that cannot be read.
 pub(super) fn check(file: &File, length: u64) -> io::Result<Result<(), &'static str>> {
-    let mut groups = Groups { file, length, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
+    let blocks = Blocks::new(file, length);
+    let mut groups = Groups { blocks, length, base: 0, seen: HashSet::new(), headers: Vec::new(), nodes: Vec::new() };
     let Some(first) = groups.bytes::<16>(0)? else { return Ok(Ok(())) };
     // Where the lengths of addresses are, the address from which others count, and that of the first object. Files of
     // versions 2 and 3 may have old groups, too.
@@ -47,7 +48,8 @@ pub(super) fn check(file: &File, length: u64) -> io::Result<Result<(), &'static 
     if first[lengths..lengths + 2] != [8, 8] {
         return Ok(Err("its addresses have a length that percute does not read"));
     }
-    groups.headers.extend(groups.number(object)?);
+    let object = groups.number(object)?;
+    groups.headers.extend(object);
     groups.base = groups.number(base)?.unwrap_or(0);
     groups.follow()
 }
@@ -72,18 +74,15 @@ impl Groups<'_> {
     }
 
     /// Bytes at an address; none beyond the end.
-    fn bytes<const N: usize>(&self, address: u64) -> io::Result<Option<[u8; N]>> {
-        let mut bytes = [0; N];
-        let Some(place) = self.base.checked_add(address) else { return Ok(None) };
-        match read_exact_at(self.file, &mut bytes, place) {
-            Err(error) if matches!(error.kind(), io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput) => {
-                Ok(None)
-            }
-            read => read.map(|()| Some(bytes)),
+    fn bytes<const N: usize>(&mut self, address: u64) -> io::Result<Option<[u8; N]>> {
+        match self.base.checked_add(address).map(|place| self.blocks.bytes(place)) {
+            None => Ok(None),
+            Some(Err(error)) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+            Some(read) => read,
         }
     }
 
-    fn number(&self, address: u64) -> io::Result<Option<u64>> {
+    fn number(&mut self, address: u64) -> io::Result<Option<u64>> {
         Ok(self.bytes(address)?.map(u64::from_le_bytes))
     }
 
@@ -123,7 +122,7 @@ impl Groups<'_> {
         Ok(Ok(()))
     }
 
-    fn pair(&self, address: u64) -> io::Result<Option<[u64; 2]>> {
+    fn pair(&mut self, address: u64) -> io::Result<Option<[u64; 2]>> {
         let second = self.number(address.saturating_add(8))?;
         Ok(self.number(address)?.zip(second).map(|(first, second)| [first, second]))
     }
@@ -136,14 +135,14 @@ impl Groups<'_> {
             b"TREE" => {
                 // Behind two neighbours, a key before each child.
                 for child in 0..count {
-                    let child = self.number(node + 32 + 16 * child)?;
-                    self.nodes.extend(child);
+                    let Some(child) = self.number(node + 32 + 16 * child)? else { break };
+                    self.nodes.push(child);
                 }
             }
             b"SNOD" => {
                 for entry in 0..count {
-                    let header = self.number(node + 16 + ENTRY * entry)?;
-                    self.headers.extend(header);
+                    let Some(header) = self.number(node + 16 + ENTRY * entry)? else { break };
+                    self.headers.push(header);
                 }
             }
             _ => (),
@@ -152,12 +151,12 @@ impl Groups<'_> {
     }
 
     /// Whether the chain of free blocks of a heap has an end.
-    fn is_sound(&self, heap: u64) -> io::Result<bool> {
+    fn is_sound(&mut self, heap: u64) -> io::Result<bool> {
         let Some(head) = self.bytes::<32>(heap)? else { return Ok(true) };
         let number = |at: usize| u64::from_le_bytes(std::array::from_fn(|k| head[at + k]));
         let (size, mut free, data) = (number(8), number(16), number(24));
         // The library refuses a heap that is not in the file.
-        if self.base.saturating_add(data).saturating_add(size) > self.file.metadata()?.len() {
+        if self.base.saturating_add(data).saturating_add(size) > self.length {
             return Ok(true);
         }
         let mut passed = HashSet::new();
@@ -228,7 +227,7 @@ mod tests {
         // Circles of other kinds end, and so does each part of a file.
         for end in (0..bytes.len()).step_by(37).rev() {
             file.set_len(end as u64).unwrap();
-            assert_eq!(check(&file, bytes.len() as u64).unwrap(), Ok(()), "{end} bytes");
+            assert_eq!(check(&file, end as u64).unwrap(), Ok(()), "{end} bytes");
         }
         bytes[13] = 4;
         std::fs::write(&path, &bytes).unwrap();
