@@ -105,6 +105,7 @@ def judge(mistake: dict[str, Any], told: list[str], begins: str, says: str = "sa
     assert messages, f"none begins with {begins!r}: {told}"
     for phrase in mistake.get(says, mistake["says"]):
         assert phrase in messages[0], f"it does not say {phrase!r}: {messages[0]}"
+    assert not [phrase for phrase in mistake.get("unsaid", []) if phrase in " ".join(told)], told
     assert not DEBUG.search(messages[0].splitlines()[0]), messages[0]
 
 

@@ -31,6 +31,8 @@ struct Mistake {
     #[serde(default = "two")]
     code: i32,
     says: Vec<String>,
+    #[serde(default)]
+    unsaid: Vec<String>,
     shell_says: Option<Vec<String>>,
     python_says: Option<Vec<String>>,
     python: Option<String>,
@@ -99,6 +101,9 @@ impl Mistake {
         }
         if let Some(phrase) = says.iter().find(|phrase| !message.contains(phrase.as_str())) {
             return complaint(&format!("the message does not say `{phrase}`"));
+        }
+        if let Some(phrase) = self.unsaid.iter().find(|phrase| said.contains(phrase.as_str())) {
+            return complaint(&format!("`{phrase}` must not be said"));
         }
         let debug = ["Some(", "Err(", "Ok(", "panicked", "unwrap", "called `"];
         match debug.iter().find(|word| message.contains(**word)) {

@@ -15,7 +15,7 @@ mod sliding;
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub use plausibility::{PlausibilityWarning, cause_of_refused_start, plausibility_warnings};
+pub use plausibility::{PlausibilityWarning, RefusedStart, cause_of_refused_start, plausibility_warnings};
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};

@@ -67,7 +67,7 @@ use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::each_dimension;
 use percute_core::memory::can_be_had;
-use percute_core::problem::{Place, Problem, cause_of_refused_start};
+use percute_core::problem::{Place, Problem, RefusedStart, cause_of_refused_start};
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
@@ -221,7 +221,7 @@ fn read<const D: usize, const N: usize>(
 }
 
 /// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the
-/// obstacle.
+/// obstacle. Beside a unit that is hardly right there is no other remedy.
 #[must_use]
 pub fn refused_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
@@ -230,7 +230,10 @@ pub fn refused_start<const D: usize, const N: usize>(
     error: &SimulationError,
 ) -> (Place, String) {
     match cause_of_refused_start(problem, times) {
-        Some(cause) => (cause.place, format!("{}. As it is, {error}", cause.message)),
+        Some(RefusedStart { cause, likely: true }) => {
+            (cause.place, format!("{}. As it is, the body starts too near to its plane", cause.message))
+        }
+        Some(RefusedStart { cause, .. }) => (cause.place, format!("{}. As it is, {error}", cause.message)),
         None => (problem.place_of_obstacle(obstacle), error.to_string()),
     }
 }

@@ -49,18 +49,31 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
 }
 
 /// What makes a start that the simulation refuses: more likely than a plane that is too near, a wrong unit.
+#[derive(Clone, Debug)]
+pub struct RefusedStart {
+    /// The number and its unit.
+    pub cause: PlausibilityWarning,
+    /// Whether the number is hardly right; if not, the place of the body may be wrong as well.
+    pub likely: bool,
+}
+
+/// The wrong unit that makes a start that the simulation refuses; `None` if all units seem to be right.
 #[must_use]
 pub fn cause_of_refused_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
-) -> Option<PlausibilityWarning> {
+) -> Option<RefusedStart> {
     // The extent of the body does not change its waves.
     let units = |warning: &PlausibilityWarning| {
         ["units", "supersonic"].contains(&warning.name)
             && ["", "young", "density", "velocity"].contains(&warning.place.key)
     };
-    let size = units::size_of_body(problem.mesh().size(), units::LARGE_IF_REFUSED);
-    plausibility_warnings(problem, times).into_iter().find(units).or(size)
+    if let Some(cause) = plausibility_warnings(problem, times).into_iter().find(units) {
+        return Some(RefusedStart { cause, likely: true });
+    }
+    let size = problem.mesh().size();
+    let cause = units::size_of_body(size, units::LARGE_IF_REFUSED)?;
+    Some(RefusedStart { cause, likely: size > units::LARGE })
 }
 
 /// A plausibility warning about a key.

@@ -21,7 +21,7 @@ const SLOW: f64 = 10.0;
 /// Waves in diamond run at 18 000 m/s.
 const FAST: f64 = 2e4;
 /// Larger than all but a few bodies that strike something: piles have tens of metres.
-const LARGE: f64 = 60.0;
+pub(super) const LARGE: f64 = 60.0;
 /// If the start is refused, a body above this size is more likely in millimetres: its steps are too long.
 pub(super) const LARGE_IF_REFUSED: f64 = 1.0;
 /// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one
