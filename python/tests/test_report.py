@@ -55,6 +55,20 @@ def estimate() -> pc.Estimate:
     return pc.estimate(pc.simulate(problem, end=5e-6, courant=0.9))
 
 
+def test_each_plane_has_the_pressure_along_its_own_surface(estimate: pc.Estimate, tmp_path: Path) -> None:
+    """Between the edges at a floor and at a wall, nothing has a pressure."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=6, ny=5)
+    aluminium = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    planes = [pc.Plane(point=(0, -2e-5), normal=(0, 1), friction=0.2), pc.Plane(point=(-4e-5, 0), normal=(1, 0), friction=0.2)]
+    problem = pc.Problem(mesh, material=aluminium, obstacles=planes, initial_velocity=(-20, -20))
+    pc.estimate(pc.simulate(problem, end=8e-6, courant=0.9)).report(tmp_path / "corner.html")
+    told = re.findall(r"Pressure over time(.*?) along the part .*?, from \((.*?)\) m \(below\) to \((.*?)\) m", (tmp_path / "corner.html").read_text("utf-8"))
+    assert [(at, {first, last}) for at, first, last in told] == [(" at plane 0", {"0, 0", "0.05, 0"}), (" at plane 1", {"0, 0", "0, 0.04"})]
+    # A single one needs no name.
+    estimate.report(tmp_path / "floor.html")
+    assert "Pressure over time along the part" in (tmp_path / "floor.html").read_text("utf-8")
+
+
 def test_the_page_is_well_formed_and_stands_alone(estimate: pc.Estimate, tmp_path: Path) -> None:
     estimate.report(tmp_path / "page.html")
     page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))

@@ -57,7 +57,7 @@ impl Document {
 
     /// Whether each obstacle counts in the sums: of two bodies that touch, each is an obstacle of the other, and the
     /// first counts.
-    pub(crate) fn counted_obstacles(&self) -> Vec<bool> {
+    fn counted_obstacles(&self) -> Vec<bool> {
         let mut first = false;
         let counts = |obstacle: &Value| {
             first = obstacle["point"].is_null() && !first;

@@ -4,6 +4,8 @@ use percute_workflow::message::{trimmed, vector};
 
 /// From this ratio of the largest value to the median on, a linear scale shows all but a few elements dark.
 const OUTSHONE: f64 = 5.0;
+/// Fewer marks than this do not show a scale.
+const FEW: usize = 3;
 /// A logarithmic scale of colours spans at most this ratio; smaller values have the colour of its lower end.
 const SPAN: f64 = 1e4;
 
@@ -113,10 +115,15 @@ impl Scale {
         }
         let rough = (self.high - self.low) / count as f64;
         let power = 10.0_f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| *step >= rough * 0.999);
-        let step = step.unwrap_or(rough);
-        let (from, to) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
-        (from..=to).map(|k| k as f64 * step).collect()
+        let at = |step: f64| -> Vec<f64> {
+            let (from, to) = ((self.low / step - 1e-9).ceil() as i64, (self.high / step + 1e-9).floor() as i64);
+            (from..=to).map(|k| k as f64 * step).collect()
+        };
+        let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|m| m * power);
+        let next = steps.iter().position(|step| *step >= rough * 0.999).unwrap_or(steps.len() - 1);
+        let ticks = at(steps[next]);
+        // A range that ends just before a mark has too few.
+        if ticks.len() < FEW && count > FEW { at(steps[next.saturating_sub(1)]) } else { ticks }
     }
 
     /// Marks of a scale of colours; with `less`, the lowest one says that smaller values have its colour.
@@ -236,6 +243,8 @@ mod tests {
     #[test]
     fn marks_are_round_and_inside() {
         assert_eq!(Scale::linear(0.0, 1.3).ticks(5), [0.0, 0.5, 1.0]);
+        assert_eq!(Scale::linear(-231.0, 900.0).ticks(5), [-200.0, 0.0, 200.0, 400.0, 600.0, 800.0]);
+        assert_eq!(Scale::linear(0.0, 9.0).ticks(2), [0.0, 5.0]);
         assert_eq!(Scale::linear(-2e-4, 2e-4).ticks(4), [-2e-4, -1e-4, 0.0, 1e-4, 2e-4]);
         assert_eq!(Scale::logarithmic(0.5, 30.0).ticks(6), [0.5, 1.0, 2.0, 5.0, 10.0, 20.0]);
         assert_eq!(Scale::logarithmic(1e-3, 1e3).ticks(6).len(), 7);

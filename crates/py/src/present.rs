@@ -26,7 +26,7 @@ struct Shown {
     document: Document,
     statement: String,
     case: Option<Case>,
-    surface: Option<Surface>,
+    surfaces: Vec<Surface>,
 }
 
 /// Title, author and program of a page.
@@ -60,13 +60,13 @@ impl Form {
     }
 
     fn write(&self, shown: &Shown, path: &Path, overwrite: bool) -> Result<(), Failure> {
-        let Shown { body, document, statement, case, surface } = shown;
+        let Shown { body, document, statement, case, surfaces } = shown;
         let (output, overwrite) = (named(path), Overwrite::allowed(overwrite));
         let Self::Page(about) = self else {
             return file::write_picture(&output, overwrite, &svg(body, document));
         };
         about.fits(document).map_err(Failure::Argument)?;
-        let contents = Contents { about, document, body, statement, case: case.as_ref(), surface: surface.as_ref() };
+        let contents = Contents { about, document, body, statement, case: case.as_ref(), surfaces };
         file::write_page(&output, overwrite, &contents).map(drop)
     }
 }
@@ -159,7 +159,7 @@ fn shown<const D: usize, const N: usize>(
         // A problem that the language of the case files cannot say has a page without it.
         statement: statement(&made.problem, Some(&made.options)).unwrap_or_default(),
         case: made.case.clone(),
-        surface: contact.and_then(|contact| Surface::new(contact, &document)),
+        surfaces: contact.map_or_else(Vec::new, |contact| Surface::all(contact, &document)),
         document,
     })
 }
@@ -179,10 +179,10 @@ pub(crate) fn present_file(
         let found = estimate_file::open(&estimate)?;
         let contact = if form.is_page() { estimate_file::contact(&estimate)? } else { None };
         let document = Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?;
-        let surface = |contact| each_dimension!(&contact, results => Surface::new(results, &document));
-        let surface = contact.and_then(surface);
+        let surfaces = |contact| each_dimension!(&contact, results => Surface::all(results, &document));
+        let surfaces = contact.map_or_else(Vec::new, surfaces);
         let (body, statement, case) = (Body::of(&found.mesh), found.statement, found.case);
-        let shown = Shown { body, document, statement, case, surface };
+        let shown = Shown { body, document, statement, case, surfaces };
         form.write(&shown, &path, overwrite)
     };
     bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))

@@ -15,7 +15,7 @@ pub(super) struct Shown<'a> {
     pub(super) document: Document,
     pub(super) statement: String,
     pub(super) case: Option<&'a Case>,
-    pub(super) surface: Option<Surface>,
+    pub(super) surfaces: Vec<Surface>,
 }
 
 /// Writes the picture and the page, as far as they are wanted: each, whatever becomes of the other.
@@ -25,13 +25,13 @@ pub(super) fn present(
     work: &WorkArguments,
     console: &mut Console<'_>,
 ) -> Result<(), Failure> {
-    let Shown { body, document, statement, case, surface } = shown;
+    let Shown { body, document, statement, case, surfaces } = shown;
     let overwrite = Overwrite::allowed(work.force);
     let drawn = picture(print)
         .map_or(Ok(()), |output| file::write_picture(&output, overwrite, &svg(body, document)).map_err(refused));
     let written = page(print).map_or(Ok(()), |output| {
         let about = &print.about;
-        let contents = Contents { about, document, body, statement, case: *case, surface: surface.as_ref() };
+        let contents = Contents { about, document, body, statement, case: *case, surfaces };
         let size = file::write_page(&output, overwrite, &contents).map_err(refused)?;
         if !work.quiet {
             console.say(&format!("report {}: {}", output.file.display(), bytes(size)));

@@ -38,9 +38,10 @@ fn stored(file: &Path, print: &PrintArguments, work: &WorkArguments, console: &m
     let unusable = |error| Failure::Argument(format!("{}: {error}", file.display()));
     let document = Document::parse(&found.report).map_err(unusable)?;
     print.about.fits(&document).map_err(Failure::Argument)?;
-    let surface = contact.and_then(|contact| each_dimension!(&contact, results => Surface::new(results, &document)));
+    let surfaces = |contact| each_dimension!(&contact, results => Surface::all(results, &document));
+    let surfaces = contact.map_or_else(Vec::new, surfaces);
     let (body, statement) = (Body::of(&found.mesh), found.statement);
-    let shown = Shown { body, document, statement, case: found.case.as_ref(), surface };
+    let shown = Shown { body, document, statement, case: found.case.as_ref(), surfaces };
     present(&shown, print, work, console)?;
     Ok(DONE)
 }

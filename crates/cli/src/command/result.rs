@@ -71,7 +71,7 @@ fn show<const D: usize, const N: usize>(
         body: Body::new(subject.problem.mesh()),
         statement: statement(subject.problem, Some(&options.filled(D)))?,
         case: case.as_ref(),
-        surface: Surface::new(&results.contact, &document),
+        surfaces: Surface::all(&results.contact, &document),
         document,
     };
     present(&shown, print, work, console)

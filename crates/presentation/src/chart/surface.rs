@@ -6,9 +6,11 @@ use percute_core::contact::{ContactPoint, ContactResults};
 /// Most instants of a picture; of more, each piece gives its largest pressure.
 const INSTANTS: usize = 600;
 
-/// Pressure along the contact surface over time.
+/// Pressure along the surface of one contact, that of a plane or of two bodies, over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
+    /// Name of the contact: "plane 0", "anvil.top with hammer.bottom".
+    pub(crate) name: String,
     /// First and last instant (s).
     pub(crate) time: [f64; 2],
     /// Position of the nodes along the surface (m): ascending.
@@ -20,15 +22,19 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The part of the surface that comes into contact, with the results of all nodes at all instants; of two bodies
-    /// that touch, that of the first one. None without these, without contact, and where a single node may touch.
+    /// The parts of the surface that come into contact, one for each plane and each two bodies, with the results of all
+    /// nodes at all instants; of two bodies, the surface of the first one. None without these, without contact, and
+    /// where a single node may touch.
     #[must_use]
-    pub fn new<const D: usize>(results: &ContactResults<D>, document: &Document) -> Option<Self> {
+    pub fn all<const D: usize>(results: &ContactResults<D>, document: &Document) -> Vec<Self> {
+        let names = document.names_of_obstacles();
+        names.into_iter().filter_map(|(obstacle, name)| Self::new(results, obstacle, name)).collect()
+    }
+
+    fn new<const D: usize>(results: &ContactResults<D>, obstacle: usize, name: String) -> Option<Self> {
         let (steps, count) = (results.steps.as_ref()?, results.nodes.len());
         let time = [*results.instants.first()?, *results.instants.last()?];
-        let counted = document.counted_obstacles();
-        let shown = |node: &usize| counted.get(results.nodes[*node].obstacle).is_none_or(|counted| *counted);
-        let nodes: Vec<usize> = (0..count).filter(shown).collect();
+        let nodes: Vec<usize> = (0..count).filter(|&node| results.nodes[node].obstacle == obstacle).collect();
         if nodes.len() < 2 || time[0] >= time[1] {
             return None;
         }
@@ -50,7 +56,7 @@ impl Surface {
         }
         let end = |node: Option<&usize>| node.map(|&node| results.nodes[node].point.to_vec()).unwrap_or_default();
         let ends = [end(order.first()), end(order.last())];
-        Some(Self { time, places, pressure: order.iter().map(|&node| history(node)).collect(), ends })
+        Some(Self { name, time, places, pressure: order.iter().map(|&node| history(node)).collect(), ends })
     }
 }
 

@@ -83,20 +83,26 @@ fn zone(document: &Document) -> String {
 }
 
 fn pressure(contents: &Contents<'_>) -> String {
-    let Some(surface) = contents.surface else {
-        // A bar has a single node at each end.
-        let plane = contents.body.dimension == 2;
-        let text = "The pressure along the surface is not drawn: the report has no contact results of all nodes at all \
-            instants.";
-        return if plane { remark(text) } else { String::new() };
-    };
-    let Ok(svg) = space_time(surface) else { return String::new() };
-    let [from, to] = surface.ends.each_ref().map(|end| vector(end));
-    let caption = format!(
-        "Pressure over time along the part of the surface that comes into contact, from {from} m (below) to {to} m \
-         (above), undeformed. No colour: no pressure."
-    );
-    figure(&svg, "pressure along the surface over time", &caption)
+    // A bar has a single node at each end.
+    if contents.surfaces.is_empty() && contents.body.dimension == 2 {
+        return remark(
+            "The pressure along the surface is not drawn: the report has no contact results of all nodes at all \
+             instants.",
+        );
+    }
+    let several = contents.surfaces.len() > 1;
+    let drawn = contents.surfaces.iter().filter_map(|surface| Some((surface, space_time(surface).ok()?)));
+    drawn
+        .map(|(surface, svg)| {
+            let [from, to] = surface.ends.each_ref().map(|end| vector(end));
+            let at = if several { format!(" at {}", surface.name) } else { String::new() };
+            let caption = format!(
+                "Pressure over time{at} along the part of the surface that comes into contact, from {from} m (below) \
+                 to {to} m (above), undeformed. No colour: no pressure."
+            );
+            figure(&svg, &format!("pressure{at} along the surface over time"), &caption)
+        })
+        .collect()
 }
 
 /// The rebound; without a coefficient of restitution, the motion of the body and the reason.

@@ -35,8 +35,8 @@ pub struct Contents<'a> {
     pub statement: &'a str,
     /// The case file as given.
     pub case: Option<&'a percute_io::Case>,
-    /// Contact of all nodes at all instants.
-    pub surface: Option<&'a Surface>,
+    /// Contact of all nodes at all instants, of each plane and each two bodies.
+    pub surfaces: &'a [Surface],
 }
 
 /// The page, for a browser and for paper (A4), that will lie in a folder.
@@ -87,7 +87,7 @@ mod tests {
         let mesh =
             TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
         let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
-        page(&Contents { about, document: &document, body: &body, statement: "", case, surface: None }, Path::new(""))
+        page(&Contents { about, document: &document, body: &body, statement: "", case, surfaces: &[] }, Path::new(""))
     }
 
     #[test]
