@@ -244,7 +244,7 @@ def mesh_maps(
         for axes, (title, mesh, values) in zip(all_axes, maps, strict=True):
             x, y = 1e3 * mesh.points.T
             # Values below the scale have its lowest colour; on a logarithmic one zero would have none.
-            look = {"cmap": colours.map, "norm": colours.norm, "antialiased": False, "rasterized": True}
+            look = {"cmap": colours.map, "norm": colours.norm, "antialiased": False, "rasterized": True, "snap": False}
             image = axes.tripcolor(x, y, mesh.cells, facecolors=np.clip(values, colours.norm.vmin, None), **look)
             if plane is not None:
                 axes.axhspan(low, 1e3 * plane, color=GRID, linewidth=0)

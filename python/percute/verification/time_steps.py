@@ -161,7 +161,8 @@ def _impact(section: Section, resolution: Resolution) -> None:
             curves.append(figures.Curve(f"at {fraction:g} of a step", ratios, values, colour, marked=True))
         return name, curves
 
-    drawing = figures.lines([panel(name) for name in NAMES], "Δt/Δt_c", "largest error (J^½)", log="xy", columns=3, xticks=ratios)
+    ticks = (100.0, 150.0, 200.0, 300.0, 500.0, 800.0)
+    drawing = figures.lines([panel(name) for name in NAMES], "Δt/Δt_c", "largest error (J^½)", log="xy", columns=3, xticks=ratios, yticks=ticks)
     section.add(
         "### The first cause: the moment of impact",
         _range(table, ratios),
