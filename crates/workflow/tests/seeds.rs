@@ -44,3 +44,19 @@ fn histories() {
     let folder = tempfile::tempdir().unwrap();
     check("history", |bytes| entry::history(bytes, &folder.path().join("a.vtkhdf")));
 }
+
+/// What the library would read without end, behind a buffer or into too much memory is refused before it reads.
+#[test]
+fn histories_that_the_library_does_not_survive() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, words) in [
+        ("names", "damaged: the names of a group;"),
+        ("header", "damaged: an object header;"),
+        ("length", "damaged: the length of the text `percute/problem`;"),
+        ("attribute", "damaged: the text attribute `percute.kind` is longer than the file;"),
+    ] {
+        let seed = format!("{}/../../fuzz/seeds/history/refused-{name}.vtkhdf", env!("CARGO_MANIFEST_DIR"));
+        let told = entry::history(&std::fs::read(seed).unwrap(), &folder.path().join("a.vtkhdf")).unwrap_err();
+        assert!(told.contains(words), "{name}: {told}");
+    }
+}
