@@ -44,12 +44,15 @@ pub(super) fn give<const D: usize, const N: usize>(
     if !work.quiet {
         console.warn(report.warnings.iter().filter(|warning| !told.contains(&warning.name)));
     }
-    let stored_json = report.to_stored_json()?;
+    // Of a million elements it has 17 MB.
+    let wanted = stored.is_some() || print.picture.is_some() || print.report.is_some();
+    let json = wanted.then(|| report.to_stored_json()).transpose()?;
     // The result first, and one file after the other: what cannot be written must not cost the rest.
     let printed = console.print(&if print.json { report.to_json()? } else { summary(report) });
-    let stored = stored.map_or(Ok(()), |output| store(finished, &stored_json, output, work.force));
+    let json = json.as_deref();
+    let stored = stored.zip(json).map_or(Ok(()), |(output, json)| store(finished, json, output, work.force));
     let tables = tabulate(finished, work.force);
-    let shown = show(finished, &stored_json, print, work, console);
+    let shown = json.map_or(Ok(()), |json| show(finished, json, print, work, console));
     console.first([printed, stored, tables, shown])?;
     Ok(if results.interrupted() { INTERRUPTED } else { DONE })
 }

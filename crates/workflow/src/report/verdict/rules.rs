@@ -131,8 +131,8 @@ pub(super) const RULES: [Rule; 26] = [
         ),
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
-    // blocks of metals. python/percute/verification/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with edges
-    // beside inclined sides, at 0.4 m/s as well.
+    // blocks of metals. python/percute/verification/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with
+    // edges beside inclined sides, at 0.4 m/s as well.
     Rule {
         applies: |f| f.bodies && f.dimension == 2,
         range: [0.83, 1.8],
