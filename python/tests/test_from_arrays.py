@@ -32,6 +32,17 @@ def test_all_arrays_give_the_history_back(case: Case) -> None:
     assert theirs.derived == () and theirs.complete and first.by_element.tobytes() == second.by_element.tobytes()
 
 
+@pytest.mark.filterwarnings("ignore::percute.InputWarning")
+def test_no_force_is_derived_off_the_planes() -> None:
+    """A wrong value in flight makes a residual at a contact node, but no contact force."""
+    problem = block(8, 6)
+    ours = pc.simulate(problem, end=3e-6, courant=0.2)
+    first = int(np.flatnonzero(ours.reaction.any(axis=(1, 2)))[0])
+    wrong = ours.displacement.copy()
+    wrong[first // 2, ours.contact_nodes[4], 1] += 1e-6
+    assert first > 2 and not pc.History.from_arrays(problem, ours.time, wrong).reaction[: first - 1].any()
+
+
 @pytest.mark.parametrize("given", [("displacement",), ("displacement", "reaction")])
 def test_missing_arrays_are_derived(case: Case, given: tuple[str, ...]) -> None:
     problem, ours, longer = case

@@ -52,6 +52,19 @@ def test_momentum_and_impulse_give_the_rebound() -> None:
     assert rebound.velocity_after - rebound.velocity_before == pytest.approx(given, rel=1e-9)
     assert rebound.restitution == pytest.approx(-rebound.velocity_after[1] / rebound.velocity_before[1], rel=1e-12)
     assert 0.5 < rebound.restitution < 1.0
+    touches = history.time[history.touching.any(axis=1)]
+    assert (rebound.first_touch, rebound.release) == (touches[0], touches[-1])
+    assert rebound.time_in_contact == touches[-1] - touches[0]
+
+
+def test_normal_components_are_those_of_the_plane_with_the_largest_impulse() -> None:
+    """A box strikes a wall three times as fast as the floor, stated before or behind it."""
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
+    material = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    planes = [pc.Plane(point=(0, -1e-5), normal=(0, 1), friction=0.0), pc.Plane(point=(-3e-5, 0), normal=(1, 0), friction=0.0)]
+    for obstacles in (planes, planes[::-1]):
+        rebound = pc.simulate(pc.Problem(mesh, material=material, obstacles=obstacles, initial_velocity=(-30, -10)), end=10e-6, courant=0.9).rebound
+        assert rebound is not None and rebound.normal_before == pytest.approx(-30.0, rel=1e-12)
 
 
 @pytest.mark.filterwarnings("ignore::percute.InputWarning")

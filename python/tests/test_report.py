@@ -55,6 +55,21 @@ def estimate() -> pc.Estimate:
     return pc.estimate(pc.simulate(problem, end=5e-6, courant=0.9))
 
 
+def test_the_lines_of_the_error_are_its_parts(estimate: pc.Estimate, tmp_path: Path) -> None:
+    estimate.report(tmp_path / "page.html")
+    chart = (tmp_path / "page.html").read_text("utf-8").split("<h2>Error over time")[1].split("</svg>")[0]
+    lines = [[float(each) for each in points.replace(",", " ").split()] for points in re.findall(r'<polyline class="s\d" points="([^"]*)"', chart)]
+    parts = estimate.over_time
+    assert len(lines) == 4
+    # The kinetic part begins at zero.
+    heights = [lines[1][1] - line[-1] for line in lines]
+    expected = [np.sqrt(part[-1] / parts.total[-1]) for part in (parts.total, parts.kinetic, parts.elastic, parts.contact)]
+    assert parts.kinetic[0] == 0.0
+    # Coordinates have a tenth of a pixel, of some 200.
+    assert np.array(heights) / heights[0] == pytest.approx(expected, abs=2e-3)
+    assert len({round(each, 2) for each in expected}) == 4
+
+
 def test_each_plane_has_the_pressure_along_its_own_surface(estimate: pc.Estimate, tmp_path: Path) -> None:
     """Between the edges at a floor and at a wall, nothing has a pressure."""
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=6, ny=5)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -51,6 +52,16 @@ def test_how_a_body_touches(body: str, tilt: float, touches: str) -> None:
     assert estimate.trust == "high" and estimate.verdict is not None and estimate.verdict.count(". ") == 2
     assert found["speed_ratio"] == pytest.approx(400.0 / math.sqrt(70e9 / (2700.0 * (1 - 0.09))), rel=1e-6)
     assert sum(found["shares"].values()) == pytest.approx(1.0)
+
+
+def test_the_second_sentence_has_the_share_of_the_elements_that_touch() -> None:
+    """They have two nodes or one on the plane: in the block, all that touch its lower edge."""
+    estimate = struck(BODIES["block"]().refine())
+    lowest = estimate.mesh.points[:, 1] == 0.0
+    squares = estimate.by_element**2
+    shares = {100.0 * squares[lowest[estimate.mesh.cells].sum(axis=1) >= least].sum() / squares.sum() for least in (1, 2)}
+    told = re.search(r"Elements that touch hold (\d+) % of the squared mean error", str(estimate.verdict))
+    assert told is not None and int(told[1]) in {round(share) for share in shares}
 
 
 def test_a_disc_that_stands_on_one_of_its_edges_is_a_curve() -> None:

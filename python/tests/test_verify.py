@@ -58,6 +58,12 @@ def test_the_levels_are_those_of_separate_runs(tmp_path: Path) -> None:
     assert found.rebound[0] == estimate.rebound.normal_after  # type: ignore[union-attr]
     assert found.peak_force[0] == history.contact.resultants.normal_force.max()
     assert found.orders["estimate"] == pytest.approx(np.log2(found.estimate_mean[1] / found.estimate_mean[2]))
+    for name in ("peak_force", "impulse", "rebound"):
+        coarse, middling, fine = getattr(found, name)
+        # A sequence that does not settle has no order.
+        ratio = (coarse - middling) / (middling - fine)
+        assert found.orders[name] == (pytest.approx(np.log2(ratio), rel=1e-9) if ratio > 1.0 else None), name
+    assert any(found.orders[name] for name in ("peak_force", "impulse", "rebound"))
     assert str(found).count("\n") >= 6 and found.moved is not None and found.fine_enough == (found.moved <= 0.1)
     (middle,) = pc.true_errors([history], refined(1), end=60e-6, courant=history_courant(history))
     assert found.moved == pytest.approx(abs(error.mean / middle.mean - 1.0), rel=1e-6)
