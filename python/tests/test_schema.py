@@ -95,6 +95,7 @@ BEYOND = {
     "a body that starts on the plane and moves into it": "the geometry of the mesh",
     "a start too near to come to rest": "the critical step",
     "a body in mm above a plane in m": "the critical step",
+    "a body of some metres that starts too near to its plane, or whose lengths are in another unit": "the critical step",
     "a speed in mm/s just above a plane": "the critical step",
     "a run of a second, in which the unit of time is wrong": "the critical step",
     "an end with the rebound but without a plane": "values of two tables",
