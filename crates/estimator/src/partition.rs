@@ -19,7 +19,7 @@ pub(crate) struct Piece {
     pub(crate) on_master: [f64; 2],
 }
 
-/// All pieces, in ascending order of ξ.
+/// All pieces, in ascending order of ξ on each part of the slave.
 pub(crate) fn pieces<'a, const D: usize>(
     sliding: &'a SlidingSurfaces<D>,
     coupling: &'a Coupling,
@@ -27,7 +27,8 @@ pub(crate) fn pieces<'a, const D: usize>(
     let hat = |ends: [f64; 2], from: f64, to: f64| ends.map(|end| ((end - from) / (to - from)).clamp(0.0, 1.0));
     coupling.segments().iter().map(move |segment| {
         let (first, other) = (sliding.slave().edges()[segment.slave], sliding.master().edges()[segment.master]);
-        let (xi, places) = (sliding.slave().xi(), coupling.places());
+        let part = sliding.slave().part_of_edge(segment.slave);
+        let (xi, places) = (sliding.slave().xi(), coupling.places(part));
         Piece {
             slave: [segment.slave, first],
             master: [segment.master, other],

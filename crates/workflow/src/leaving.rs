@@ -67,10 +67,11 @@ fn meetings<const D: usize, const N: usize>(problem: &Problem<D, N>, body_of_nod
     }
     let of_obstacle = |(at, of): (usize, &Vec<usize>)| {
         let (opposite, frame) = (problem.opposite_obstacle(at), problem.obstacles()[at].flat_frame());
-        let other = opposite.and_then(|opposite| bodies[opposite].first().copied());
+        let others: Vec<Option<usize>> =
+            opposite.map_or(vec![None], |opposite| bodies[opposite].iter().copied().map(Some).collect());
         let first = opposite.is_none_or(|opposite| at < opposite);
         let of = if first { of.clone() } else { Vec::new() };
-        of.into_iter().map(move |body| Meeting { frame, body, other })
+        of.into_iter().flat_map(move |body| others.clone().into_iter().map(move |other| Meeting { frame, body, other }))
     };
     bodies.iter().enumerate().flat_map(of_obstacle).collect()
 }

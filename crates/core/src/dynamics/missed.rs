@@ -4,7 +4,7 @@ use super::SimulationError;
 use crate::history::{SinkError, State, StateSink};
 use crate::ids::{FacetId, NodeId};
 use crate::problem::Problem;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Bodies are looked at after so many steps. A wave passes an element in a step, and bodies move at a small part of its
 /// speed: at a hundredth by less than the depth that is allowed.
@@ -54,12 +54,14 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             body.nodes.sort_unstable();
             body.nodes.dedup();
         }
-        let on = |obstacle: usize| problem.surface().nodes().iter().find(|contact| contact.obstacle == obstacle);
+        let mut bodies = vec![BTreeSet::new(); problem.obstacles().len()];
+        for contact in problem.surface().nodes() {
+            bodies[contact.obstacle].insert(of_node[contact.node.index()]);
+        }
         for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            if let Some(other) = problem.opposite_obstacle(contact.obstacle).and_then(on) {
-                let slides = problem.surface().sliding_of(at).map(|_| at);
-                made.solved.insert((contact.node, of_node[other.node.index()]), slides);
-            }
+            let slides = problem.surface().sliding_of(at).map(|_| at);
+            let others = problem.opposite_obstacle(contact.obstacle).into_iter().flat_map(|other| &bodies[other]);
+            made.solved.extend(others.map(|&body| ((contact.node, body), slides)));
         }
         made
     }

@@ -314,7 +314,9 @@ fn add_interface<const D: usize, const N: usize>(
         false => sliding::add(surface, bodies, interface, displacement),
     };
     match (add(first), otherwise) {
-        (Err(Cause::NotMatching { .. } | Cause::EdgesDiffer { .. }), Some(other)) => add(other).map(|()| other.clone()),
+        (Err(Cause::NotMatching { .. } | Cause::EdgesDiffer { .. } | Cause::SeveralBodies { .. }), Some(other)) => {
+            add(other).map(|()| other.clone())
+        }
         (added, _) => added.map(|()| first.clone()),
     }
 }

@@ -1,6 +1,7 @@
 //! From contacts as users state them to pairs of surfaces.
 
 use super::bodies::{Between, Contact, Found, Start, Wanted, find, outlines};
+use super::joined::{Member, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
 use crate::contact::{Interface, ObstacleError};
@@ -11,6 +12,22 @@ use std::collections::BTreeSet;
 
 /// Bodies slide by less than this part of the shortest edge if pairs of nodes shall stay pairs.
 const SLIDES: f64 = 0.1;
+
+/// Contact of two surfaces, as it is stated or found.
+pub(super) struct Proposal<'a> {
+    pub(super) contact: &'a Contact,
+    pub(super) place: Place,
+    source: Source<'a>,
+    /// The facets of both sides.
+    pub(super) facets: [Vec<FacetId>; 2],
+}
+
+/// Where a proposal is from.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    Groups(&'a [String; 2]),
+    Found(&'a Found),
+}
 
 /// Pairs of surfaces.
 #[derive(Default)]
@@ -48,21 +65,22 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
         let place = Place { table: "contact", index: Some(index), key: contact.key() };
         let fail = |cause| InputError { place, cause };
         let choice = made.of_groups::<D>(contact, groups).map_err(|cause| fail(cause.into()))?;
-        bodies.sides(&choice.first).map_err(fail)?;
+        bodies.sides(choice.otherwise.as_ref().unwrap_or(&choice.first)).map_err(fail)?;
     }
     let by_groups = contacts.iter().all(|contact| matches!(contact.between, Between::Groups(_)));
     let pairs = if by_groups && !automatic { Pairs::default() } else { Pairs::new(bodies, stated, start)? };
+    let mut proposals = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
         let place = Place { table: "contact", index: Some(index), key: contact.key() };
-        let choice = match &contact.between {
-            Between::Groups(groups) => made.of_groups::<D>(contact, groups),
+        let source = match &contact.between {
+            Between::Groups(groups) => Source::Groups(groups),
             Between::Bodies(_) => {
                 let Some(found) = pairs.of_contact(Some(index)).next() else { continue };
-                made.of_found(bodies.mesh, contact, (&pairs.names, found))
+                Source::Found(found)
             }
             Between::All => continue,
         };
-        made.choices.push((choice.map_err(|cause| InputError { place, cause: cause.into() })?, place));
+        proposals.push(Proposal { contact, place, source, facets: source.facets(bodies.mesh) });
     }
     let default = contacts.iter().position(|contact| contact.between == Between::All);
     let place = Place { table: "contact", index: default, key: "" };
@@ -71,10 +89,30 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
             let bodies = found.pair.map(|body| pairs.names[body].clone());
             return Err(Cause::NoFriction { bodies }.at("contact", None, "friction"));
         };
-        let choice = made.of_found(bodies.mesh, contact, (&pairs.names, found));
-        made.choices.push((choice.map_err(|cause| InputError { place, cause: cause.into() })?, place));
+        let source = Source::Found(found);
+        proposals.push(Proposal { contact, place, source, facets: source.facets(bodies.mesh) });
+    }
+    for members in joined(bodies, &proposals)? {
+        let Proposal { contact, place, source, .. } = &proposals[members[0].contact];
+        let choice = match source {
+            _ if members.len() > 1 => made.of_several(bodies.mesh, (&proposals, &members), &pairs.names),
+            Source::Groups(groups) => made.of_groups::<D>(contact, groups),
+            Source::Found(found) => made.of_found(bodies.mesh, contact, (&pairs.names, found)),
+        };
+        made.choices.push((choice.map_err(|cause| InputError { place: *place, cause: cause.into() })?, *place));
     }
     Ok(made)
+}
+
+impl Source<'_> {
+    fn facets<const D: usize, const N: usize>(&self, mesh: &Mesh<D, N>) -> [Vec<FacetId>; 2] {
+        match self {
+            Self::Groups(groups) => {
+                groups.each_ref().map(|group| mesh.facet_groups().get(group).cloned().unwrap_or_default())
+            }
+            Self::Found(found) => found.seeing.clone(),
+        }
+    }
 }
 
 impl Surfaces {
@@ -119,13 +157,54 @@ impl Surfaces {
                 facets.sort_unstable();
             }
             let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
-            if let Some((name, _)) = mesh.facet_groups().iter().find(|(_, group)| **group == facets) {
-                return name.clone();
-            }
-            let name = format!("{own} {relation} {other}");
-            self.groups.push((name.clone(), facets));
-            name
+            self.group(mesh, format!("{own} {relation} {other}"), facets)
         })
+    }
+
+    /// The interface between a common surface and those of several bodies.
+    fn of_several<const D: usize, const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        (proposals, members): (&[Proposal<'_>], &[Member]),
+        names: &[String],
+    ) -> Result<Choice, ObstacleError> {
+        let mut make = |is_common: bool| {
+            let mut facets = BTreeSet::new();
+            let (mut own, mut others) = (Vec::new(), Vec::new());
+            for Member { contact, common } in members {
+                let side = if is_common { *common } else { 1 - common };
+                facets.extend(&proposals[*contact].facets[side]);
+                match proposals[*contact].source {
+                    Source::Groups(groups) => own.push(groups[side].as_str()),
+                    Source::Found(found) => {
+                        facets.extend(&found.beside[side]);
+                        own.push(names[found.pair[side]].as_str());
+                        others.push(names[found.pair[1 - side]].as_str());
+                    }
+                }
+            }
+            let relation = if others.is_empty() { String::new() } else { format!(" sliding on {}", listed(&others)) };
+            self.group(mesh, listed(&own) + &relation, facets.into_iter().collect())
+        };
+        // The sides stay in the order of the first contact.
+        let groups = if members[0].common == 0 { [make(true), make(false)] } else { [make(false), make(true)] };
+        let contact = proposals[members[0].contact].contact;
+        let first = contact.interface::<D>(groups.each_ref().map(String::as_str), false)?;
+        Ok(Choice { first, otherwise: None })
+    }
+
+    /// The name of a group of these facets: one of the mesh, or a new one.
+    fn group<const D: usize, const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        name: String,
+        facets: Vec<FacetId>,
+    ) -> String {
+        if let Some((name, _)) = mesh.facet_groups().iter().find(|(_, group)| **group == facets) {
+            return name.clone();
+        }
+        self.groups.push((name.clone(), facets));
+        name
     }
 }
 
@@ -171,7 +250,12 @@ impl Pairs {
                         return Err(fail(Cause::SamePair { bodies: pair.map(|body| names[body].clone()) }));
                     }
                     known.insert(ordered(pair));
-                    wanted.push(Wanted { pair, named: true });
+                    wanted.push(Wanted {
+                        pair,
+                        named: true,
+                        friction: one.friction(),
+                        slides: one.matching != Some(true),
+                    });
                     contact.push(Some(index));
                 }
                 Between::All if default.is_some() => return Err(Cause::TwoDefaults.at("contact", Some(index), "")),
@@ -180,8 +264,11 @@ impl Pairs {
         }
         if stated.automatic || default.is_some() {
             let all = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| [a, b]));
+            let common = default.map(|index| &stated.contacts[index]);
+            let (friction, slides) =
+                common.map_or((0.0, D > 1), |one| (one.friction(), D > 1 && one.matching != Some(true)));
             for pair in all.filter(|pair| !known.contains(pair)) {
-                wanted.push(Wanted { pair, named: false });
+                wanted.push(Wanted { pair, named: false, friction, slides });
                 contact.push(None);
             }
         }

@@ -259,8 +259,11 @@ pub enum Cause {
     #[error("the {} is inside the body; only the boundary can touch another body", facet(.nodes))]
     InnerFacet { nodes: Vec<usize> },
     /// A side of an interface that lies on several bodies.
-    #[error("group \"{group}\" lies on several bodies; give an interface of its own to each of them")]
-    SeveralBodies { group: String },
+    #[error(
+        "group \"{group}\" lies on several bodies; it may do so if \"{other}\" is of one body and surfaces slide along \
+         each other (`matching = false`); else give each of them a contact of its own"
+    )]
+    SeveralBodies { group: String, other: String },
     /// A facet that does not face the other side of its interface.
     #[error(
         "the {} does not face the other body: outward normals of the two groups must be within 60° of {} and {}; take \
@@ -302,6 +305,18 @@ pub enum Cause {
     )]
     Covered { nodes: Box<[Vec<usize>; 2]> },
     /// A node of an interface that may touch something else.
+    /// Contacts that share nodes with different friction.
+    #[error(
+        "node {node} belongs to two contacts, which are solved together, but their friction is {} and {}; give both the \
+         same `friction`", short(.friction[0]), short(.friction[1])
+    )]
+    FrictionsDiffer { node: usize, friction: [f64; 2] },
+    /// Contacts that share nodes and shall be pairs of nodes.
+    #[error(
+        "node {node} belongs to two contacts, which are solved together and slide; leave `matching` out of both, or make \
+         it false"
+    )]
+    SharedPairs { node: usize },
     #[error(
         "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by \
          its `group` the edges that may touch it"

@@ -6,6 +6,7 @@ mod builder;
 mod candidates;
 mod contacts;
 mod error;
+mod joined;
 mod pairs;
 mod plausibility;
 mod renumber;

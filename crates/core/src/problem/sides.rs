@@ -24,12 +24,14 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
 
 /// One side of an interface.
 pub(super) struct Side<const D: usize> {
+    /// Those of one body after those of the other.
     pub(super) facets: Vec<FacetId>,
     /// Nodes along the boundary.
     pub(super) nodes: Vec<NodeId>,
     /// Σ of outward normals times areas (m² or 1).
     pub(super) outward: [f64; D],
-    body: NodeId,
+    /// The bodies that it belongs to, by their first nodes, ascending.
+    pub(super) bodies: Vec<NodeId>,
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
@@ -38,15 +40,23 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
     }
 
-    /// Both sides of an interface, which are of different bodies with one hypothesis.
+    /// Both sides of an interface, which are of different bodies with one hypothesis. Of surfaces that slide, one side
+    /// may be of several bodies.
     pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {
         let [first, second] = interface.groups();
         let sides = [self.side(first)?, self.side(second)?];
-        if sides[0].body == sides[1].body {
+        if sides[0].bodies.iter().any(|body| sides[1].bodies.contains(body)) {
             return Err(Cause::SameBody { groups: interface.groups().map(str::to_string) });
         }
-        let [first, second] = sides.each_ref().map(|side| (self.law)(side.facets[0]).hypothesis());
-        if first == second { Ok(sides) } else { Err(Cause::PlanesDiffer) }
+        let several = sides.each_ref().map(|side| side.bodies.len() > 1);
+        if several == [true; 2] || (interface.is_matching() && several != [false; 2]) {
+            let group = interface.groups()[usize::from(!several[0])].to_string();
+            return Err(Cause::SeveralBodies { group, other: interface.groups()[usize::from(several[0])].to_string() });
+        }
+        let hypothesis = |facet: &FacetId| (self.law)(*facet).hypothesis();
+        let first = hypothesis(&sides[0].facets[0]);
+        let all = sides.iter().flat_map(|side| &side.facets).all(|facet| hypothesis(facet) == first);
+        if all { Ok(sides) } else { Err(Cause::PlanesDiffer) }
     }
 
     /// Whether all edges face the other side, with the normal from the second one to the first.
@@ -63,9 +73,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         Ok(())
     }
 
-    /// The facets of a group, which are free and of one body.
+    /// The facets of a group, which are free.
     fn side(&self, group: &str) -> Result<Side<D>, Cause> {
-        let facets = boundary::facet_group(self.mesh, group)?.to_vec();
+        let mut facets = boundary::facet_group(self.mesh, group)?.to_vec();
         let nodes_of = |facet: FacetId| self.mesh.facets()[facet.index()].nodes;
         let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
         if let Some(&facet) = facets.iter().find(|facet| self.mesh.facets()[facet.index()].neighbour.is_some()) {
@@ -74,17 +84,20 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
             return Err(Cause::NotFree { nodes: shown(facet), by });
         }
-        let body_of = |facet: FacetId| self.body[nodes_of(facet)[0].index()];
-        let body = body_of(facets[0]);
-        if facets.iter().any(|&facet| body_of(facet) != body) {
-            return Err(Cause::SeveralBodies { group: group.to_string() });
-        }
+        facets.sort_by_key(|&facet| self.body_of(facet));
+        let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
+        bodies.dedup();
         let mut outward = [0.0; D];
         for &facet in &facets {
             let (normal, area) = self.mesh.facet_normal(facet);
             (0..D).for_each(|c| outward[c] += area * normal[c]);
         }
-        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, body })
+        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, bodies })
+    }
+
+    /// The body of a facet, by its first node.
+    pub(super) fn body_of(&self, facet: FacetId) -> NodeId {
+        self.body[self.mesh.facets()[facet.index()].nodes[0].index()]
     }
 }
 

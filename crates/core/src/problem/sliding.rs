@@ -12,7 +12,7 @@ const ONE_PLACE: f64 = 1e-12;
 /// Surfaces that stick out beyond each other by less than this part of their length are as long as each other.
 const OVERHANG: f64 = 1e-9;
 
-/// The facets of a side in ascending order of ξ, each with its nodes and their ξ (m).
+/// Facets of a body in ascending order of ξ, each with its nodes and their ξ (m).
 type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
 
 /// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and
@@ -45,9 +45,12 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Which side is the slave: the one that sticks out less beyond the other one at the start; of two that do so
-    /// alike, that with the shorter edges.
+    /// Which side is the slave: the one of several bodies, else the one that sticks out less beyond the other one at
+    /// the start; of two that do so alike, that with the shorter edges.
     fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
+        if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
+            return several;
+        }
         let along = tangent(&unit(&sides[0].outward));
         let ranges = sides.each_ref().map(|side| {
             let places = side.nodes.iter().map(|node| {
@@ -76,20 +79,24 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let points = self.mesh.points();
         let from_origin = |node: NodeId| -> [f64; D] { std::array::from_fn(|c| points[node.index()][c] - origin[c]) };
         let along = tangent(normal);
-        let chain = self.chain(side, |node| dot(&from_origin(node), &along))?;
+        let chains = self.chains(side, |node| dot(&from_origin(node), &along))?;
         let (start, obstacle) = (surface.nodes().len(), surface.obstacles().len());
         let (mut nodes, mut xi, mut edges, mut facets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (facet, ends) in chain {
-            if nodes.last() != Some(&ends[0].1) {
-                nodes.push(ends[0].1);
-                xi.push(ends[0].0);
+        let mut starts = Vec::with_capacity(chains.len());
+        for chain in chains {
+            starts.push(nodes.len());
+            for (facet, ends) in chain {
+                if nodes.last() != Some(&ends[0].1) {
+                    nodes.push(ends[0].1);
+                    xi.push(ends[0].0);
+                }
+                let first = nodes.len() - 1;
+                nodes.push(ends[1].1);
+                xi.push(ends[1].0);
+                edges.push(first);
+                let nodes = self.mesh.facets()[facet.index()].nodes.map(|node| first + usize::from(node == ends[1].1));
+                facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
             }
-            let first = nodes.len() - 1;
-            nodes.push(ends[1].1);
-            xi.push(ends[1].0);
-            edges.push(first);
-            let nodes = self.mesh.facets()[facet.index()].nodes.map(|node| first + usize::from(node == ends[1].1));
-            facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
         }
         let contact = |&node: &NodeId| {
             let held = self.fixed[node.index()];
@@ -104,18 +111,26 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
         surface.add(facing, contacts, facets);
-        Ok(Line::new(start, xi, eta, edges))
+        Ok(Line::new(start, [xi, eta], edges, &starts))
     }
 
-    /// The facets of a side along the interface, of which none covers another one.
-    fn chain(&self, side: &Side<D>, xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
+    /// The facets of each body of a side, of bodies in ascending order of their first ξ.
+    fn chains(&self, side: &Side<D>, xi: impl Fn(NodeId) -> f64) -> Result<Vec<Chain>, Cause> {
+        let of_body = side.facets.chunk_by(|&a, &b| self.body_of(a) == self.body_of(b));
+        let mut chains = of_body.map(|facets| self.chain(facets, &xi)).collect::<Result<Vec<_>, Cause>>()?;
+        chains.sort_by(|a, b| a[0].1[0].0.total_cmp(&b[0].1[0].0));
+        Ok(chains)
+    }
+
+    /// Facets of a body along the interface, of which none covers another one.
+    fn chain(&self, facets: &[FacetId], xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
         let ends = |&facet: &FacetId| {
             let nodes = &self.mesh.facets()[facet.index()].nodes;
             let mut ends = [nodes[0], nodes[D - 1]].map(|node| (xi(node), node));
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
             (facet, ends)
         };
-        let mut chain: Chain = side.facets.iter().map(ends).collect();
+        let mut chain: Chain = facets.iter().map(ends).collect();
         chain.sort_by(|a, b| a.1[0].0.total_cmp(&b.1[0].0));
         for pair in chain.windows(2) {
             let [low, high] = [pair[1].1[0].0, pair[0].1[1].0];

@@ -167,15 +167,17 @@ impl<const D: usize> SlidingDensity<D> {
             worse(tangential, normal) / size(f).max(1e-12 * largest)
         });
         let (mut force, mut couple, mut scale) = ([0.0; D], 0.0, 0.0);
-        let places = [sliding.slave().xi(), self.coupling.places()];
+        let xi = [sliding.slave().xi(), sliding.master().xi()];
         for (side, edges) in facets.edges.iter().enumerate() {
             for (edge, first) in edges.iter().zip([sliding.slave(), sliding.master()][side].edges()) {
                 let facet = &problem.surface().facets()[edge.facet];
+                // Places on the slave are those of the master that it faces.
+                let moved = if side == 0 { self.coupling.shifts()[sliding.slave().part_of(*first)] } else { 0.0 };
                 let moments = Problem::<D, N>::facet_moments(facet.area, &linear[edge.facet]);
                 for k in 0..2 {
                     let moment = moments[edge.ends[k]];
                     (0..D).for_each(|c| force[c] += moment[c]);
-                    couple += places[side][first + k] * along(&moment, sliding.frame().normal());
+                    couple += (xi[side][first + k] + moved) * along(&moment, sliding.frame().normal());
                     scale += size(&moment);
                 }
             }

@@ -115,7 +115,7 @@ fn measure<const D: usize, const N: usize>(
     pressure: &impl Fn(usize, usize) -> f64,
     sums: &mut [[f64; 2]],
 ) {
-    let coupling = sliding.coupling_at(instant.shift);
+    let coupling = sliding.coupling_at(&instant.shifts);
     let acts = |node: usize, which: usize| if coupling.is_active(node) { pressure(node, which) } else { 0.0 };
     if (0..coupling.len()).all(|node| acts(node, 0) == 0.0 && acts(node, 1) == 0.0) {
         return;

@@ -76,8 +76,8 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
             let place = both(next.now.displacement());
             let quarter = 0.25 * length;
             let at_middle = |k: usize, node: usize| place[k][node] - quarter * (slip[k][node] + to[k][node]);
-            let shift = sliding.shift(|node| at_middle(0, node), |node| at_middle(1, node));
-            let mean = SlidingDensity::mean(start, end, sliding.coupling_at(shift));
+            let shifts = sliding.shifts(|node| at_middle(0, node), |node| at_middle(1, node));
+            let mean = SlidingDensity::mean(start, end, sliding.coupling_at(&shifts));
             add(&mean, &slip, [half, all]);
         }
     }

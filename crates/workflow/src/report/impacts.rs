@@ -3,6 +3,7 @@
 use percute_core::contact::{ContactResults, Frame};
 use percute_core::problem::Problem;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The bodies and the interfaces of a run in which bodies may strike each other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,7 +27,8 @@ pub struct BodyMotion {
     pub velocity_after: Option<Vec<f64>>,
 }
 
-/// How two bodies come together and part: their relative velocity along the normal of the interface.
+/// How two bodies come together and part: their relative velocity along the normal of the interface. Of several bodies
+/// on one side, it is that of their common centre of mass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InterfaceRebound {
     /// The groups of edges of both bodies.
@@ -60,13 +62,12 @@ impl Impacts {
             return None;
         }
         let centres = Centres::new(problem, contact);
-        let last = contact.instants.len().saturating_sub(1);
         let names = problem.mesh().part_names();
         let bodies = names.into_iter().enumerate().map(|(body, name)| BodyMotion {
             name,
             mass: centres.mass[body],
             velocity_before: centres.start[body].to_vec(),
-            velocity_after: centres.at(body, last).map(|v| v.to_vec()),
+            velocity_after: centres.after[body].map(|v| v.to_vec()),
         });
         let sides = (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_none());
         let sides: Vec<usize> = sides.collect();
@@ -81,11 +82,12 @@ impl Impacts {
 /// The motion of the centres of mass: contact forces alone change it, unless there are supports or loads.
 struct Centres<'c, const D: usize> {
     contact: &'c ContactResults<D>,
-    /// The body that each obstacle acts on.
-    of_obstacle: Vec<usize>,
+    /// The bodies that each obstacle acts on, ascending.
+    of_obstacle: Vec<BTreeSet<usize>>,
     mass: Vec<f64>,
-    /// Velocity at the start (m/s).
+    /// Velocity at the start (m/s), and at the last instant if contact alone changes it.
     start: Vec<[f64; D]>,
+    after: Vec<Option<[f64; D]>>,
     /// Whether contact alone changes velocities.
     alone: bool,
 }
@@ -100,37 +102,52 @@ impl<'c, const D: usize> Centres<'c, D> {
             (0..D).for_each(|c| start[body][c] += m * v[c]);
         }
         start.iter_mut().zip(&mass).for_each(|(v, m)| *v = v.map(|x| x / m));
-        let mut of_obstacle = vec![0; contact.obstacles.len()];
-        contact.nodes.iter().for_each(|point| of_obstacle[point.obstacle] = of_node[point.node.index()]);
+        let mut of_obstacle = vec![BTreeSet::new(); contact.obstacles.len()];
+        for point in &contact.nodes {
+            of_obstacle[point.obstacle].insert(of_node[point.node.index()]);
+        }
         let alone =
             problem.prescribed().is_empty() && problem.facet_loads().is_empty() && problem.body_loads().is_empty();
-        Self { contact, of_obstacle, mass, start, alone }
+        let mut after = start.clone();
+        for (point, summary) in contact.nodes.iter().zip(&contact.summary) {
+            let body = of_node[point.node.index()];
+            (0..D).for_each(|c| after[body][c] += summary.impulse[c] / mass[body]);
+        }
+        let after = after.into_iter().map(|velocity| alone.then_some(velocity)).collect();
+        Self { contact, of_obstacle, mass, start, after, alone }
     }
 
-    /// Velocity of a body at an instant (m/s).
-    fn at(&self, body: usize, n: usize) -> Option<[f64; D]> {
-        let acting = self.contact.obstacles.iter().zip(&self.of_obstacle).filter(|(_, of)| **of == body);
-        let mut velocity = self.start[body];
-        for (over_time, _) in acting {
-            let impulse = over_time.get(n)?.impulse;
-            (0..D).for_each(|c| velocity[c] += impulse[c] / self.mass[body]);
+    /// Velocity of the bodies of an obstacle at an instant (m/s), that of their common centre of mass; none if another
+    /// obstacle acts on some of them and on others together.
+    fn at(&self, obstacle: usize, n: usize) -> Option<[f64; D]> {
+        let bodies = &self.of_obstacle[obstacle];
+        let total: f64 = bodies.iter().map(|&body| self.mass[body]).sum();
+        let mut velocity = [0.0; D];
+        for &body in bodies {
+            (0..D).for_each(|c| velocity[c] += self.mass[body] / total * self.start[body][c]);
+        }
+        let all = self.contact.obstacles.iter().zip(&self.of_obstacle);
+        for (over_time, of) in all.filter(|(_, of)| !of.is_disjoint(bodies)) {
+            let impulse = over_time.get(n).filter(|_| of.is_subset(bodies))?.impulse;
+            (0..D).for_each(|c| velocity[c] += impulse[c] / total);
         }
         self.alone.then_some(velocity)
     }
 
     /// Whether another obstacle than these acts on one of their bodies between two instants.
     fn others_act(&self, sides: [usize; 2], [first, last]: [usize; 2]) -> bool {
-        let bodies = sides.map(|side| self.of_obstacle[side]);
+        let bodies = sides.map(|side| &self.of_obstacle[side]);
         let mut others = (0..self.of_obstacle.len()).filter(|k| !sides.contains(k));
         others.any(|k| {
             let over_time = &self.contact.obstacles[k][first..=last];
-            bodies.contains(&self.of_obstacle[k]) && over_time.iter().any(|sum| sum.in_contact > 0)
+            bodies.iter().any(|bodies| !bodies.is_disjoint(&self.of_obstacle[k]))
+                && over_time.iter().any(|sum| sum.in_contact > 0)
         })
     }
 
     /// Relative velocity of the bodies of two obstacles along a normal (m/s).
     fn relative(&self, sides: [usize; 2], frame: &Frame<D>, n: usize) -> Option<f64> {
-        let [first, second] = sides.map(|side| self.at(self.of_obstacle[side], n));
+        let [first, second] = sides.map(|side| self.at(side, n));
         let (first, second) = (first?, second?);
         Some(frame.split(&std::array::from_fn(|c| first[c] - second[c])).0)
     }
@@ -167,8 +184,9 @@ fn rebound<const D: usize, const N: usize>(
     let before = centres.relative(sides, &frame, first.saturating_sub(1));
     let after = if ended { centres.relative(sides, &frame, last + 1) } else { None };
     let no_restitution = match (before, after) {
-        (None, _) => Some("supports or loads change the velocities, too"),
-        (_, None) => Some("contact has not ended"),
+        _ if !centres.alone => Some("supports or loads change the velocities, too"),
+        _ if !ended => Some("contact has not ended"),
+        (None, _) | (_, None) => Some("another contact changes the velocities, too"),
         _ if centres.others_act(sides, [first, last]) => Some("another contact changes the velocities, too"),
         (Some(before), _) if before >= 0.0 => Some("the bodies do not come nearer before they touch"),
         (_, Some(after)) if after < 0.0 => Some("the bodies still come nearer, and will touch again"),

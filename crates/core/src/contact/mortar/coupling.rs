@@ -17,10 +17,14 @@ pub struct Coupling {
     /// Segments of the edges before each edge of the slave, and of all.
     before: Vec<usize>,
     shapes: Vec<DualShape>,
-    /// ξ of the nodes of the master (m), as that of the slave in the undeformed mesh.
+    /// How far each part of the slave has moved along the tangent against the master (m).
+    shifts: Vec<f64>,
+    /// For each part of the slave, ξ of the nodes of the master (m), as that of this part in the undeformed mesh.
     places: Vec<f64>,
-    /// 1 over the length of each edge of the master (1/m).
+    /// For each part of the slave, 1 over the length of each edge of the master (1/m).
     inverse: Vec<f64>,
+    /// Number of nodes of the master.
+    masters: usize,
     /// Rows of D: the values at the node before, at the node and at the node after it.
     slave: Vec<[f64; 3]>,
     /// The columns of each row of M, from the first one to before the last one.
@@ -33,17 +37,26 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// Computes all anew, in the same memory: the slave has moved by `shift` (m) along the tangent against the master.
-    /// Nodes nearer than `tolerance` (m) are at one place.
-    pub(super) fn update(&mut self, [slave, master]: [&Side; 2], shift: f64, tolerance: f64) {
-        place(slave, master, shift, tolerance, &mut self.places);
-        segments(slave, master, &self.places, &mut self.segments);
-        self.inverse.clear();
-        let places = &self.places;
-        self.inverse.extend(master.edges().iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
+    /// Computes all anew, in the same memory: each part of the slave has moved so far (m) along the tangent against the
+    /// master. Nodes nearer than `tolerance` (m) are at one place.
+    pub(super) fn update(&mut self, [slave, master]: [&Side; 2], shifts: &[f64], tolerance: f64) {
+        let Self { places, segments: found, inverse, .. } = self;
+        places.clear();
+        found.clear();
+        inverse.clear();
+        for (part, &shift) in slave.parts().iter().zip(shifts) {
+            let start = places.len();
+            place((slave, part), master, shift, tolerance, places);
+            segments((slave, part), master, &places[start..], found);
+            let length = |first: usize| places[start + first + 1] - places[start + first];
+            inverse.extend(master.edges().iter().map(|&first| 1.0 / length(first)));
+        }
+        self.shifts.clear();
+        self.shifts.extend_from_slice(shifts);
+        self.masters = master.len();
         self.arrange(slave, master);
-        for edge in 0..slave.edges().len() {
-            self.add_edge(edge, slave, master);
+        for (index, part) in slave.parts().iter().enumerate() {
+            part.edges.clone().for_each(|edge| self.add_edge((index, edge), slave, master));
         }
         for (weight, row) in self.weights.iter_mut().zip(&self.slave) {
             *weight = row[0] + row[1] + row[2];
@@ -85,8 +98,8 @@ impl Coupling {
         self.shapes.clear();
     }
 
-    /// Adds the part of one edge of the slave.
-    fn add_edge(&mut self, edge: usize, slave: &Side, master: &Side) {
+    /// Adds one edge of a part of the slave.
+    fn add_edge(&mut self, (part, edge): (usize, usize), slave: &Side, master: &Side) {
         let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
         let ends = [slave.xi()[first], slave.xi()[first + 1]];
         let segments = &self.segments[self.before[edge]..self.before[edge + 1]];
@@ -109,10 +122,11 @@ impl Coupling {
                 self.slave[first + 1][1] += two;
             }
         }
-        let lines = shape.lines();
+        let (lines, count) = (shape.lines(), master.edges().len());
+        let (places, inverses) = (&self.places[part * self.masters..], &self.inverse[part * count..]);
         for segment in segments {
             let low = master.edges()[segment.master];
-            let (from, scale) = (self.places[low], self.inverse[segment.master]);
+            let (from, scale) = (places[low], inverses[segment.master]);
             let hat = segment.ends.map(|end| (end - from) * scale);
             let second = segment.ends.map(|end| (end - ends[0]) * inverse);
             let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
@@ -155,7 +169,7 @@ impl Coupling {
         self.weights[node] > self.least
     }
 
-    /// The segments, in ascending order of ξ.
+    /// The segments, in ascending order of ξ on each part of the slave.
     #[must_use]
     pub fn segments(&self) -> &[Segment] {
         &self.segments
@@ -173,10 +187,16 @@ impl Coupling {
         self.shapes[edge]
     }
 
-    /// ξ of the nodes of the master (m), as that of the slave in the undeformed mesh.
+    /// ξ of the nodes of the master (m), as that of a part of the slave in the undeformed mesh.
     #[must_use]
-    pub fn places(&self) -> &[f64] {
-        &self.places
+    pub fn places(&self, part: usize) -> &[f64] {
+        &self.places[part * self.masters..][..self.masters]
+    }
+
+    /// How far each part of the slave has moved along the tangent against the master (m).
+    #[must_use]
+    pub fn shifts(&self) -> &[f64] {
+        &self.shifts
     }
 
     /// The row of D of a multiplier (m): its values at the node before, at the node itself and at the one after it.

@@ -93,10 +93,8 @@ fn faces<const D: usize>(sliding: &SlidingSurfaces<D>, coupling: &Coupling, plac
     match place {
         Place::Slave(node) => coupling.is_active(node),
         Place::Master(node) => {
-            let (place, xi) = (coupling.places()[node], sliding.slave().xi());
-            let edges = sliding.slave().edges();
-            let after = edges.partition_point(|&first| xi[first] <= place);
-            after.checked_sub(1).is_some_and(|edge| place <= xi[edges[edge] + 1])
+            let slave = sliding.slave();
+            (0..slave.parts().len()).any(|part| aside(slave, part, coupling.places(part)[node]) <= 0.0)
         }
     }
 }
@@ -112,9 +110,28 @@ fn difference<const D: usize>(
         Place::Slave(node) if coupling.is_active(node) => {
             coupling.difference(node, slave, master) / coupling.weight(node)
         }
-        Place::Slave(node) => slave(node) - interpolated(coupling.places(), sliding.slave().xi()[node], master),
-        Place::Master(node) => master(node) - interpolated(sliding.slave().xi(), coupling.places()[node], slave),
+        Place::Slave(node) => {
+            let places = coupling.places(sliding.slave().part_of(node));
+            slave(node) - interpolated(places, sliding.slave().xi()[node], master)
+        }
+        Place::Master(node) => {
+            // The body that it faces, or is nearest to.
+            let side = sliding.slave();
+            let away = |part: &usize| aside(side, *part, coupling.places(*part)[node]);
+            let part = (0..side.parts().len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
+            let nodes = side.parts()[part].nodes.clone();
+            let first = nodes.start;
+            master(node) - interpolated(&side.xi()[nodes], coupling.places(part)[node], |k| slave(first + k))
+        }
     }
+}
+
+/// How far a place is beside the edges of a part (m); 0 on one of them.
+fn aside(side: &Side, part: usize, place: f64) -> f64 {
+    let (xi, edges) = (side.xi(), &side.edges()[side.parts()[part].edges.clone()]);
+    let after = edges.partition_point(|&first| xi[first] <= place);
+    let before = after.checked_sub(1).map_or(f64::INFINITY, |edge| place - xi[edges[edge] + 1]);
+    before.min(edges.get(after).map_or(f64::INFINITY, |&first| xi[first] - place)).max(0.0)
 }
 
 /// The value at a place of a field that is linear between nodes at these places, and constant beyond.

@@ -7,10 +7,15 @@ use super::skyline::Skyline;
 /// 1/m of the nodes of the slave and of the master (1/kg).
 pub(super) fn gram(matrix: &mut Skyline, coupling: &Coupling, inverse: [&[f64]; 2], scaled: &mut Vec<f64>) {
     matrix.clear();
-    let mut first = 0;
+    let (mut first, mut last) = (0, 0);
     for row in 0..coupling.len() {
         let own = coupling.slave_row(row);
         let (low, values) = coupling.master_row(row);
+        // Another body may begin before the end of the last one.
+        if low < last {
+            first = 0;
+        }
+        last = low;
         scaled.clear();
         scaled.extend(values.iter().zip(&inverse[1][low..]).map(|(value, inverse)| value * inverse));
         // Where edges are cut, D joins nodes up to two apart.

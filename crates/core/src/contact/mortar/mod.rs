@@ -5,6 +5,9 @@
 //! multipliers λ (N/m): the forces on the slave are Dᵀλ, those on the master −Mᵀλ, and (D f − M f')_k / w_k is the
 //! weighted value of a field f on the slave less a field f' on the master.
 //!
+//! The slave may belong to several bodies side by side, of which each moves along ξ in its own way: a block on two
+//! blocks. Their multipliers act on the common master, so that one problem has them all.
+//!
 //! A step has the normal problem A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0 with A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ and the weighted
 //! gaps b that the step would end with, over Δt h; then friction, A λ + b = 0 within |λ| ≤ μ λ_n. D and M are those of
 //! the predicted displacements, so that the step is explicit. On matching surfaces D = M is diagonal, and nodes are
@@ -33,7 +36,7 @@ pub use coupling::Coupling;
 pub use dual::DualShape;
 pub use facing::Facing;
 pub use partition::Segment;
-pub use side::Side;
+pub use side::{Part, Side};
 pub(crate) use step::SlidingContact;
 pub use surfaces::SlidingSurfaces;
 pub(crate) use surfaces::tangent;

@@ -1,6 +1,6 @@
 //! The partition of the common part of two surfaces.
 
-use super::side::Side;
+use super::side::{Part, Side};
 
 /// A part of the interface on one edge of each surface: its ends are nodes of one or the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,11 +13,10 @@ pub struct Segment {
     pub ends: [f64; 2],
 }
 
-/// Puts the nodes of the master, at ξ less `shift`, among those of the slave: where two are nearer than `tolerance`,
-/// the place is that of the slave.
-pub(super) fn place(slave: &Side, master: &Side, shift: f64, tolerance: f64, places: &mut Vec<f64>) {
-    let (xi, mut near) = (slave.xi(), 0);
-    places.clear();
+/// Puts the nodes of the master, at ξ less `shift`, among those of a part of the slave: where two are nearer than
+/// `tolerance`, the place is that of the slave.
+pub(super) fn place((slave, part): (&Side, &Part), master: &Side, shift: f64, tolerance: f64, places: &mut Vec<f64>) {
+    let (xi, mut near) = (&slave.xi()[part.nodes.clone()], 0);
     places.extend(master.xi().iter().map(|place| {
         let place = place - shift;
         while near + 1 < xi.len() && (xi[near + 1] - place).abs() <= (xi[near] - place).abs() {
@@ -27,11 +26,11 @@ pub(super) fn place(slave: &Side, master: &Side, shift: f64, tolerance: f64, pla
     }));
 }
 
-/// Finds all segments, in ascending order, with the nodes of the master at these places.
-pub(super) fn segments(slave: &Side, master: &Side, places: &[f64], found: &mut Vec<Segment>) {
-    found.clear();
+/// Finds all segments on a part of the slave, in ascending order, with the nodes of the master at these places.
+pub(super) fn segments((slave, part): (&Side, &Part), master: &Side, places: &[f64], found: &mut Vec<Segment>) {
     let mut next = 0;
-    for (edge, &first) in slave.edges().iter().enumerate() {
+    for edge in part.edges.clone() {
+        let first = slave.edges()[edge];
         let own = [slave.xi()[first], slave.xi()[first + 1]];
         while next < master.edges().len() && places[master.edges()[next] + 1] <= own[0] {
             next += 1;

@@ -1,9 +1,13 @@
 //! One of two surfaces that slide along each other.
 
-/// The nodes of a surface along the interface, in ascending order of ξ, and its edges.
+use std::ops::Range;
+
+/// The nodes of a surface along the interface and its edges: those of one body after those of the other, for each in
+/// ascending order of ξ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
     start: usize,
+    parts: Vec<Part>,
     /// ξ and η of each node of the undeformed mesh (m).
     xi: Vec<f64>,
     eta: Vec<f64>,
@@ -11,24 +15,62 @@ pub struct Side {
     edges: Vec<usize>,
     /// 1 over the length of each edge (1/m).
     inverse: Vec<f64>,
-    /// The share of each node in the mean of the surface.
+    /// The share of each node in the mean of its part.
     share: Vec<f64>,
 }
 
+/// The part of a surface that belongs to one body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Its nodes.
+    pub nodes: Range<usize>,
+    /// Its edges, among [`Side::edges`].
+    pub edges: Range<usize>,
+}
+
 impl Side {
-    /// From ξ and η of the nodes (m), in ascending order of ξ, and the first node of each edge, in ascending order.
-    /// `start` is the position of the first node in the contact surface.
-    pub(crate) fn new(start: usize, xi: Vec<f64>, eta: Vec<f64>, edges: Vec<usize>) -> Self {
+    /// From ξ and η of the nodes (m), the first node of each edge, in ascending order, and the first node of each body:
+    /// its nodes are in ascending order of ξ. `start` is the position of the first node in the contact surface.
+    pub(crate) fn new(start: usize, [xi, eta]: [Vec<f64>; 2], edges: Vec<usize>, bodies: &[usize]) -> Self {
+        let edges_before = |node: usize| edges.partition_point(|&first| first < node);
+        let part = |(k, &first): (usize, &usize)| {
+            let end = bodies.get(k + 1).copied().unwrap_or(xi.len());
+            Part { nodes: first..end, edges: edges_before(first)..edges_before(end) }
+        };
+        let parts: Vec<Part> = bodies.iter().enumerate().map(part).collect();
         let mut share = vec![0.0; xi.len()];
         for &first in &edges {
             let half = 0.5 * (xi[first + 1] - xi[first]);
             share[first] += half;
             share[first + 1] += half;
         }
-        let length: f64 = share.iter().sum();
-        share.iter_mut().for_each(|share| *share /= length);
+        for part in &parts {
+            let length: f64 = share[part.nodes.clone()].iter().sum();
+            share[part.nodes.clone()].iter_mut().for_each(|share| *share /= length);
+        }
         let inverse = edges.iter().map(|&first| 1.0 / (xi[first + 1] - xi[first])).collect();
-        Self { start, xi, eta, edges, inverse, share }
+        Self { start, parts, xi, eta, edges, inverse, share }
+    }
+
+    /// The parts of all bodies that it belongs to.
+    #[inline]
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The part of an edge.
+    #[inline]
+    #[must_use]
+    pub fn part_of_edge(&self, edge: usize) -> usize {
+        self.parts.partition_point(|part| part.edges.end <= edge)
+    }
+
+    /// The part of a node.
+    #[inline]
+    #[must_use]
+    pub fn part_of(&self, node: usize) -> usize {
+        self.parts.partition_point(|part| part.nodes.end <= node)
     }
 
     /// Number of nodes.
@@ -58,7 +100,7 @@ impl Side {
         position.checked_sub(self.start).filter(|&node| node < self.len())
     }
 
-    /// The coordinates ξ of the nodes in the undeformed mesh (m), ascending.
+    /// The coordinates ξ of the nodes in the undeformed mesh (m), ascending in each part.
     #[inline]
     #[must_use]
     pub fn xi(&self) -> &[f64] {
@@ -85,9 +127,9 @@ impl Side {
         &self.inverse
     }
 
-    /// The mean of a field over the surface, by length.
+    /// The mean of a field over a part of the surface, by length.
     #[inline]
-    pub(super) fn mean(&self, field: impl Fn(usize) -> f64) -> f64 {
-        self.share.iter().enumerate().map(|(node, share)| share * field(node)).sum()
+    pub(super) fn mean(&self, part: &Part, field: impl Fn(usize) -> f64) -> f64 {
+        part.nodes.clone().map(|node| self.share[node] * field(node)).sum()
     }
 }

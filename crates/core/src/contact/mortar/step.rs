@@ -21,6 +21,7 @@ const FAR: f64 = 4.0;
 pub(crate) struct SlidingContact {
     /// Among [`ContactSurface::sliding`].
     index: usize,
+    shifts: Vec<f64>,
     coupling: Coupling,
     normal_matrix: Skyline,
     /// Another one only if the tangential motion of some node is prescribed.
@@ -103,6 +104,7 @@ impl SlidingContact {
         let guided = sides.iter().any(|side| side.guided.contains(&true));
         Self {
             index,
+            shifts: Vec::new(),
             coupling: Coupling::default(),
             normal_matrix: Skyline::default(),
             tangential_matrix: guided.then(Skyline::default),
@@ -152,11 +154,11 @@ impl SlidingContact {
     fn is_touched<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
         let [slave, master] = &self.sides;
         let (low, [bottom, top]) = (slave.range()[0], master.range());
-        let shift = sliding.shift(|node| slave.along[node], |node| master.along[node]);
-        if !shift.is_finite() || low - top > FAR * (top - bottom) {
+        sliding.find_shifts(&mut self.shifts, |node| slave.along[node], |node| master.along[node]);
+        if self.shifts.iter().any(|shift| !shift.is_finite()) || low - top > FAR * (top - bottom) {
             return false;
         }
-        sliding.update(&mut self.coupling, shift);
+        sliding.update(&mut self.coupling, &self.shifts);
         let (coupling, [dt, h]) = (&self.coupling, prediction.steps);
         let gap = |k: usize| coupling.difference(k, |node| slave.eta[node], |node| master.eta[node]);
         self.right.clear();

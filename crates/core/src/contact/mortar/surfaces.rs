@@ -23,13 +23,13 @@ pub(crate) fn tangent<const D: usize>(normal: &[f64; D]) -> [f64; D] {
 }
 
 impl<const D: usize> SlidingSurfaces<D> {
-    /// From slave and master, with the unit normal from the master to the slave. Nodes nearer than `tolerance` (m)
-    /// along the interface are at one place.
+    /// From slave and master, which is of one body, with the unit normal from the master to the slave. Nodes nearer
+    /// than `tolerance` (m) along the interface are at one place.
     pub(crate) fn new(sides: [Side; 2], normal: [f64; D], law: Coulomb, tolerance: f64) -> Self {
         Self { sides, frame: Frame::new(normal), tangent: tangent(&normal), law, tolerance }
     }
 
-    /// The slave: its nodes have the multipliers.
+    /// The slave: its nodes have the multipliers. It may belong to several bodies.
     #[inline]
     #[must_use]
     pub fn slave(&self) -> &Side {
@@ -69,24 +69,38 @@ impl<const D: usize> SlidingSurfaces<D> {
         self.law
     }
 
-    /// How far the slave has moved along the tangent against the master (m), from the tangential displacements of their
-    /// nodes: the difference of the means over both surfaces, by length.
+    /// How far each part of the slave has moved along the tangent against the master (m), from the tangential
+    /// displacements of their nodes: the difference of the means over both surfaces, by length.
     ///
     /// The mean over the bodies, Σmu/Σm, is not better: D and M take linear fields exactly at any shift, so that
     /// momentum, the couple of the normal forces at these places, and a uniform pressure are exact to rounding with
     /// either. It would need all nodes of both bodies at each step, and would move the surfaces where a body turns
     /// about its centre.
-    #[inline]
     #[must_use]
-    pub fn shift(&self, slave: impl Fn(usize) -> f64, master: impl Fn(usize) -> f64) -> f64 {
-        self.slave().mean(slave) - self.master().mean(master)
+    pub fn shifts(&self, slave: impl Fn(usize) -> f64, master: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut shifts = Vec::new();
+        self.find_shifts(&mut shifts, slave, master);
+        shifts
     }
 
-    /// D, M and the weights where the slave has moved so far against the master (m).
+    /// The same in memory at hand.
+    pub(super) fn find_shifts(
+        &self,
+        shifts: &mut Vec<f64>,
+        slave: impl Fn(usize) -> f64,
+        master: impl Fn(usize) -> f64,
+    ) {
+        let [own, other] = &self.sides;
+        let fixed: f64 = other.parts().iter().map(|part| other.mean(part, &master)).sum();
+        shifts.clear();
+        shifts.extend(own.parts().iter().map(|part| own.mean(part, &slave) - fixed));
+    }
+
+    /// D, M and the weights where each part of the slave has moved so far against the master (m).
     #[must_use]
-    pub fn coupling_at(&self, shift: f64) -> Coupling {
+    pub fn coupling_at(&self, shifts: &[f64]) -> Coupling {
         let mut coupling = Coupling::default();
-        self.update(&mut coupling, shift);
+        self.update(&mut coupling, shifts);
         coupling
     }
 
@@ -95,7 +109,7 @@ impl<const D: usize> SlidingSurfaces<D> {
     #[must_use]
     pub fn coupling(&self, surface: &ContactSurface<D>, displacement: &[[f64; D]]) -> Coupling {
         let along = |side: &Side, node| self.along(surface, side, node, displacement);
-        self.coupling_at(self.shift(|node| along(self.slave(), node), |node| along(self.master(), node)))
+        self.coupling_at(&self.shifts(|node| along(self.slave(), node), |node| along(self.master(), node)))
     }
 
     /// The multipliers λ (N/m) of a step, in global axes, from the rows of the slave among the forces on the nodes of
@@ -116,7 +130,7 @@ impl<const D: usize> SlidingSurfaces<D> {
         dot(&field[surface.nodes()[side.position(node)].node.index()], &self.tangent)
     }
 
-    pub(super) fn update(&self, coupling: &mut Coupling, shift: f64) {
-        coupling.update(self.sides.each_ref(), shift, self.tolerance);
+    pub(super) fn update(&self, coupling: &mut Coupling, shifts: &[f64]) {
+        coupling.update(self.sides.each_ref(), shifts, self.tolerance);
     }
 }

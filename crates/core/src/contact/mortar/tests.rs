@@ -15,12 +15,12 @@ const ONE_PLACE: f64 = 1e-12;
 
 /// A side in one piece, from the ξ of its nodes.
 fn side(xi: &[f64]) -> Side {
-    Side::new(0, xi.to_vec(), vec![0.0; xi.len()], (0..xi.len() - 1).collect())
+    Side::new(0, [xi.to_vec(), vec![0.0; xi.len()]], (0..xi.len() - 1).collect(), &[0])
 }
 
 fn coupling(slave: &Side, master: &Side, shift: f64) -> Coupling {
     let mut coupling = Coupling::default();
-    coupling.update([slave, master], shift, ONE_PLACE);
+    coupling.update([slave, master], &[shift], ONE_PLACE);
     coupling
 }
 
@@ -39,7 +39,7 @@ fn hat(ends: [f64; 2], segment: &Segment) -> [f64; 2] {
 /// All that holds for any two surfaces.
 fn check(slave: &Side, master: &Side, shift: f64) {
     let coupling = coupling(slave, master, shift);
-    let (xi, places) = (slave.xi(), coupling.places());
+    let (xi, places) = (slave.xi(), coupling.places(0));
     let covered: f64 = coupling.segments().iter().map(|s| s.ends[1] - s.ends[0]).sum();
     let common = xi[xi.len() - 1].min(places[places.len() - 1]) - xi[0].max(places[0]);
     // Rounding of some ten sums of lengths of order 1 to 10.
@@ -109,7 +109,7 @@ fn check_linear_fields(coupling: &Coupling, slave: &Side) {
     let linear = |xi: f64| 3.0 - 2.0 * xi;
     for k in 0..coupling.len() {
         let difference =
-            coupling.difference(k, |node| linear(slave.xi()[node]), |node| linear(coupling.places()[node]));
+            coupling.difference(k, |node| linear(slave.xi()[node]), |node| linear(coupling.places(0)[node]));
         assert!(difference.abs() < 1e-12, "{k}: {difference}");
     }
 }
@@ -180,7 +180,7 @@ fn an_edge_that_is_covered_in_part_has_one_multiplier() {
 /// A surface in two pieces: nothing acts in the hole.
 #[test]
 fn a_surface_may_have_a_hole() {
-    let pieces = Side::new(0, vec![0.0, 1.0, 2.0, 3.0], vec![0.0; 4], vec![0, 2]);
+    let pieces = Side::new(0, [vec![0.0, 1.0, 2.0, 3.0], vec![0.0; 4]], vec![0, 2], &[0]);
     let whole = side(&[0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 3.0]);
     for (slave, master) in [(&pieces, &whole), (&whole, &pieces)] {
         let coupling = coupling(slave, master, 0.0);

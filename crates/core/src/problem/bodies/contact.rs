@@ -47,6 +47,11 @@ impl Contact {
         make(first, second, self.friction)
     }
 
+    /// The coefficient of friction.
+    pub(in crate::problem) fn friction(&self) -> f64 {
+        self.friction
+    }
+
     /// The key of a case file that says between what.
     pub(in crate::problem) fn key(&self) -> &'static str {
         match self.between {

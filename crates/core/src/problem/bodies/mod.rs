@@ -24,6 +24,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Surfaces reach beyond what faces the other body at first by this part of the smaller one of the two, and by twice
 /// the way that bodies slide while they touch.
 const BEYOND: f64 = 0.5;
+/// Two pairs meet at once if their times differ by less than this part.
+const AT_ONCE: f64 = 0.1;
+/// A surface of a body is common to two pairs if the cosine of their directions is at least this.
+const ONE_DIRECTION: f64 = 0.9;
 /// Bodies touch for about so many passages of a wave through both: there and back.
 const PASSAGES: f64 = 2.0;
 
@@ -32,6 +36,9 @@ const PASSAGES: f64 = 2.0;
 pub(super) struct Wanted {
     pub(super) pair: [usize; 2],
     pub(super) named: bool,
+    /// The coefficient of friction, and whether nodes may slide.
+    pub(super) friction: f64,
+    pub(super) slides: bool,
 }
 
 /// The surfaces of two bodies that could touch.
@@ -51,7 +58,11 @@ pub(super) struct Found {
 struct Candidates<'w> {
     at: usize,
     wanted: &'w Wanted,
+    /// From the first body to the second one.
+    normal: Vector,
     gap: f64,
+    /// When they meet with their velocities at the start, if they do (s).
+    meets: Option<f64>,
     slide: f64,
     sides: [Facing; 2],
 }
@@ -85,10 +96,45 @@ pub(super) fn find(
             continue;
         }
         let slide = slide(one.pair.map(|body| &outlines[body]), &normal);
-        all.push(Candidates { at, wanted: one, gap: way.gap, slide, sides });
+        all.push(Candidates {
+            at,
+            wanted: one,
+            normal,
+            gap: way.gap,
+            meets: way.meeting.map(|(_, time)| time),
+            slide,
+            sides,
+        });
     }
     all.sort_by(|a, b| a.gap.total_cmp(&b.gap));
+    leave_corners(outlines, &mut all);
     claimed(outlines, all, taken)
+}
+
+/// Takes edges at a corner from pairs that do not meet, if a pair that does has the other side of that corner.
+fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>]) {
+    let nodes = |pair: &Candidates<'_>, side: usize| -> BTreeSet<NodeId> {
+        let edges = &outlines[pair.wanted.pair[side]].edges;
+        pair.sides[side].seeing.iter().flat_map(|&(at, _)| edges[at].nodes.iter().copied()).collect()
+    };
+    let meeting = |pair: &&Candidates<'_>| pair.meets.is_some();
+    let taken: Vec<(usize, Vector, BTreeSet<NodeId>)> = all
+        .iter()
+        .filter(meeting)
+        .flat_map(|pair| [0, 1].map(|side| (pair.wanted.pair[side], pair.outward(side), nodes(pair, side))))
+        .collect();
+    for pair in all.iter_mut().filter(|pair| pair.meets.is_none()) {
+        for side in 0..2 {
+            let (body, outward) = (pair.wanted.pair[side], pair.outward(side));
+            let others = taken.iter().filter(|(of, normal, _)| *of == body && dot(normal, &outward) < ONE_DIRECTION);
+            let others: Vec<&BTreeSet<NodeId>> = others.map(|(_, _, nodes)| nodes).collect();
+            let free = |&(at, _): &(usize, f64)| {
+                let edge = &outlines[body].edges[at];
+                edge.nodes.iter().all(|node| others.iter().all(|taken| !taken.contains(node)))
+            };
+            pair.sides[side].seeing.retain(free);
+        }
+    }
 }
 
 /// How far two bodies slide along each other while they touch (m).
@@ -98,6 +144,24 @@ fn slide([first, second]: [&Outline; 2], normal: &Vector) -> f64 {
 }
 
 impl Candidates<'_> {
+    /// Whether both pairs meet at about one time.
+    fn meets_with(&self, other: &Self) -> bool {
+        self.meets.zip(other.meets).is_some_and(|(a, b)| (a - b).abs() <= AT_ONCE * a.max(b))
+    }
+
+    /// The direction from a side to the other one.
+    fn outward(&self, side: usize) -> Vector {
+        if side == 0 { self.normal } else { self.normal.map(|x| -x) }
+    }
+
+    /// Whether a surface of the body of a side may be common to both pairs.
+    fn shares(&self, other: &Self, side: usize) -> bool {
+        let (own, its) = (self.wanted, other.wanted);
+        let Some(there) = its.pair.iter().position(|body| *body == own.pair[side]) else { return false };
+        let alike = own.friction == its.friction && own.slides && its.slides;
+        alike && dot(&self.outward(side), &other.outward(there)) >= ONE_DIRECTION
+    }
+
     /// How far surfaces reach beyond what faces the other body at first (m).
     fn room(&self, outlines: &[Outline]) -> f64 {
         let lengths = [0, 1].map(|side| {
@@ -113,20 +177,64 @@ fn length(edge: &Edge) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Gives each node to one pair: where surfaces of several see each other, to the nearest; those beside get the
-/// rest.
+/// Pairs that have some surface of one body in common.
+struct Shared {
+    /// A pair that stands for all those that a pair belongs to.
+    of: Vec<usize>,
+    /// The common body of those that a pair stands for.
+    body: Vec<Option<usize>>,
+}
+
+impl Shared {
+    fn new(pairs: usize) -> Self {
+        Self { of: (0..pairs).collect(), body: vec![None; pairs] }
+    }
+
+    /// Whether two pairs belong together.
+    fn contains(&self, pair: usize, other: usize) -> bool {
+        self.of.get(other) == Some(&self.of[pair])
+    }
+
+    /// Puts two pairs together that have a surface of a body in common, unless one shares another one's already.
+    fn add(&mut self, pair: usize, other: usize, body: usize) {
+        let [one, two] = [pair, other].map(|k| self.of[k]);
+        if [one, two].iter().all(|&k| self.body[k].is_none_or(|common| common == body)) {
+            self.of.iter_mut().filter(|of| **of == one).for_each(|of| *of = two);
+            self.body[two] = Some(body);
+        }
+    }
+}
+
+/// Gives each node to one pair: where surfaces of several see each other, to the nearest, unless one body has the same
+/// surface against several; those beside get the rest.
 fn claimed(
     outlines: &[Outline],
     mut all: Vec<Candidates<'_>>,
     taken: &BTreeSet<NodeId>,
 ) -> Result<Vec<Found>, (usize, Cause)> {
     let mut owner: BTreeMap<NodeId, usize> = taken.iter().map(|&node| (node, usize::MAX)).collect();
-    for (k, Candidates { at: place, wanted, sides, .. }) in all.iter_mut().enumerate() {
+    let mut shared = Shared::new(all.len());
+    for k in 0..all.len() {
+        for (side, &body) in all[k].wanted.pair.iter().enumerate() {
+            for &(at, distance) in &all[k].sides[side].seeing {
+                let edge = &outlines[body].edges[at];
+                for other in edge.nodes.iter().filter_map(|node| owner.get(node).copied()).filter(|&other| other < k) {
+                    // The earlier pair is nearer.
+                    let both = distance < length(edge) || all[k].meets_with(&all[other]);
+                    if both && all[k].shares(&all[other], side) {
+                        shared.add(k, other, body);
+                    }
+                }
+            }
+        }
+        let Candidates { at: place, wanted, meets, sides, .. } = &mut all[k];
         for (side, &body) in sides.iter_mut().zip(&wanted.pair) {
             let edges = &outlines[body].edges;
-            let other = |at: usize| edges[at].nodes.iter().find(|node| owner.get(node).is_some_and(|&of| of != k));
+            let is_other = |node: &NodeId| owner.get(node).is_some_and(|&of| !shared.contains(k, of));
+            let other = |at: usize| edges[at].nodes.iter().find(|node| is_other(node));
             // Two bodies that are both about to touch an edge would need a node at two surfaces.
-            let contested = |&&(at, distance): &&(usize, f64)| distance < length(&edges[at]) && other(at).is_some();
+            let near = |at: usize, distance: f64| meets.is_some() && distance < length(&edges[at]);
+            let contested = |&&(at, distance): &&(usize, f64)| near(at, distance) && other(at).is_some();
             if let Some(&(at, _)) = side.seeing.iter().find(contested) {
                 let bodies = Box::new(wanted.pair.map(|body| outlines[body].name.clone()));
                 let nodes = edges[at].nodes.iter().map(|node| node.index()).collect();
@@ -144,7 +252,7 @@ fn claimed(
             let near = sides[side].beside.iter().filter(|(_, aside)| *aside <= room).map(|&(at, _)| &edges[at]);
             let mut chosen = Vec::new();
             for edge in near {
-                if edge.nodes.iter().all(|node| owner.get(node).is_none_or(|&of| of == k)) {
+                if edge.nodes.iter().all(|node| owner.get(node).is_none_or(|&of| shared.contains(k, of))) {
                     owner.extend(edge.nodes.iter().map(|&node| (node, k)));
                     chosen.push(edge.facet);
                 }

@@ -155,8 +155,48 @@ fn what_cannot_be_found_is_an_error() {
     assert_eq!(cause(stack().contact(of("a", "b")).contact(of("b", "a"))), Cause::SamePair { bodies: pair("b", "a") });
     let unknown = cause(stack().contact(of("a", "d")));
     assert!(matches!(unknown, Cause::UnknownBody { name, known } if name == "d" && known == ["a", "b", "c"]));
-    // A block on two blocks: the edge in the middle is above both.
-    let two =
-        [wide("a", [0.0, 0.0], [0.0; 2]), wide("b", [0.041, 0.0], [0.0; 2]), wide("c", [0.0205, 0.021], [0.0, -1.0])];
-    assert!(matches!(cause(bodies(&two).contact(all(0.2))), Cause::Contested { .. }));
+    // A block that strikes another one and one beside that: a corner would touch both.
+    let corner = [
+        wide("a", [0.0, 0.0], [0.0; 2]),
+        wide("b", [0.041, 0.0], [-1.0, 0.0]),
+        wide("c", [0.0205, 0.021], [0.0, -1.0]),
+    ];
+    assert!(matches!(cause(bodies(&corner).contact(all(0.2))), Cause::Contested { .. }));
+}
+
+/// The bottom of a block faces the tops of two others: one interface.
+#[test]
+fn a_block_on_two_blocks_has_one_interface() {
+    let blocks = |gap: f64| {
+        [
+            wide("a", [0.0, 0.0], [0.0; 2]),
+            wide("b", [0.041, 0.0], [0.0; 2]),
+            wide("c", [0.0205, 0.02 + gap], [0.0, -1.0]),
+        ]
+    };
+    let expected = |problem: &Problem<2, 3>| {
+        let interfaces: Vec<_> = problem.statement().interfaces.iter().map(|interface| interface.groups()).collect();
+        assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b sliding on c", "c.bottom"]]);
+        let sliding = &problem.surface().sliding()[0];
+        assert_eq!((sliding.slave().parts().len(), sliding.master().len()), (2, 5));
+    };
+    // Far away, too; the sides of the lower ones see each other, but for the edges at their corners.
+    for gap in [1e-4, 0.01] {
+        let problem = bodies(&blocks(gap)).contact(all(0.2)).build().unwrap();
+        expected(&problem);
+    }
+    let problem = bodies(&blocks(1e-4)).contact(of("c", "a")).contact(of("c", "b")).contact(all(0.2));
+    let problem = problem.build().unwrap();
+    let interface = &problem.statement().interfaces[0];
+    assert_eq!(interface.groups(), ["c.bottom", "a and b sliding on c"]);
+    let groups = |second: &str, friction: f64| {
+        let groups = Between::Groups(["c.bottom".to_string(), second.to_string()]);
+        Contact::new::<2>(groups, friction, None).unwrap()
+    };
+    let stated = bodies(&blocks(1e-4)).contact(groups("a.top", 0.2)).contact(groups("b.top", 0.2)).contact(all(0.2));
+    let stated = stated.build().unwrap();
+    assert_eq!(stated.statement().interfaces[0].groups(), ["c.bottom", "a.top and b.top"]);
+    let differ = bodies(&blocks(1e-4)).contact(groups("a.top", 0.2)).contact(groups("b.top", 0.1)).contact(all(0.2));
+    let error = differ.build().unwrap_err();
+    assert_eq!((error.place.index, matches!(error.cause, Cause::FrictionsDiffer { .. })), (Some(1), true));
 }

@@ -184,15 +184,21 @@ struct Approach {
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
     let bodies = Bodies::new(problem);
     let flights = flights(problem, &bodies)?;
-    let flight = |obstacle: usize| {
-        let on_it = problem.surface().nodes().iter().find(|contact| contact.obstacle == obstacle)?;
-        Some(&flights[bodies.of_node[on_it.node.index()]])
+    let on = |obstacle: usize| {
+        let nodes = problem.surface().nodes().iter().filter(move |contact| contact.obstacle == obstacle);
+        nodes.map(|contact| bodies.of_node[contact.node.index()])
     };
+    let flight = |obstacle: usize| Some(&flights[on(obstacle).next()?]);
+    let several = |obstacle: usize| on(obstacle).any(|body| Some(body) != on(obstacle).next());
     let approach = |obstacle: usize| {
         let (at, gap) = problem.nearest(obstacle)?;
         let node = problem.surface().nodes()[at].node.index();
         let normal = *problem.obstacles()[obstacle].flat_frame().normal();
         let opposite = problem.opposite_obstacle(obstacle);
+        // Of several bodies on one side, the nearest is not the first to touch.
+        if opposite.is_some_and(|opposite| several(obstacle) || several(opposite)) {
+            return None;
+        }
         let (own, other) = (&flights[bodies.of_node[node]], opposite.and_then(flight));
         let towards =
             |of: fn(&Flight<D>) -> &[f64; D]| other.map_or(0.0, |o| dot(of(o), &normal)) - dot(of(own), &normal);

@@ -123,8 +123,9 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>
 /// Normal forces on both sides have no resultant, and no couple at their places ξ in the step.
 fn check_couple(run: &Run<'_, 2, 3>, (sliding, coupling): (&SlidingSurfaces<2>, &Coupling), reaction: &[[f64; 2]]) {
     let (mut force, mut couple, mut scale) = (0.0, 0.0, 0.0);
-    for (side, places) in [(sliding.slave(), sliding.slave().xi()), (sliding.master(), coupling.places())] {
-        for (node, xi) in places.iter().enumerate() {
+    for (which, side) in [sliding.slave(), sliding.master()].into_iter().enumerate() {
+        for (node, xi) in side.xi().iter().enumerate() {
+            let xi = if which == 0 { xi + coupling.shifts()[side.part_of(node)] } else { *xi };
             let [x, y] = reaction[side.position(node)];
             let normal = sliding.frame().normal();
             let press = x * normal[0] + y * normal[1];

@@ -6,5 +6,6 @@ mod limits;
 mod patch;
 mod refusals;
 pub(crate) mod setup;
+mod several;
 mod stack;
 mod start;

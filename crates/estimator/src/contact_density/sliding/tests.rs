@@ -36,7 +36,7 @@ fn on_matching_surfaces_they_are_those_of_pairs() {
     };
     let expected = Densities::new(&pairs, |_, facet| facet.nodes.map(|k| at(&pairs, k)));
 
-    let coupling = Arc::new(sliding.coupling_at(0.0));
+    let coupling = Arc::new(sliding.coupling_at(&[0.0]));
     let on_slave = |node: usize| at(&slides, sliding.slave().position(node));
     let density = SlidingDensity::new(&coupling, |node| on_slave(node).map(|f| 0.7 * coupling.weight(node) * f));
     let facets: Arc<[SlidingFacets]> = facets.into();

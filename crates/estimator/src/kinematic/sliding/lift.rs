@@ -84,7 +84,7 @@ impl Penetration {
     /// Looks at an instant.
     pub(super) fn at<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, motion: &Motion, instant: usize) {
         self.instant = instant;
-        let coupling = sliding.coupling_at(motion.shift[0]);
+        let coupling = sliding.coupling_at(&motion.places());
         for piece in pieces(sliding, &coupling) {
             let gap = difference(&piece, &motion.eta);
             (0..2).for_each(|end| self.take_in(&piece, end, gap[end], 0));
@@ -99,8 +99,8 @@ impl Penetration {
         [from, to]: [&Motion; 2],
         half: f64,
     ) {
-        if (to.shift[0] - from.shift[0]).abs() <= self.tolerance {
-            let coupling = sliding.coupling_at(to.shift[0]);
+        if from.shifts.iter().zip(&to.shifts).all(|([a, _], [b, _])| (b - a).abs() <= self.tolerance) {
+            let coupling = sliding.coupling_at(&to.places());
             for piece in pieces(sliding, &coupling) {
                 let [a, b] = [from, to].map(|at| [difference(&piece, &at.speed), difference(&piece, &at.eta)]);
                 for end in 0..2 {
@@ -113,7 +113,7 @@ impl Penetration {
         }
         for part in [0.25, 0.5, 0.75] {
             let motion = within(from, to, half, part);
-            let coupling = sliding.coupling_at(motion.shift[0]);
+            let coupling = sliding.coupling_at(&motion.places());
             for piece in pieces(sliding, &coupling) {
                 let gap = difference(&piece, &motion.eta);
                 (0..2).for_each(|end| self.take_in(&piece, end, gap[end], 1));
@@ -154,6 +154,7 @@ fn within(from: &Motion, to: &Motion, half: f64, part: f64) -> Motion {
         let speeds = from.speed[k].iter().zip(&to.speed[k]);
         from.eta[k].iter().zip(speeds).map(|(eta, (a, b))| advance(*eta, [*a, *b])).collect()
     };
-    let ([shift, before], [_, after]) = (from.shift, to.shift);
-    Motion { shift: [advance(shift, [before, after]), after], speed: Default::default(), eta: [side(0), side(1)] }
+    let shifts = from.shifts.iter().zip(&to.shifts);
+    let shifts = shifts.map(|([place, before], [_, after])| [advance(*place, [*before, *after]), *after]).collect();
+    Motion { shifts, speed: Default::default(), eta: [side(0), side(1)] }
 }

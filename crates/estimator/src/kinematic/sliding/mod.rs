@@ -51,8 +51,8 @@ pub(super) fn memory(nodes: usize) -> usize {
 /// Both surfaces at an instant, in the admissible motion.
 #[derive(Clone, Debug)]
 pub(crate) struct SlidingInstant {
-    /// How far the slave has moved against the master along the tangent (m).
-    pub(crate) shift: f64,
+    /// How far each part of the slave has moved against the master along the tangent (m).
+    pub(crate) shifts: Vec<f64>,
     /// η of the nodes of the slave and of the master (m).
     pub(crate) eta: [Vec<f64>; 2],
     /// Normal speeds of opening (m/s): ẋ_k of the nodes of the slave, and of lifts of the nodes of the master.
@@ -193,7 +193,7 @@ impl SlidingMotion {
                 }
             }
             made.push(SlidingInstant {
-                shift: motion.shift[0],
+                shifts: motion.places(),
                 eta: motion.eta,
                 speed: sides(sliding).map(|side| vec![0.0; side.len()]),
             });
@@ -289,13 +289,12 @@ impl Changes {
         let nodes = self.slaves + inverse[1].len();
         let mut last: Vec<Pair> = vec![[0.0; 2]; nodes];
         for instants in portions(self.count) {
-            let shifts: Vec<f64> = record.shifts(instants.clone());
             let mut portion = self.read(0..self.slaves, instants.clone())?;
             portion.resize(nodes, vec![[0.0; 2]; instants.len()]);
             for (j, instant) in instants.clone().enumerate() {
                 let mut speed = vec![0.0; nodes];
                 if portion[..self.slaves].iter().any(|pairs| pairs[j][0] != 0.0) {
-                    let coupling = sliding.coupling_at(shifts[j]);
+                    let coupling = sliding.coupling_at(&record.shifts(instant));
                     let right: Vec<f64> = (0..self.slaves).map(|k| coupling.weight(k) * portion[k][j][0]).collect();
                     let [slave, master] = coupling.share([&inverse[0], &inverse[1]], &right);
                     speed = slave.into_iter().chain(master).collect();

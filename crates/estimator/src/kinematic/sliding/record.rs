@@ -11,18 +11,31 @@ pub(super) type Target = (Vec<f64>, f64);
 /// The motion of all nodes of both surfaces at an instant, those of the slave first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// How far the slave has moved against the master along the tangent (m), and how fast it does (m/s).
-    pub(super) shift: Pair,
+    /// How far each part of the slave has moved against the master along the tangent (m), and how fast it does (m/s).
+    pub(super) shifts: Vec<Pair>,
     /// Normal velocity (m/s).
     pub(super) speed: [Vec<f64>; 2],
     /// η (m).
     pub(super) eta: [Vec<f64>; 2],
 }
 
+/// The places of shifts and their speeds.
+fn places(shifts: &[Pair]) -> Vec<f64> {
+    shifts.iter().map(|[place, _]| *place).collect()
+}
+
+impl Motion {
+    /// How far each part of the slave has moved against the master (m).
+    pub(super) fn places(&self) -> Vec<f64> {
+        places(&self.shifts)
+    }
+}
+
 /// The motion of both surfaces at the half-step instants so far.
 #[derive(Debug)]
 pub(super) struct Record {
-    shifts: Vec<Pair>,
+    /// Those of each part of the slave at each instant.
+    shifts: Vec<Vec<Pair>>,
     /// The half step that ends at each instant (s), 0 at the first one.
     halves: Vec<f64>,
     /// Normal velocity (m/s) and normal displacement (m) of the nodes of the slave, then of the master.
@@ -59,11 +72,11 @@ impl Record {
     ) -> Result<(), ScratchError> {
         let instant = self.halves.len();
         let at = |side: &Side, node: usize| motion(surface.nodes()[side.position(node)].node.index());
-        let shift = |which: usize| {
+        let shifts = |which: usize| {
             let part = |side, node| along(&at(side, node)[which], sliding.tangent());
-            sliding.shift(|node| part(sliding.slave(), node), |node| part(sliding.master(), node))
+            sliding.shifts(|node| part(sliding.slave(), node), |node| part(sliding.master(), node))
         };
-        let shift = [shift(0), shift(1)];
+        let (places, speeds) = (shifts(0), shifts(1));
         self.normal.extend()?;
         let normal = sliding.frame().normal();
         let sides = [sliding.slave(), sliding.master()];
@@ -78,7 +91,7 @@ impl Record {
             self.normal.write(k, instant, std::slice::from_ref(pair))?;
         }
         self.weighted.extend()?;
-        let coupling = sliding.coupling_at(shift[0]);
+        let coupling = sliding.coupling_at(&places);
         let [slave, master] = [0, 1].map(|k| (&pairs[k], sides[k].eta()));
         for k in 0..coupling.len() {
             let [path, last] = self.path[k];
@@ -97,7 +110,7 @@ impl Record {
             };
             self.weighted.write(k, instant, &[pair])?;
         }
-        self.shifts.push(shift);
+        self.shifts.push(places.into_iter().zip(speeds).map(Pair::from).collect());
         self.halves.push(half);
         Ok(())
     }
@@ -121,9 +134,9 @@ impl Record {
         &self.halves
     }
 
-    /// How far the slave has moved against the master at some instants (m).
-    pub(super) fn shifts(&self, instants: std::ops::Range<usize>) -> Vec<f64> {
-        self.shifts[instants].iter().map(|[shift, _]| *shift).collect()
+    /// How far each part of the slave has moved against the master at an instant (m).
+    pub(super) fn shifts(&self, instant: usize) -> Vec<f64> {
+        places(&self.shifts[instant])
     }
 
     /// Steps at which a node of the slave begins and ceases to touch, in turn.
@@ -162,7 +175,10 @@ impl Record {
     ) -> Result<Vec<Motion>, ScratchError> {
         let sides = [sliding.slave(), sliding.master()];
         let empty = |k: usize| vec![0.0; sides[k].len()];
-        let blank = |j: usize| Motion { shift: self.shifts[j], speed: [empty(0), empty(1)], eta: [empty(0), empty(1)] };
+        let blank = |j: usize| {
+            let shifts = self.shifts[j].clone();
+            Motion { shifts, speed: [empty(0), empty(1)], eta: [empty(0), empty(1)] }
+        };
         let mut motions: Vec<Motion> = instants.clone().map(blank).collect();
         let (mut pairs, mut first) = (Vec::new(), 0);
         for (k, side) in sides.into_iter().enumerate() {

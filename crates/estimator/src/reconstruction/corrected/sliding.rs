@@ -9,7 +9,7 @@ use super::moment_correction::{CorrectedNode, Group};
 use crate::contact_density::{SlidingDensity, SlidingFacets};
 use crate::direction::along;
 use crate::partition::pieces;
-use percute_core::contact::{Coupling, Side, SlidingSurfaces};
+use percute_core::contact::{Coupling, Part, Side, SlidingSurfaces};
 use percute_core::history::State;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -59,8 +59,8 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
                 });
                 along(&place, sliding.tangent())
             };
-            let shift = sliding.shift(|k| predicted(sliding.slave(), k), |k| predicted(sliding.master(), k));
-            let coupling = sliding.coupling_at(shift);
+            let shifts = sliding.shifts(|k| predicted(sliding.slave(), k), |k| predicted(sliding.master(), k));
+            let coupling = sliding.coupling_at(&shifts);
             let multipliers = sliding.multipliers(&coupling, step.reaction);
             positions().for_each(|at| forces[at] = [0.0; D]);
             for (k, multiplier) in multipliers.iter().enumerate() {
@@ -97,14 +97,14 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         stopped
     }
 
-    /// Moves forces of nodes of a slave that no longer act to the nearest ones that do.
+    /// Moves forces of nodes of a slave that no longer act to the nearest ones of their body that do.
     pub(super) fn gather(&self, couplings: &[Arc<Coupling>], forces: &mut [[f64; D]]) {
         for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
             for k in (0..coupling.len()).filter(|&k| !coupling.is_active(k)) {
                 let at = sliding.slave().position(k);
                 let force = std::mem::replace(&mut forces[at], [0.0; D]);
-                let nearest =
-                    (0..coupling.len()).filter(|&k| coupling.is_active(k)).min_by_key(|other| other.abs_diff(k));
+                let own = sliding.slave().parts()[sliding.slave().part_of(k)].nodes.clone();
+                let nearest = own.filter(|&k| coupling.is_active(k)).min_by_key(|other| other.abs_diff(k));
                 if let Some(nearest) = nearest.filter(|_| force != [0.0; D]) {
                     let to = &mut forces[sliding.slave().position(nearest)];
                     (0..D).for_each(|c| to[c] += force[c]);
@@ -113,10 +113,10 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         }
     }
 
-    /// Gives the forces of slaves (N) the moment of their reactions.
+    /// Gives the forces of slaves (N) the moment of their reactions, body by body.
     pub(super) fn correct_moments(&self, couplings: &[Arc<Coupling>], forces: &mut [[f64; D]]) {
         for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
-            group(self.problem, sliding, coupling).apply(forces, &|_| None);
+            groups(self.problem, sliding, coupling).iter().for_each(|group| group.apply(forces, &|_| None));
         }
     }
 
@@ -156,12 +156,12 @@ fn impedance<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Sid
     sum / length
 }
 
-/// All nodes of a slave that act, with the centroids of their densities.
-fn group<const D: usize, const N: usize>(
+/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves.
+fn groups<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     sliding: &SlidingSurfaces<D>,
     coupling: &Coupling,
-) -> Group<D> {
+) -> Vec<Group<D>> {
     let slave = sliding.slave();
     // ∫χξ, ∫(ψ − χ)ξ and ∫(ψ − χ)η of each node.
     let mut moments = vec![[0.0; 3]; slave.len()];
@@ -183,6 +183,9 @@ fn group<const D: usize, const N: usize>(
         let guided = problem.surface().nodes()[at].guided;
         CorrectedNode { at, centroid, lever: [along, across], guided }
     };
-    let acting = moments.iter().enumerate().filter(|(k, _)| coupling.is_active(*k));
-    Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.map(node).collect())
+    let of_part = |part: &Part| {
+        let acting = part.nodes.clone().filter(|&k| coupling.is_active(k)).map(|k| node((k, &moments[k])));
+        Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.collect())
+    };
+    slave.parts().iter().map(of_part).collect()
 }
