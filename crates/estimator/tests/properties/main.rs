@@ -22,6 +22,7 @@ mod loads;
 mod malformed;
 mod maps;
 mod pairs;
+mod several;
 mod shapes;
 mod sliding;
 mod sources;
