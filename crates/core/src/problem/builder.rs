@@ -2,7 +2,7 @@
 
 use super::bodies::{Contact, Start};
 use super::boundary::{self, Supports};
-use super::contacts::{self, Choice, Surfaces};
+use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane, Side};
@@ -203,8 +203,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
-        let stated = contacts::Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
-        let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, &stated, &start)?;
+        let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
+        let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, contact, &start)?;
         self.stated.interfaces = interfaces;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
@@ -263,30 +263,31 @@ struct AllContact<const D: usize> {
 fn all_contact<const D: usize, const N: usize>(
     bodies: Bodies<'_, D, N>,
     obstacles: Vec<Obstacle<D>>,
-    stated: &contacts::Stated<'_>,
+    stated: Stated<'_>,
     start: &Start<'_, D>,
 ) -> Result<AllContact<D>, InputError> {
+    let surface = planes(&bodies, obstacles, start.displacement)?;
     // A search over all elements, which planes alone do not need.
     let none = stated.contacts.is_empty() && !stated.automatic;
     let body = if none { Vec::new() } else { bodies.mesh.part_of_nodes() };
     let bodies = Bodies { body, ..bodies };
-    let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, stated, start)?;
+    let facing_planes = surface.facets().iter().map(|facet| facet.facet).collect();
+    let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
     let Bodies { mesh, body, held, fixed, law } = bodies;
     let bodies = Bodies { mesh: with_groups.as_ref().unwrap_or(mesh), body, held, fixed, law: &|facet| law(facet) };
-    let (surface, interfaces) = contact_surface(&bodies, obstacles, &choices, start.displacement)?;
+    let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();
     Ok(AllContact { surface, interfaces, places, groups })
 }
 
-/// The planes with the facets that face them, then the surfaces of different bodies that may touch.
-fn contact_surface<const D: usize, const N: usize>(
+/// The planes with the facets that face them.
+fn planes<const D: usize, const N: usize>(
     bodies: &Bodies<'_, D, N>,
     obstacles: Vec<Obstacle<D>>,
-    choices: &[(Choice, Place)],
     displacement: &[[f64; D]],
-) -> Result<(ContactSurface<D>, Vec<Interface>), InputError> {
+) -> Result<ContactSurface<D>, InputError> {
     let mut surface = ContactSurface::default();
     for (index, obstacle) in obstacles.into_iter().enumerate() {
         let Some(plane) = obstacle.as_plane().cloned() else { continue };
@@ -294,6 +295,16 @@ fn contact_surface<const D: usize, const N: usize>(
         let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
         candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
     }
+    Ok(surface)
+}
+
+/// Adds the surfaces of different bodies that may touch.
+fn with_interfaces<const D: usize, const N: usize>(
+    mut surface: ContactSurface<D>,
+    bodies: &Bodies<'_, D, N>,
+    choices: &[(Choice, Place)],
+    displacement: &[[f64; D]],
+) -> Result<(ContactSurface<D>, Vec<Interface>), InputError> {
     let mut used = Vec::new();
     for (choice, place) in choices {
         let added = add_interface(&mut surface, bodies, choice, displacement);

@@ -51,11 +51,12 @@ pub(super) struct Stated<'a> {
     pub(super) automatic: bool,
 }
 
-/// The pairs of surfaces of all contacts.
+/// The pairs of surfaces of all contacts, beside the facets that may touch planes.
 pub(super) fn surfaces<const D: usize, const N: usize>(
     bodies: &Bodies<'_, D, N>,
     stated: &Stated<'_>,
     start: &Start<'_, D>,
+    facing_planes: &BTreeSet<FacetId>,
 ) -> Result<Surfaces, InputError> {
     let Stated { contacts, automatic } = stated;
     let mut made = Surfaces::default();
@@ -68,7 +69,8 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
         bodies.sides(choice.otherwise.as_ref().unwrap_or(&choice.first)).map_err(fail)?;
     }
     let by_groups = contacts.iter().all(|contact| matches!(contact.between, Between::Groups(_)));
-    let pairs = if by_groups && !automatic { Pairs::default() } else { Pairs::new(bodies, stated, start)? };
+    let pairs =
+        if by_groups && !automatic { Pairs::default() } else { Pairs::new(bodies, stated, start, facing_planes)? };
     let mut proposals = Vec::new();
     for (index, contact) in contacts.iter().enumerate() {
         let place = Place { table: "contact", index: Some(index), key: contact.key() };
@@ -227,6 +229,7 @@ impl Pairs {
         bodies: &Bodies<'_, D, N>,
         stated: &Stated<'_>,
         start: &Start<'_, D>,
+        facing_planes: &BTreeSet<FacetId>,
     ) -> Result<Self, InputError> {
         let (mesh, names, of_node) = (bodies.mesh, bodies.mesh.part_names(), bodies.mesh.part_numbers());
         let (mut wanted, mut contact): (Vec<Wanted>, Vec<Option<usize>>) = (Vec::new(), Vec::new());
@@ -250,12 +253,7 @@ impl Pairs {
                         return Err(fail(Cause::SamePair { bodies: pair.map(|body| names[body].clone()) }));
                     }
                     known.insert(ordered(pair));
-                    wanted.push(Wanted {
-                        pair,
-                        named: true,
-                        friction: one.friction(),
-                        slides: one.matching != Some(true),
-                    });
+                    wanted.push(named(pair, one));
                     contact.push(Some(index));
                 }
                 Between::All if default.is_some() => return Err(Cause::TwoDefaults.at("contact", Some(index), "")),
@@ -265,12 +263,9 @@ impl Pairs {
         if stated.automatic || default.is_some() {
             let all = (0..names.len()).flat_map(|a| (a + 1..names.len()).map(move |b| [a, b]));
             let common = default.map(|index| &stated.contacts[index]);
-            let (friction, slides) =
-                common.map_or((0.0, D > 1), |one| (one.friction(), D > 1 && one.matching != Some(true)));
-            for pair in all.filter(|pair| !known.contains(pair)) {
-                wanted.push(Wanted { pair, named: false, friction, slides });
-                contact.push(None);
-            }
+            let rest: Vec<[usize; 2]> = all.filter(|pair| !known.contains(pair)).collect();
+            contact.extend(rest.iter().map(|_| None));
+            wanted.extend(rest.into_iter().map(|pair| unnamed::<D>(pair, common)));
         }
         let law = |facet| (bodies.law)(facet);
         let free = |facet: FacetId| bodies.held[facet.index()].is_none();
@@ -279,13 +274,25 @@ impl Pairs {
             let held = &bodies.fixed[node.index()];
             [held[0], held.get(1).copied().unwrap_or(false)]
         };
-        let found = find(&outlines, &wanted, held, &taken).map_err(|(at, cause)| match contact[at] {
+        let found = find(&outlines, &wanted, held, &taken, facing_planes).map_err(|(at, cause)| match contact[at] {
             Some(index) => cause.at("contact", Some(index), "bodies"),
             None => cause.at("contact", default, ""),
         })?;
         let contact = found.iter().map(|found| contact[found.wanted]).collect();
         Ok(Self { names, found, contact })
     }
+}
+
+/// A pair that is not named, with the contact of all such pairs.
+fn unnamed<const D: usize>(pair: [usize; 2], contact: Option<&Contact>) -> Wanted {
+    let friction = contact.map_or(0.0, Contact::friction);
+    let slides = D > 1 && contact.is_none_or(|contact| contact.matching != Some(true));
+    Wanted { pair, named: false, friction, slides }
+}
+
+/// A pair that a contact names.
+fn named(pair: [usize; 2], contact: &Contact) -> Wanted {
+    Wanted { pair, named: true, friction: contact.friction(), slides: contact.matching != Some(true) }
 }
 
 fn ordered([a, b]: [usize; 2]) -> [usize; 2] {

@@ -109,12 +109,21 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         gaps.into_iter().any(|gap| gap <= self.nearness.tolerance(unsure))
     }
 
+    /// Whether a force at t_n is more than the rounding of a gap: it moves the node by more in the step.
+    fn acts(&self, at: usize, n: usize, force: &[f64; D]) -> bool {
+        let (problem, times) = (self.balance.problem(), self.balance.times());
+        let n = n.min(times.step_count() - 1);
+        let mass = problem.surface().moved_mass(at, problem.mass());
+        norm(force) * times.step(n) * times.velocity_step(n) > mass * problem.contact_tolerance()
+    }
+
     /// Touching status at t_{n+1}: a force acts at t_n.
     pub(super) fn touching(&self, window: Window<'_, D>, reaction: &[[f64; D]]) -> Vec<bool> {
         let unsure = unsure([Some(window.now), window.after]);
         let nodes = self.balance.problem().surface().nodes();
-        let touches =
-            |(at, force): (usize, &[f64; D])| *force != [0.0; D] && nodes[at].free && self.near(at, window, unsure);
+        let touches = |(at, force): (usize, &[f64; D])| {
+            nodes[at].free && self.acts(at, window.now.index, force) && self.near(at, window, unsure)
+        };
         reaction.iter().enumerate().map(touches).collect()
     }
 
@@ -123,7 +132,7 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         let problem = self.balance.problem();
         let touches = |(at, force): (usize, &[f64; D])| {
             let (gap, speed) = problem.start_of_contact(at);
-            *force != [0.0; D] && gap <= problem.contact_tolerance() && speed.abs() <= problem.speed_tolerance()
+            self.acts(at, 0, force) && gap <= problem.contact_tolerance() && speed.abs() <= problem.speed_tolerance()
         };
         reaction.iter().enumerate().map(touches).collect()
     }

@@ -68,7 +68,7 @@ struct Candidates<'w> {
 }
 
 /// The surfaces of all wanted pairs; none for a pair that is not named and does not see each other. `held` says which
-/// components of a node are prescribed, `taken` are nodes of other surfaces.
+/// components of a node are prescribed, `taken` are nodes of other surfaces, `facing_planes` facets that may touch one.
 ///
 /// # Errors
 /// What is wrong with a wanted pair, by its place.
@@ -77,6 +77,7 @@ pub(super) fn find(
     wanted: &[Wanted],
     held: impl Fn(NodeId) -> [bool; 2],
     taken: &BTreeSet<NodeId>,
+    facing_planes: &BTreeSet<FacetId>,
 ) -> Result<Vec<Found>, (usize, Cause)> {
     let ways = Ways::new(outlines);
     let held = |edge: &Edge, normal: &Vector| {
@@ -107,12 +108,16 @@ pub(super) fn find(
         });
     }
     all.sort_by(|a, b| a.gap.total_cmp(&b.gap));
-    leave_corners(outlines, &mut all);
+    leave_corners(outlines, &mut all, facing_planes);
     claimed(outlines, all, taken)
 }
 
-/// Takes edges at a corner from pairs that do not meet, if a pair that does has the other side of that corner.
-fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>]) {
+/// Takes edges at a corner from pairs that do not meet, if the other side of that corner faces a plane or belongs to a
+/// pair that meets.
+fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes: &BTreeSet<FacetId>) {
+    let edges = outlines.iter().flat_map(|outline| &outline.edges);
+    let on_planes: BTreeSet<NodeId> =
+        edges.filter(|edge| facing_planes.contains(&edge.facet)).flat_map(|edge| edge.nodes.iter().copied()).collect();
     let nodes = |pair: &Candidates<'_>, side: usize| -> BTreeSet<NodeId> {
         let edges = &outlines[pair.wanted.pair[side]].edges;
         pair.sides[side].seeing.iter().flat_map(|&(at, _)| edges[at].nodes.iter().copied()).collect()
@@ -130,7 +135,8 @@ fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>]) {
             let others: Vec<&BTreeSet<NodeId>> = others.map(|(_, _, nodes)| nodes).collect();
             let free = |&(at, _): &(usize, f64)| {
                 let edge = &outlines[body].edges[at];
-                edge.nodes.iter().all(|node| others.iter().all(|taken| !taken.contains(node)))
+                let on_plane = |node: &NodeId| on_planes.contains(node) && !facing_planes.contains(&edge.facet);
+                edge.nodes.iter().all(|node| !on_plane(node) && others.iter().all(|taken| !taken.contains(node)))
             };
             pair.sides[side].seeing.retain(free);
         }
@@ -203,6 +209,22 @@ impl Shared {
             self.body[two] = Some(body);
         }
     }
+
+    /// Puts a pair together with earlier ones that own nodes of its edges.
+    fn find(&mut self, outlines: &[Outline], all: &[Candidates<'_>], k: usize, owner: &BTreeMap<NodeId, usize>) {
+        for (side, &body) in all[k].wanted.pair.iter().enumerate() {
+            for &(at, distance) in &all[k].sides[side].seeing {
+                let edge = &outlines[body].edges[at];
+                for other in edge.nodes.iter().filter_map(|node| owner.get(node).copied()).filter(|&other| other < k) {
+                    // The earlier pair is nearer.
+                    let both = distance < length(edge) || all[k].meets_with(&all[other]);
+                    if both && all[k].shares(&all[other], side) {
+                        self.add(k, other, body);
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Gives each node to one pair: where surfaces of several see each other, to the nearest, unless one body has the same
@@ -215,18 +237,7 @@ fn claimed(
     let mut owner: BTreeMap<NodeId, usize> = taken.iter().map(|&node| (node, usize::MAX)).collect();
     let mut shared = Shared::new(all.len());
     for k in 0..all.len() {
-        for (side, &body) in all[k].wanted.pair.iter().enumerate() {
-            for &(at, distance) in &all[k].sides[side].seeing {
-                let edge = &outlines[body].edges[at];
-                for other in edge.nodes.iter().filter_map(|node| owner.get(node).copied()).filter(|&other| other < k) {
-                    // The earlier pair is nearer.
-                    let both = distance < length(edge) || all[k].meets_with(&all[other]);
-                    if both && all[k].shares(&all[other], side) {
-                        shared.add(k, other, body);
-                    }
-                }
-            }
-        }
+        shared.find(outlines, &all, k, &owner);
         let Candidates { at: place, wanted, meets, sides, .. } = &mut all[k];
         for (side, &body) in sides.iter_mut().zip(&wanted.pair) {
             let edges = &outlines[body].edges;
