@@ -222,14 +222,17 @@ fn interrupted_after(steps: u64, every: &str) -> (Bench, Output) {
 #[test]
 fn a_long_window_is_left_in_its_middle() {
     // A window has eight levels; the second one has the steps 8 to 15, and begins when step 17 is stored.
-    let (_, output) = interrupted_after(17, "1");
-    let summary = stdout(&output);
-    assert!(summary.contains("INTERRUPTED at step "), "{summary}");
-    let number =
-        |words: &str| summary.split(words).nth(1).and_then(|rest| rest.split_whitespace().next()?.parse().ok());
-    let [until, step]: [f64; 2] = ["error until t = ", "\n          step "].map(|words| number(words).unwrap());
-    assert_eq!((until / step).round(), 7.0, "the first window alone is kept: {summary}");
-    assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+    let left = || {
+        let summary = stdout(&interrupted_after(17, "1").1);
+        assert!(summary.contains("INTERRUPTED at step "), "{summary}");
+        assert!(summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+        let number =
+            |words: &str| summary.split(words).nth(1).and_then(|rest| rest.split_whitespace().next()?.parse().ok());
+        let [until, step]: [f64; 2] = ["error until t = ", "\n          step "].map(|words| number(words).unwrap());
+        (until / step).round()
+    };
+    // On a busy machine the signal may come when the second one is over.
+    assert!((0..3).any(|_| left() == 7.0), "the first window alone is kept");
 }
 
 #[test]

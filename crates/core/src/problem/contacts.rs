@@ -1,7 +1,7 @@
 //! From contacts as users state them to pairs of surfaces.
 
 use super::bodies::{Between, Contact, Found, Start, Wanted, find, outlines};
-use super::joined::{Member, joined, listed};
+use super::joined::{Member, Proposal, Source, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
 use crate::contact::{Interface, ObstacleError};
@@ -12,22 +12,6 @@ use std::collections::BTreeSet;
 
 /// Bodies slide by less than this part of the shortest edge if pairs of nodes shall stay pairs.
 const SLIDES: f64 = 0.1;
-
-/// Contact of two surfaces, as it is stated or found.
-pub(super) struct Proposal<'a> {
-    pub(super) contact: &'a Contact,
-    pub(super) place: Place,
-    source: Source<'a>,
-    /// The facets of both sides.
-    pub(super) facets: [Vec<FacetId>; 2],
-}
-
-/// Where a proposal is from.
-#[derive(Clone, Copy)]
-enum Source<'a> {
-    Groups(&'a [String; 2]),
-    Found(&'a Found),
-}
 
 /// Pairs of surfaces.
 #[derive(Default)]
@@ -104,17 +88,6 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
         made.choices.push((choice.map_err(|cause| InputError { place: *place, cause: cause.into() })?, *place));
     }
     Ok(made)
-}
-
-impl Source<'_> {
-    fn facets<const D: usize, const N: usize>(&self, mesh: &Mesh<D, N>) -> [Vec<FacetId>; 2] {
-        match self {
-            Self::Groups(groups) => {
-                groups.each_ref().map(|group| mesh.facet_groups().get(group).cloned().unwrap_or_default())
-            }
-            Self::Found(found) => found.seeing.clone(),
-        }
-    }
 }
 
 impl Surfaces {

@@ -307,14 +307,14 @@ pub enum Cause {
     /// A node of an interface that may touch something else.
     /// Contacts that share nodes with different friction.
     #[error(
-        "node {node} belongs to two contacts, which are solved together, but their friction is {} and {}; give both the \
-         same `friction`", short(.friction[0]), short(.friction[1])
+        "node {node} belongs to two contacts, which are solved together, but their friction is {} and {}; give both \
+         the same `friction`", short(.friction[0]), short(.friction[1])
     )]
     FrictionsDiffer { node: usize, friction: [f64; 2] },
     /// Contacts that share nodes and shall be pairs of nodes.
     #[error(
-        "node {node} belongs to two contacts, which are solved together and slide; leave `matching` out of both, or make \
-         it false"
+        "node {node} belongs to two contacts, which are solved together and slide; leave `matching` out of both, or \
+         make it false"
     )]
     SharedPairs { node: usize },
     #[error(

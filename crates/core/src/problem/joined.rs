@@ -2,15 +2,43 @@
 //!
 //! They are solved together, as one interface between the common surface and those of the others.
 
-use super::contacts::Proposal;
+use super::bodies::{Contact, Found};
 use super::sides::{Bodies, unit};
-use super::{Cause, InputError};
+use super::{Cause, InputError, Place};
 use crate::contact::dot;
 use crate::ids::{FacetId, NodeId};
+use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
 /// Surfaces that share nodes are one if the cosine of their mean normals is at least this.
 const ONE_DIRECTION: f64 = 0.9;
+
+/// Contact of two surfaces, as it is stated or found.
+pub(super) struct Proposal<'a> {
+    pub(super) contact: &'a Contact,
+    pub(super) place: Place,
+    pub(super) source: Source<'a>,
+    /// The facets of both sides.
+    pub(super) facets: [Vec<FacetId>; 2],
+}
+
+/// Where a proposal is from.
+#[derive(Clone, Copy)]
+pub(super) enum Source<'a> {
+    Groups(&'a [String; 2]),
+    Found(&'a Found),
+}
+
+impl Source<'_> {
+    pub(super) fn facets<const D: usize, const N: usize>(&self, mesh: &Mesh<D, N>) -> [Vec<FacetId>; 2] {
+        match self {
+            Self::Groups(groups) => {
+                groups.each_ref().map(|group| mesh.facet_groups().get(group).cloned().unwrap_or_default())
+            }
+            Self::Found(found) => found.seeing.clone(),
+        }
+    }
+}
 
 /// A contact, and which of its sides, 0 or 1, is part of the common surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
