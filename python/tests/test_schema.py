@@ -38,6 +38,8 @@ ODD = [-1, 0, 1, 0.25, 1e300, True, "x", "x.vtkhdf", [], [1], [1.0, 0.0], [[1.0,
 """Values of all kinds."""
 
 BEYOND = {
+    "different friction of a surface against two bodies": "two tables together",
+    "pairs of nodes on a surface against two bodies": "two tables together",
     "a density that is NaN": "JSON has no NaN",
     "a number beyond the range of numbers": "JSON has no infinity",
     "a nodal field of the wrong length": "the number of nodes",
