@@ -67,7 +67,7 @@ def test_a_force_of_rounding_does_not_touch() -> None:
         mesh,
         material=pc.Elastic(young=70e9, poisson=0.3, density=2700, plane="stress"),
         obstacles=[pc.Plane(point=(0, -50e-6), normal=(0, 1), friction=0)],
-        velocity=(0, -20),
+        initial_velocity=(0, -20),
     )
     ours = pc.simulate(problem, end=6e-6, step=1e-7)
     assert not ours.reaction[24].any() and ours.reaction[25].any()
