@@ -76,8 +76,8 @@ pub(super) fn lacking<const D: usize>(
     let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
     let text = format!(
         "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or \
-         more), or give {} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more); or `time` \
-         is not in seconds",
+         more), or give {} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more); or \
+         `time` is not in seconds",
         trimmed(critical, 4),
         instants(critical),
         missing(given),
