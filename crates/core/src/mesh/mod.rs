@@ -257,7 +257,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self
     }
 
-    /// For each element the number of its part, likewise.
+    /// For each element the number of its part, in the same order.
     #[must_use]
     pub fn part_of_elements(&self) -> Vec<usize> {
         let of_node = self.part_numbers();

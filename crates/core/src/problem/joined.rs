@@ -2,16 +2,13 @@
 //!
 //! They are solved together, as one interface between the common surface and those of the others.
 
-use super::bodies::{Contact, Found};
+use super::bodies::{Contact, Found, ONE_DIRECTION};
 use super::sides::{Bodies, unit};
 use super::{Cause, InputError, Place};
 use crate::contact::dot;
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
-
-/// Surfaces that share nodes are one if the cosine of their mean normals is at least this.
-const ONE_DIRECTION: f64 = 0.9;
 
 /// Contact of two surfaces, as it is stated or found.
 pub(super) struct Proposal<'a> {

@@ -27,7 +27,7 @@ const BEYOND: f64 = 0.5;
 /// Two pairs meet at once if their times differ by less than this part.
 const AT_ONCE: f64 = 0.1;
 /// A surface of a body is common to two pairs if the cosine of their directions is at least this.
-const ONE_DIRECTION: f64 = 0.9;
+pub(super) const ONE_DIRECTION: f64 = 0.9;
 /// Bodies touch for about so many passages of a wave through both: there and back.
 const PASSAGES: f64 = 2.0;
 
