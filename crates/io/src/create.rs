@@ -1,4 +1,4 @@
-//! New files: written completely under another name, with reserved space, and then renamed.
+//! New files: written completely under another name, and then renamed. Their room can be reserved.
 
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
@@ -45,7 +45,7 @@ pub(crate) struct Unnamed {
 }
 
 impl Unnamed {
-    /// Creates an HDF5 file; `fill` creates its contents, and `bytes` is its size.
+    /// Creates an HDF5 file; `fill` creates its contents, and `bytes` is the room that it will take.
     pub(crate) fn new<T>(
         path: &Path,
         overwrite: Overwrite,
@@ -64,10 +64,14 @@ impl Unnamed {
             Some(free) if free < bytes => FileCause::NoSpace { needed: bytes, free },
             _ => cause,
         })?;
-        let length = temporary.as_file().metadata().map_err(|source| FileCause::Create { source })?.len();
-        reserve(temporary.as_file(), &path, length)?;
         texts.put(temporary.as_file()).map_err(|error| no_room(error, folder, bytes))?;
         Ok((Self { temporary, unfinished, path, old, overwrite }, made))
+    }
+
+    /// Reserves the room of the whole file, also where it has holes.
+    pub(crate) fn reserve(&self) -> Result<(), FileCause> {
+        let length = self.file().metadata().map_err(|source| FileCause::Create { source })?.len();
+        reserve(self.file(), &self.path, length)
     }
 
     /// The file, for further writes.

@@ -45,7 +45,7 @@ impl<const D: usize, const N: usize> Whole<'_, D, N> {
         });
         let plan = plan(problem, steps.times(), options, case, &Keep::default())?;
         let plan = plan.with_given(velocity, acceleration).simulated_elsewhere(elsewhere);
-        let mut writer = plan.create_whole(path, overwrite)?;
+        let mut writer = plan.create_whole(path, overwrite, steps.count())?;
         let written = steps.replay(&mut |step| writer.push(step));
         written.map_err(|error| Failure::from_sink(error, RunError::Source))?;
         Ok(writer.finish()?)
@@ -80,6 +80,26 @@ mod tests {
         }
     }
 
+    /// A body at rest, of which three instants were computed.
+    struct Stopped(TimeGrid, usize);
+
+    impl StepSource<1> for Stopped {
+        fn times(&self) -> &TimeGrid {
+            &self.0
+        }
+
+        fn count(&self) -> usize {
+            3
+        }
+
+        fn replay(&self, take: &mut dyn FnMut(&Step<'_, 1>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+            let (displacement, reaction, touching) = (&vec![[0.0]; self.1][..], &[[0.0]][..], &[false][..]);
+            self.0.instants().iter().enumerate().take(self.count()).try_for_each(|(index, &time)| {
+                take(&Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None })
+            })
+        }
+    }
+
     #[test]
     fn a_file_is_replaced_by_a_whole_history_only() {
         let text = include_str!("../../../examples/bar.toml");
@@ -103,5 +123,24 @@ mod tests {
         write(&history).unwrap();
         let ByDimension::Bar(stored) = open(&path).unwrap() else { panic!("triangles") };
         assert!(stored.has_ended() && stored.count() == history.count() && files() == 1);
+    }
+
+    /// A stopped run is saved without the room of the steps that it never reached, 2.4 TB here.
+    #[test]
+    fn steps_that_were_never_computed_take_no_room() {
+        let text = include_str!("../../../examples/bar.toml");
+        let text = text.replace("elements = 100 ", "elements = 100000 ").replace("end = 50e-6", "end = 1e-9");
+        let ByDimension::Bar(case) = parse(Source::new("bar.toml", text)).unwrap() else { panic!("triangles") };
+        let steps = &Stopped(TimeGrid::uniform(1e-3, 1_000_000).unwrap(), case.problem.mesh().node_count());
+        let folder = tempfile::tempdir().unwrap();
+        let (problem, options) = (&case.problem, &case.options);
+        let stored = plan(problem, steps.times(), options, None, &Keep::default()).unwrap();
+        let refused = stored.create(folder.path().join("run.vtkhdf"), Overwrite::Refuse).unwrap_err().to_string();
+        assert!(refused.contains("bytes of room"), "{refused}");
+        let path = folder.path().join("stopped.vtkhdf");
+        let whole = Whole { problem, steps, given: [false; 2], options, case: None, origin: None };
+        whole.write(&path, Overwrite::Refuse).unwrap();
+        let ByDimension::Bar(stored) = open(&path).unwrap() else { panic!("triangles") };
+        assert!(stored.count() == 3 && !stored.has_ended());
     }
 }

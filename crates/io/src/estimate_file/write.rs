@@ -50,6 +50,7 @@ pub fn write<const D: usize, const N: usize>(
     let path = path.as_ref();
     let written = contents.check().and_then(|()| {
         let (unnamed, ()) = Unnamed::new(path, overwrite, contents.bytes(), |file, texts| contents.fill(file, texts))?;
+        unnamed.reserve()?;
         let synced = |source: io::Error| FileCause::Create { source };
         unnamed.file().sync_all().map_err(synced)?;
         unnamed.put().map(drop)

@@ -27,8 +27,9 @@ pub(super) struct Single<'a, const D: usize, const N: usize> {
 impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
     pub(super) fn new(path: &Path, overwrite: Overwrite, contents: Contents<'a, D, N>) -> Result<Self, FileError> {
         let fill = |file: &hdf5::File, _: &mut Texts| fill(file, &contents);
-        let (unnamed, places) =
-            Unnamed::new(path, overwrite, bytes(&contents), fill).map_err(|cause| cause.at(path))?;
+        let made = Unnamed::new(path, overwrite, bytes(&contents), fill);
+        let reserved = made.and_then(|made| made.0.reserve().map(|()| made));
+        let (unnamed, places) = reserved.map_err(|cause| cause.at(path))?;
         Ok(Self { contents, path: path.to_path_buf(), unnamed, places, written: 0 })
     }
 

@@ -72,6 +72,11 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         !self.problem.surface().nodes().is_empty() && self.kept.as_ref().is_none_or(|kept| kept.reaction)
     }
 
+    /// Nodes with reactions and touching status in the file.
+    fn contact_nodes(&self) -> usize {
+        if self.has_contact() { self.problem.surface().nodes().len() } else { 0 }
+    }
+
     /// Whether the file lacks steps or reactions.
     fn is_thinned(&self) -> bool {
         let lacks = |kept: &Kept| kept.steps.len() <= self.times.step_count() || !kept.reaction;
@@ -83,11 +88,9 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     pub fn bytes(&self) -> u64 {
         let mesh = self.problem.mesh();
         let (nodes, cells, instants) = (mesh.node_count() as u64, mesh.element_count() as u64, self.instants() as u64);
-        let (d, contact) = (D as u64, if self.has_contact() { self.problem.surface().nodes().len() as u64 } else { 0 });
-        let vectors = 1 + self.given.iter().filter(|given| **given).count() as u64;
-        let step = 24 * nodes * vectors + contact * (8 * d + 1);
+        let (d, contact) = (D as u64, self.contact_nodes() as u64);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
-        let steps = 8 * (7 + vectors + FIELDS.len() as u64);
+        let steps = 8 * (7 + self.vectors() + FIELDS.len() as u64);
         let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
         let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
@@ -110,7 +113,18 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             + checkpoints
             + bytes_of_bodies(mesh, self.instants())
             + LIBRARY;
-        instants.saturating_mul(step + steps).saturating_add(fixed)
+        instants.saturating_mul(self.row() + steps).saturating_add(fixed)
+    }
+
+    /// Size of the fields at an instant (bytes).
+    fn row(&self) -> u64 {
+        let nodes = self.problem.mesh().node_count() as u64;
+        24 * nodes * self.vectors() + self.contact_nodes() as u64 * (8 * D as u64 + 1)
+    }
+
+    /// Number of nodal vector fields.
+    fn vectors(&self) -> u64 {
+        1 + self.given.iter().filter(|given| **given).count() as u64
     }
 
     fn instants(&self) -> usize {
@@ -130,27 +144,36 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// a disk without enough space. No file is left then.
     pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
         let path = path.as_ref();
-        let named = self.unnamed(path, overwrite).and_then(|(unnamed, places)| {
+        let named = self.unnamed(path, overwrite, self.bytes()).and_then(|(unnamed, places)| {
+            unnamed.reserve()?;
             let path = unnamed.path().to_path_buf();
             self.writer(Target::Named(unnamed.put()?, path), places)
         });
         named.map_err(|cause| cause.at(path))
     }
 
-    /// The same for a history that is there already: the file has its name, and replaces another one, once it is
-    /// complete. Without [`Writer::finish`], nothing is left of it.
+    /// The same for a history that is there already, with its first `count` instants: the file has its name, and
+    /// replaces another one, once it is complete. Without [`Writer::finish`], nothing is left of it. Instants that a
+    /// stopped run never reached take no room.
     ///
     /// # Errors
     /// As for [`Plan::create`].
-    pub fn create_whole(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
+    pub fn create_whole(
+        &self,
+        path: impl AsRef<Path>,
+        overwrite: Overwrite,
+        count: usize,
+    ) -> Result<Writer<D>, FileError> {
         let path = path.as_ref();
-        let unnamed = self.unnamed(path, overwrite);
+        let unwritten = self.instants().saturating_sub(count) as u64;
+        let unnamed = self.unnamed(path, overwrite, self.bytes().saturating_sub(unwritten.saturating_mul(self.row())));
         let writer = unnamed.and_then(|(unnamed, places)| self.writer(Target::Unnamed(unnamed), places));
         writer.map_err(|cause| cause.at(path))
     }
 
-    fn unnamed(&self, path: &Path, overwrite: Overwrite) -> Result<(Unnamed, Places), FileCause> {
-        let (unnamed, places) = Unnamed::new(path, overwrite, self.bytes(), |file, texts| self.fill(file, texts))?;
+    /// Creates the file without its name; `bytes` is the room that it will take.
+    fn unnamed(&self, path: &Path, overwrite: Overwrite, bytes: u64) -> Result<(Unnamed, Places), FileCause> {
+        let (unnamed, places) = Unnamed::new(path, overwrite, bytes, |file, texts| self.fill(file, texts))?;
         let start = write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement());
         start.map_err(|source| FileCause::Create { source })?;
         Ok((unnamed, places))
