@@ -14,7 +14,7 @@ pub const SIZES: [[usize; 2]; 3] = [[20, 16], [160, 128], [640, 512]];
 const SPEED: f64 = 400.0;
 
 /// Time step over critical time step.
-const COURANT: f64 = 0.9;
+pub(crate) const COURANT: f64 = 0.9;
 
 /// What the block does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,12 +5,14 @@ mod csr;
 mod order;
 mod run;
 mod setup;
+mod two_blocks;
 
 pub use block::{Block, Motion, SIZES, material, problem};
 pub use csr::Csr;
 pub use order::Order;
 pub use run::{Clock, estimated, processor, simulated, steps, wall};
 pub use setup::setup;
+pub use two_blocks::{Contact, two_blocks};
 
 /// Any failure of a measurement.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;

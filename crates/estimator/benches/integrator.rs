@@ -6,9 +6,10 @@
 mod common;
 
 use common::each_case;
-use criterion::{Criterion, criterion_group, criterion_main};
-use percute_benches::{Csr, simulated, steps, wall};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use percute_benches::{Contact, Csr, simulated, steps, two_blocks, wall};
 use percute_core::dynamics::Dynamics;
+use std::cell::LazyCell;
 use std::hint::black_box;
 
 fn integrator(criterion: &mut Criterion) {
@@ -32,10 +33,27 @@ fn integrator(criterion: &mut Criterion) {
     });
 }
 
+/// Runs of 100 steps, of which all but two have contact: blocks of this height part after some 120.
+fn interface(criterion: &mut Criterion) {
+    const STEPS: usize = 100;
+    let mut group = criterion.benchmark_group("two blocks, per element");
+    group.sample_size(10);
+    for (contact, name) in Contact::ALL {
+        let case = LazyCell::new(|| two_blocks(contact).expect("valid blocks"));
+        group.throughput(Throughput::Elements(41_000 * STEPS as u64));
+        group.bench_function(name, |b| {
+            b.iter_custom(|count| {
+                (0..count).map(|_| simulated(&case, STEPS, Some(1), wall).expect("a stable run").0).sum()
+            });
+        });
+    }
+    group.finish();
+}
+
 /// Some displacement of all nodes.
 fn displacement(nodes: usize) -> Vec<f64> {
     (0..2 * nodes).map(|i| (i as f64).sin()).collect()
 }
 
-criterion_group!(benches, integrator);
+criterion_group!(benches, integrator, interface);
 criterion_main!(benches);
