@@ -1,17 +1,18 @@
 //! The tangential part of the contact problem of a step: A λ + b = 0 within |λ| ≤ μ λ_n.
 
+use super::band::{Band, Factors};
 use super::normal::{RESIDUAL, ROUNDS};
 use super::relaxation::relax;
-use super::skyline::{Factors, Skyline};
 
 /// Its solver, with its memory. The normal part does not depend on it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrictionProblem {
     /// For each pressed multiplier the sign of its force while it slips, 0 while it sticks.
     slips: Vec<f64>,
-    set: Vec<usize>,
+    /// Those that stick, among all.
+    sticks: Vec<bool>,
     factors: Factors,
-    reduced: Vec<[f64; 1]>,
+    solution: Vec<[f64; 1]>,
     /// λ (N/m).
     force: Vec<f64>,
 }
@@ -30,11 +31,11 @@ impl FrictionProblem {
     }
 
     /// Solves by the primal–dual active set of those that stick, for the pressed multipliers, within these limits (N/m)
-    /// of all. `sticking` has their normal and tangential forces (N/m) if all stick, or is empty. Returns the number of
-    /// rounds, 0 if these are within the limits.
+    /// of all. `sticking` has the normal and tangential forces of all (N/m) if all pressed ones stick, or is empty. Returns
+    /// the number of rounds, 0 if these are within the limits.
     pub(super) fn solve(
         &mut self,
-        matrix: &Skyline,
+        matrix: &Band,
         right: impl Fn(usize) -> f64,
         limit: &[f64],
         (pressed, sticking): (&[usize], &[[f64; 2]]),
@@ -42,8 +43,8 @@ impl FrictionProblem {
         self.clear(limit.len());
         self.slips.clear();
         self.slips.resize(pressed.len(), 0.0);
-        if sticking.len() == pressed.len() {
-            pressed.iter().zip(sticking).for_each(|(&k, [_, force])| self.force[k] = *force);
+        if !sticking.is_empty() {
+            pressed.iter().for_each(|&k| self.force[k] = sticking[k][1]);
             if !self.slip(limit, pressed) {
                 return 0;
             }
@@ -63,34 +64,33 @@ impl FrictionProblem {
     }
 
     /// Solves as if the sets were right. Whether that is possible.
-    fn solve_on_set(
-        &mut self,
-        matrix: &Skyline,
-        right: impl Fn(usize) -> f64,
-        limit: &[f64],
-        pressed: &[usize],
-    ) -> bool {
-        self.set.clear();
-        for (&k, slips) in pressed.iter().zip(&self.slips) {
-            self.force[k] = slips * limit[k];
-            if *slips == 0.0 {
-                self.set.push(k);
-            }
+    fn solve_on_set(&mut self, matrix: &Band, right: impl Fn(usize) -> f64, limit: &[f64], pressed: &[usize]) -> bool {
+        let Self { slips, sticks, factors, solution, force } = self;
+        sticks.clear();
+        sticks.resize(limit.len(), false);
+        for (&k, slips) in pressed.iter().zip(slips) {
+            force[k] = *slips * limit[k];
+            sticks[k] = *slips == 0.0;
         }
-        if !self.factors.factorise(matrix, &self.set) {
+        if !sticks.contains(&true) {
+            return true;
+        }
+        if !factors.factorise(matrix, sticks) {
             return false;
         }
-        self.reduced.clear();
-        self.reduced.extend(self.set.iter().map(|&k| [-matrix.product(k, &self.force) - right(k)]));
-        self.factors.solve(&mut self.reduced);
-        self.set.iter().zip(&self.reduced).for_each(|(&k, [force])| self.force[k] = *force);
+        solution.clear();
+        solution.resize(limit.len(), [0.0]);
+        let sticking = || pressed.iter().filter(|k| sticks[**k]);
+        sticking().for_each(|&k| solution[k] = [-matrix.product(k, force) - right(k)]);
+        factors.solve(solution);
+        sticking().for_each(|&k| force[k] = solution[k][0]);
         true
     }
 
     /// What sticks beyond its limit slips, and what slips along its force sticks. Whether anything changes.
     fn change_sets(
         &mut self,
-        matrix: &Skyline,
+        matrix: &Band,
         right: impl Fn(usize) -> f64,
         (limit, bound): (&[f64], f64),
         pressed: &[usize],

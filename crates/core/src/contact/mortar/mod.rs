@@ -16,6 +16,7 @@
 //! Wohlmuth, *A mortar finite element method using dual spaces for the Lagrange multiplier*; the part of an edge that
 //! the other surface covers has a dual basis of its own.
 
+mod band;
 mod coupling;
 mod dual;
 mod facing;
@@ -26,7 +27,6 @@ mod partition;
 mod relaxation;
 mod sharing;
 mod side;
-mod skyline;
 mod step;
 mod surfaces;
 #[cfg(test)]

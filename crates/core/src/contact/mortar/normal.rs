@@ -1,7 +1,7 @@
 //! The normal part of the contact problem of a step: A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0.
 
+use super::band::{Band, Factors};
 use super::relaxation::relax;
-use super::skyline::{Factors, Skyline};
 
 /// Rounds of the active set before relaxation takes over.
 pub(super) const ROUNDS: usize = 60;
@@ -11,10 +11,12 @@ pub(super) const RESIDUAL: f64 = 1e-14;
 /// Its solver, with its memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NormalProblem {
-    set: Vec<usize>,
     inside: Vec<bool>,
     factors: Factors,
-    reduced: Vec<[f64; 2]>,
+    /// For each multiplier the normal and the tangential part on the set (N/m).
+    solution: Vec<[f64; 2]>,
+    /// Those in the set, ascending.
+    pressed: Vec<usize>,
     /// λ (N/m).
     force: Vec<f64>,
 }
@@ -29,18 +31,18 @@ impl NormalProblem {
     /// The multipliers that are positive, ascending.
     #[inline]
     pub(super) fn pressed(&self) -> &[usize] {
-        &self.set
+        &self.pressed
     }
 
-    /// For each of these the normal and the tangential multiplier (N/m) if all of them stick and the same matrix holds
-    /// for both parts; empty if relaxation found the set.
+    /// For each multiplier the normal and the tangential part (N/m) if all that are pressed stick and the same matrix
+    /// holds for both parts; empty if relaxation found the set.
     pub(super) fn sticking(&self) -> &[[f64; 2]] {
-        &self.reduced
+        &self.solution
     }
 
     /// Solves by the primal–dual active set, for the multipliers that act; others are 0. `right` has b of the normal
     /// part, and that of the tangential one for [`NormalProblem::sticking`]. Returns the number of rounds.
-    pub(super) fn solve(&mut self, matrix: &Skyline, right: &[[f64; 2]], acts: impl Fn(usize) -> bool) -> usize {
+    pub(super) fn solve(&mut self, matrix: &Band, right: &[[f64; 2]], acts: impl Fn(usize) -> bool) -> usize {
         let count = right.len();
         let bound = RESIDUAL * right.iter().fold(0.0_f64, |most, [b, _]| most.max(b.abs()));
         self.inside.clear();
@@ -62,6 +64,7 @@ impl NormalProblem {
                 self.inside[k] = stays;
             }
             if !changed {
+                self.collect();
                 return round;
             }
         }
@@ -69,26 +72,25 @@ impl NormalProblem {
         relax(matrix, |k| right[k][0], &mut self.force, 0..count, project);
         (0..count).for_each(|k| self.inside[k] = self.force[k] > 0.0);
         self.collect();
-        self.reduced.clear();
+        self.solution.clear();
         ROUNDS
     }
 
     fn collect(&mut self) {
-        self.set.clear();
-        self.set.extend((0..self.inside.len()).filter(|&k| self.inside[k]));
+        self.pressed.clear();
+        self.pressed.extend((0..self.inside.len()).filter(|&k| self.inside[k]));
     }
 
     /// Solves as if the set were right. Whether that is possible.
-    fn solve_on_set(&mut self, matrix: &Skyline, right: &[[f64; 2]]) -> bool {
-        self.collect();
-        if !self.factors.factorise(matrix, &self.set) {
+    fn solve_on_set(&mut self, matrix: &Band, right: &[[f64; 2]]) -> bool {
+        if !self.factors.factorise(matrix, &self.inside) {
             return false;
         }
-        self.reduced.clear();
-        self.reduced.extend(self.set.iter().map(|&k| right[k].map(|b| -b)));
-        self.factors.solve(&mut self.reduced);
-        self.force.fill(0.0);
-        self.set.iter().zip(&self.reduced).for_each(|(&k, [force, _])| self.force[k] = *force);
+        self.solution.clear();
+        self.solution.extend(right.iter().map(|b| b.map(|b| -b)));
+        self.factors.solve(&mut self.solution);
+        self.force.clear();
+        self.force.extend(self.solution.iter().map(|[force, _]| force));
         true
     }
 }

@@ -1,11 +1,11 @@
 //! Projected Gauss–Seidel, where an active set does not settle.
 
-use super::skyline::Skyline;
+use super::band::Band;
 
 /// Solves A λ + b = 0 with λ projected by `project`, for some rows in ascending order, until no sweep changes more than
 /// 1e-13 of the largest. Other rows keep their values.
 pub(super) fn relax(
-    matrix: &Skyline,
+    matrix: &Band,
     right: impl Fn(usize) -> f64,
     force: &mut [f64],
     rows: impl Iterator<Item = usize> + Clone,

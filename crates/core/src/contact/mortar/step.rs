@@ -1,11 +1,11 @@
 //! Two surfaces that slide along each other at one step.
 
+use super::band::Band;
 use super::coupling::Coupling;
 use super::friction::FrictionProblem;
 use super::gram::gram;
 use super::normal::NormalProblem;
 use super::side::Side;
-use super::skyline::Skyline;
 use super::surfaces::SlidingSurfaces;
 use crate::contact::constraint::Prediction;
 use crate::contact::frame::dot;
@@ -23,10 +23,9 @@ pub(crate) struct SlidingContact {
     index: usize,
     shifts: Vec<f64>,
     coupling: Coupling,
-    normal_matrix: Skyline,
+    normal_matrix: Band,
     /// Another one only if the tangential motion of some node is prescribed.
-    tangential_matrix: Option<Skyline>,
-    scaled: Vec<f64>,
+    tangential_matrix: Option<Band>,
     normal: NormalProblem,
     friction: FrictionProblem,
     /// Limits of the tangential multipliers (N/m).
@@ -106,9 +105,8 @@ impl SlidingContact {
             index,
             shifts: Vec::new(),
             coupling: Coupling::default(),
-            normal_matrix: Skyline::default(),
-            tangential_matrix: guided.then(Skyline::default),
-            scaled: Vec::new(),
+            normal_matrix: Band::default(),
+            tangential_matrix: guided.then(Band::default),
             normal: NormalProblem::default(),
             friction: FrictionProblem::default(),
             limit: Vec::new(),
@@ -180,7 +178,7 @@ impl SlidingContact {
             let slip = |k: usize| coupling.difference(k, |node| slave.speed[node], |node| master.speed[node]) / h;
             right.iter_mut().enumerate().for_each(|(k, right)| right[1] = slip(k));
         }
-        gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.scaled);
+        gram(&mut self.normal_matrix, coupling, inverse(0));
         normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
         if !rough {
             friction.clear(coupling.len());
@@ -191,7 +189,7 @@ impl SlidingContact {
         self.limit.extend(normal.force().iter().enumerate().map(limit));
         let matrix = match &mut self.tangential_matrix {
             Some(matrix) => {
-                gram(matrix, coupling, inverse(1), &mut self.scaled);
+                gram(matrix, coupling, inverse(1));
                 &*matrix
             }
             None => &self.normal_matrix,
