@@ -11,11 +11,12 @@ mod interface;
 mod mortar;
 mod obstacle;
 mod plane;
+mod prediction;
 mod results;
 mod solve;
 mod surface;
 
-pub(crate) use constraint::{Constraints, Prediction};
+pub(crate) use constraint::Constraints;
 pub(crate) use coulomb::dissipation;
 pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;
@@ -25,6 +26,7 @@ pub use mortar::{Coupling, DualShape, Facing, Part, Segment, Side, SlidingSurfac
 pub(crate) use mortar::{SlidingContact, tangent};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
+pub(crate) use prediction::{Predicted, Prediction};
 pub use results::{
     ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, NodeSummary, Resultant,
 };

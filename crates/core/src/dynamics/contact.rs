@@ -1,7 +1,7 @@
 //! Reactions and touching status along the steps.
 
 use super::Dynamics;
-use crate::contact::{Constraints, ContactSurface, Prediction, SlidingContact, solve};
+use crate::contact::{Constraints, Predicted, Prediction, SlidingContact, solve};
 
 /// Contact at one step.
 #[derive(Clone, Debug)]
@@ -12,6 +12,9 @@ pub(super) struct Contact<const D: usize> {
     pub(super) touching: Vec<bool>,
     /// Touching status at t_{n+1}.
     pub(super) touching_next: Vec<bool>,
+    /// Each node of the contact surface among those of the mesh, and 1/m (1/kg).
+    nodes: Vec<(usize, f64)>,
+    predicted: Vec<Predicted<D>>,
     constraints: Constraints<D>,
     /// One for each two surfaces that slide along each other.
     sliding: Vec<SlidingContact>,
@@ -21,12 +24,16 @@ impl<const D: usize> Contact<D> {
     pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
         let surface = dynamics.problem.surface();
         let count = surface.nodes().len();
+        let node = |at: usize| surface.nodes()[at].node.index();
+        let nodes = (0..count).map(|at| (node(at), dynamics.inverse_mass[node(at)]));
         let sliding = |index| SlidingContact::new(surface, index, &dynamics.inverse_mass);
         Self {
             reaction: vec![[0.0; D]; count],
             touching: vec![false; count],
             touching_next: vec![false; count],
-            constraints: Constraints::new(surface),
+            nodes: nodes.collect(),
+            predicted: Vec::with_capacity(count),
+            constraints: Constraints::new(surface, dynamics.problem.mass()),
             sliding: (0..surface.sliding().len()).map(sliding).collect(),
         }
     }
@@ -43,24 +50,27 @@ impl<const D: usize> Contact<D> {
     ) {
         let problem = dynamics.problem;
         let steps = [dynamics.times.step(n), dynamics.times.velocity_step(n)];
-        let prediction = Prediction {
-            displacement,
-            velocity,
-            force,
-            mass: problem.mass(),
-            inverse_mass: &dynamics.inverse_mass,
-            steps,
-            tolerance: problem.contact_tolerance(),
+        // All reads of scattered nodes are here, side by side.
+        let predict = |&(node, inverse): &(usize, f64)| {
+            Predicted::new(displacement[node], &velocity[node], &force[node], steps[1] * inverse)
         };
+        self.predicted.clear();
+        self.predicted.extend(self.nodes.iter().map(predict));
+        let prediction = Prediction { nodes: &self.predicted, steps, tolerance: problem.contact_tolerance() };
         self.constraints.collect(problem.surface(), &prediction);
         std::mem::swap(&mut self.touching, &mut self.touching_next);
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
-        self.slide(problem.surface(), &prediction);
+        for sliding in &mut self.sliding {
+            sliding.react(problem.surface(), &prediction, |at, force| match force {
+                Some(force) => self.reaction[at] = force,
+                None => self.touching_next[at] = true,
+            });
+        }
         solve(&self.constraints, steps, problem.contact_tolerance(), |at, reaction| {
             let nodes = problem.surface().nodes();
             let mut act = |at: usize, reaction: [f64; D]| {
-                let node = nodes[at].node.index();
+                let node = self.nodes[at].0;
                 (0..D).for_each(|c| force[node][c] += reaction[c]);
                 self.reaction[at] = reaction;
                 self.touching_next[at] = true;
@@ -71,17 +81,6 @@ impl<const D: usize> Contact<D> {
             }
         });
         self.sliding.iter().for_each(|sliding| sliding.add(problem.surface(), &self.reaction, force));
-    }
-
-    /// Reactions and touching status on surfaces that slide.
-    fn slide(&mut self, surface: &ContactSurface<D>, prediction: &Prediction<'_, D>) {
-        let Self { reaction, touching_next, sliding, .. } = self;
-        for sliding in sliding {
-            sliding.react(surface, prediction, |at, force| match force {
-                Some(force) => reaction[at] = force,
-                None => touching_next[at] = true,
-            });
-        }
     }
 
     /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is

@@ -236,6 +236,22 @@ impl Coupling {
         (first..).zip(row).fold(sum, |sum, (at, value)| sum - value * master(at))
     }
 
+    /// The same of several fields, from their values on all nodes.
+    #[inline]
+    pub(super) fn differences<const W: usize>(&self, node: usize, slave: &[[f64; W]], master: &[[f64; W]]) -> [f64; W] {
+        let (own, (first, row)) = (self.slave[node], self.master_row(node));
+        let mut sums = slave[node].map(|value| own[1] * value);
+        let mut add = |factor: f64, values: &[f64; W]| (0..W).for_each(|w| sums[w] += factor * values[w]);
+        if own[0] != 0.0 {
+            add(own[0], &slave[node - 1]);
+        }
+        if own[2] != 0.0 {
+            add(own[2], &slave[node + 1]);
+        }
+        row.iter().zip(&master[first..]).for_each(|(factor, values)| add(-factor, values));
+        sums
+    }
+
     /// The multipliers λ (N/m) of forces Dᵀλ on the nodes of the slave (N), one component of each. Those that do not
     /// act are 0.
     #[must_use]

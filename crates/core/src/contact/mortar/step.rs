@@ -7,8 +7,8 @@ use super::gram::gram;
 use super::normal::NormalProblem;
 use super::side::Side;
 use super::surfaces::SlidingSurfaces;
-use crate::contact::constraint::Prediction;
 use crate::contact::frame::dot;
+use crate::contact::prediction::{Predicted, Prediction};
 use crate::contact::surface::ContactSurface;
 
 /// Where all of the slave is farther from the master than this times the height of the master, no weighted gap is
@@ -44,10 +44,12 @@ struct State {
     /// 1/m (1/kg), for forces along n and along t.
     inverse_mass: [Vec<f64>; 2],
     guided: Vec<bool>,
-    /// η (m), the tangential displacement (m) at t_{n+1} and the tangential part of v_{n+½} (m/s), without contact.
-    eta: Vec<f64>,
+    /// η at t_{n+1} (m) and the tangential part of v_{n+½} (m/s), without contact.
+    motion: Vec<[f64; 2]>,
+    /// The tangential displacement at t_{n+1} (m), without contact.
     along: Vec<f64>,
-    speed: Vec<f64>,
+    /// The least and the largest η (m).
+    range: [f64; 2],
     /// Normal and tangential force (N).
     force: Vec<[f64; 2]>,
 }
@@ -59,14 +61,13 @@ impl State {
         let normal: Vec<f64> = nodes.iter().map(|&node| inverse_mass[node]).collect();
         let guided: Vec<bool> = entries().map(|contact| contact.guided).collect();
         let tangential = normal.iter().zip(&guided).map(|(inverse, guided)| if *guided { 0.0 } else { *inverse });
-        let zero = vec![0.0; side.len()];
         Self {
             nodes,
             inverse_mass: [normal.clone(), tangential.collect()],
             guided,
-            eta: zero.clone(),
-            along: zero.clone(),
-            speed: zero,
+            motion: Vec::with_capacity(side.len()),
+            along: Vec::with_capacity(side.len()),
+            range: [0.0; 2],
             force: vec![[0.0; 2]; side.len()],
         }
     }
@@ -78,20 +79,19 @@ impl State {
         (normal, tangent): (&[f64; D], &[f64; D]),
         prediction: &Prediction<'_, D>,
     ) {
-        let [dt, h] = prediction.steps;
-        for (node, eta) in side.eta().iter().enumerate() {
-            let of = self.nodes[node];
-            let velocity = prediction.velocity_after(of, h * self.inverse_mass[0][node]);
-            let (u, speed) = (&prediction.displacement[of], dot(&velocity, tangent));
-            self.eta[node] = eta + dot(u, normal) + dt * dot(&velocity, normal);
-            self.along[node] = dot(u, tangent) + dt * speed;
-            self.speed[node] = speed;
+        let (dt, nodes) = (prediction.steps[0], &prediction.nodes[side.position(0)..]);
+        let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
+        self.motion.clear();
+        self.along.clear();
+        for (eta, Predicted { displacement, velocity }) in side.eta().iter().zip(nodes) {
+            let eta = eta + dot(displacement, normal) + dt * dot(velocity, normal);
+            let speed = dot(velocity, tangent);
+            low = if eta < low { eta } else { low };
+            high = if eta > high { eta } else { high };
+            self.motion.push([eta, speed]);
+            self.along.push(dot(displacement, tangent) + dt * speed);
         }
-    }
-
-    /// The least and the largest η.
-    fn range(&self) -> [f64; 2] {
-        self.eta.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], eta| [low.min(*eta), high.max(*eta)])
+        self.range = [low, high];
     }
 }
 
@@ -133,7 +133,7 @@ impl SlidingContact {
         if !self.touches {
             return;
         }
-        self.solve(sliding, prediction.steps[1]);
+        self.solve(sliding);
         self.add_up();
         for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
             for (node, &[press, along]) in state.force.iter().enumerate().filter(|(_, force)| **force != [0.0; 2]) {
@@ -148,36 +148,31 @@ impl SlidingContact {
         }
     }
 
-    /// Computes the coupling and b_n. Whether any weighted gap is negative.
+    /// Computes the coupling and b. Whether any weighted gap is negative.
     fn is_touched<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
-        let [slave, master] = &self.sides;
-        let (low, [bottom, top]) = (slave.range()[0], master.range());
-        sliding.find_shifts(&mut self.shifts, |node| slave.along[node], |node| master.along[node]);
-        if self.shifts.iter().any(|shift| !shift.is_finite()) || low - top > FAR * (top - bottom) {
+        let Self { shifts, coupling, right, sides: [slave, master], .. } = self;
+        let ([low, _], [bottom, top]) = (slave.range, master.range);
+        sliding.find_shifts(shifts, |node| slave.along[node], |node| master.along[node]);
+        if shifts.iter().any(|shift| !shift.is_finite()) || low - top > FAR * (top - bottom) {
             return false;
         }
-        sliding.update(&mut self.coupling, &self.shifts);
-        let (coupling, [dt, h]) = (&self.coupling, prediction.steps);
-        let gap = |k: usize| coupling.difference(k, |node| slave.eta[node], |node| master.eta[node]);
-        self.right.clear();
-        self.right.extend((0..coupling.len()).map(|k| [gap(k), 0.0]));
-        let below = |(k, [gap, _]): (usize, &[f64; 2])| {
-            coupling.is_active(k) && *gap < -prediction.tolerance * coupling.weight(k)
-        };
-        let touches = self.right.iter().enumerate().any(below);
-        self.right.iter_mut().for_each(|[b, _]| *b /= dt * h);
+        sliding.update(coupling, shifts);
+        let [dt, h] = prediction.steps;
+        let mut touches = false;
+        right.clear();
+        right.extend((0..coupling.len()).map(|k| {
+            let [gap, slip] = coupling.differences(k, &slave.motion, &master.motion);
+            touches |= coupling.is_active(k) && gap < -prediction.tolerance * coupling.weight(k);
+            [gap / (dt * h), slip / h]
+        }));
         touches
     }
 
     /// Solves for the multipliers.
-    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, h: f64) {
+    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>) {
         let Self { coupling, sides: [slave, master], normal, friction, right, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
         let rough = sliding.law().friction() > 0.0;
-        if rough {
-            let slip = |k: usize| coupling.difference(k, |node| slave.speed[node], |node| master.speed[node]) / h;
-            right.iter_mut().enumerate().for_each(|(k, right)| right[1] = slip(k));
-        }
         gram(&mut self.normal_matrix, coupling, inverse(0));
         normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
         if !rough {
