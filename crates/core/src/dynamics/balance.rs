@@ -234,18 +234,20 @@ impl<const D: usize> BalanceKeeper<D> {
         }
 
         now.step().reaction.iter().for_each(&mut add);
-        let nodes = problem.surface().nodes();
+        let (nodes, u) = (problem.surface().nodes(), now.step().displacement);
+        let (mut work, mut friction) = (0.0, 0.0);
         self.contact.advance(
-            now.step().displacement,
+            u,
             |i| now.step().reaction[i],
             |i, mean, path| {
-                if !first {
-                    let frame = problem.surface().frame(i, &now.step().displacement[nodes[i].node.index()]);
-                    b.work_of_contact += dot(&mean, &path);
-                    b.friction += dissipation(&frame, &mean, &path);
-                }
+                work += dot(&mean, &path);
+                friction += dissipation(&problem.surface().frame(i, &u[nodes[i].node.index()]), &mean, &path);
             },
         );
+        if !first {
+            b.work_of_contact += work;
+            b.friction += friction;
+        }
         total
     }
 }

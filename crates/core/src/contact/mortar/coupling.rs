@@ -1,6 +1,7 @@
 //! The matrices D and M of an instant.
 
 use super::dual::{DualShape, Moments};
+use super::normal::largest;
 use super::partition::{Segment, place, segments};
 use super::side::Side;
 
@@ -27,82 +28,85 @@ pub struct Coupling {
     masters: usize,
     /// Rows of D: the values at the node before, at the node and at the node after it.
     slave: Vec<[f64; 3]>,
-    /// The columns of each row of M, from the first one to before the last one.
-    columns: Vec<[usize; 2]>,
-    /// Where the values of each row begin.
-    start: Vec<usize>,
+    /// Rows of M.
+    rows: Vec<Row>,
     master: Vec<f64>,
     weights: Vec<f64>,
     least: f64,
+}
+
+/// Where a row of M begins: the node of the master, and the place of the value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row {
+    first: usize,
+    start: usize,
 }
 
 impl Coupling {
     /// Computes all anew, in the same memory: each part of the slave has moved so far (m) along the tangent against the
     /// master. Nodes nearer than `tolerance` (m) are at one place.
     pub(super) fn update(&mut self, [slave, master]: [&Side; 2], shifts: &[f64], tolerance: f64) {
-        let Self { places, segments: found, inverse, .. } = self;
-        places.clear();
-        found.clear();
-        inverse.clear();
-        for (part, &shift) in slave.parts().iter().zip(shifts) {
-            let start = places.len();
-            place((slave, part), master, shift, tolerance, places);
-            segments((slave, part), master, &places[start..], found);
-            let length = |first: usize| places[start + first + 1] - places[start + first];
-            inverse.extend(master.edges().iter().map(|&first| 1.0 / length(first)));
-        }
-        self.shifts.clear();
+        self.clear(slave.len());
         self.shifts.extend_from_slice(shifts);
         self.masters = master.len();
-        self.arrange(slave, master);
-        for (index, part) in slave.parts().iter().enumerate() {
-            part.edges.clone().for_each(|edge| self.add_edge((index, edge), slave, master));
-        }
-        for (weight, row) in self.weights.iter_mut().zip(&self.slave) {
-            *weight = row[0] + row[1] + row[2];
-        }
-        self.least = LEAST_WEIGHT * self.weights.iter().copied().fold(0.0, f64::max);
-    }
-
-    /// Counts the segments of each edge and makes room for the rows.
-    fn arrange(&mut self, slave: &Side, master: &Side) {
-        let Self { segments, before, columns, .. } = self;
-        before.clear();
-        columns.clear();
-        columns.resize(slave.len(), [usize::MAX, 0]);
-        let mut next = 0;
-        for (edge, &first) in slave.edges().iter().enumerate() {
-            before.push(next);
-            while let Some(segment) = segments.get(next).filter(|segment| segment.slave == edge) {
-                let low = master.edges()[segment.master];
-                for columns in &mut columns[first..first + 2] {
-                    *columns = [columns[0].min(low), columns[1].max(low + 2)];
-                }
-                next += 1;
+        for (index, (part, &shift)) in slave.parts().iter().zip(shifts).enumerate() {
+            place((slave, part), master, shift, tolerance, &mut self.places);
+            let places = &self.places[index * self.masters..];
+            self.inverse.extend(master.edges().iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
+            let mut next = 0;
+            for edge in part.edges.clone() {
+                self.before.push(self.segments.len());
+                let places = &self.places[index * self.masters..];
+                segments((slave, edge), master, places, &mut next, &mut self.segments);
+                self.open_rows(slave.edges()[edge], self.before[edge], master);
+                self.add_edge((index, edge), slave, master);
             }
         }
-        before.push(next);
-        self.start.clear();
-        let mut size = 0;
-        for columns in columns {
-            self.start.push(size);
-            columns[0] = columns[0].min(columns[1]);
-            size += columns[1] - columns[0];
-        }
-        self.start.push(size);
-        self.master.clear();
-        self.master.resize(size, 0.0);
-        self.slave.clear();
-        self.slave.resize(slave.len(), [0.0; 3]);
-        self.weights.resize(slave.len(), 0.0);
+        self.before.push(self.segments.len());
+        self.open_row(slave.len(), 0);
+        self.weights.extend(self.slave.iter().map(|row| row[0] + row[1] + row[2]));
+        self.least = LEAST_WEIGHT * largest(self.weights.iter().copied());
+    }
+
+    fn clear(&mut self, multipliers: usize) {
+        self.segments.clear();
+        self.before.clear();
         self.shapes.clear();
+        self.shifts.clear();
+        self.places.clear();
+        self.inverse.clear();
+        self.slave.clear();
+        self.slave.resize(multipliers, [0.0; 3]);
+        self.rows.clear();
+        self.master.clear();
+        self.weights.clear();
+    }
+
+    /// Makes room in the rows of both nodes of an edge, the first of which may have values of the edge before: from the
+    /// first to the last node of the master with a segment on it, of those from `start` on.
+    fn open_rows(&mut self, first: usize, start: usize, master: &Side) {
+        let [Some(low), Some(high)] = [self.segments[start..].first(), self.segments[start..].last()] else { return };
+        let [low, high] = [low, high].map(|segment| master.edges()[segment.master]);
+        for node in first..first + 2 {
+            self.open_row(node, low);
+            let Row { first, start } = self.rows[node];
+            self.master.resize(start + high + 2 - first, 0.0);
+        }
+    }
+
+    /// Begins a row at this node of the master, unless it has begun. Rows before it that have not are empty.
+    fn open_row(&mut self, node: usize, first: usize) {
+        let row = Row { first, start: self.master.len() };
+        while self.rows.len() <= node {
+            self.rows.push(row);
+        }
     }
 
     /// Adds one edge of a part of the slave.
     fn add_edge(&mut self, (part, edge): (usize, usize), slave: &Side, master: &Side) {
         let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
         let ends = [slave.xi()[first], slave.xi()[first + 1]];
-        let segments = &self.segments[self.before[edge]..self.before[edge + 1]];
+        let segments = &self.segments[self.before[edge]..];
         let moments = Moments::of(ends, inverse, segments);
         let shape = moments.shape(ends[1] - ends[0]);
         self.shapes.push(shape);
@@ -134,8 +138,8 @@ impl Coupling {
                 let [f, g] = second.map(|second| start + slope * second);
                 // Both factors are linear: exact.
                 let upper = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
-                let at = self.start[first + k] + low - self.columns[first + k][0];
-                let row = &mut self.master[at..at + 2];
+                let Row { first, start } = self.rows[first + k];
+                let row = &mut self.master[start + low - first..][..2];
                 row[0] += 3.0 * sixth * (f + g) - upper;
                 row[1] += upper;
             }
@@ -211,7 +215,8 @@ impl Coupling {
     #[inline]
     #[must_use]
     pub fn master_row(&self, node: usize) -> (usize, &[f64]) {
-        (self.columns[node][0], &self.master[self.start[node]..self.start[node + 1]])
+        let Row { first, start } = self.rows[node];
+        (first, &self.master[start..self.rows[node + 1].start])
     }
 
     /// The nodes of the master on which a multiplier acts, but for rounding.

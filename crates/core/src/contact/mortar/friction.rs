@@ -1,7 +1,7 @@
 //! The tangential part of the contact problem of a step: A λ + b = 0 within |λ| ≤ μ λ_n.
 
 use super::band::{Band, Factors};
-use super::normal::{RESIDUAL, ROUNDS};
+use super::normal::{RESIDUAL, ROUNDS, largest};
 use super::relaxation::relax;
 
 /// Its solver, with its memory. The normal part does not depend on it.
@@ -49,7 +49,7 @@ impl FrictionProblem {
                 return 0;
             }
         }
-        let bound = RESIDUAL * pressed.iter().fold(0.0_f64, |most, &k| most.max(right(k).abs()));
+        let bound = RESIDUAL * largest(pressed.iter().map(|&k| right(k).abs()));
         for round in 1..=ROUNDS {
             if !self.solve_on_set(matrix, &right, limit, pressed) {
                 break;

@@ -8,6 +8,11 @@ pub(super) const ROUNDS: usize = 60;
 /// A residual above minus this part of the largest right-hand side is rounding.
 pub(super) const RESIDUAL: f64 = 1e-14;
 
+/// The largest of some numbers, and at least 0.
+pub(super) fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |most, number| if number > most { number } else { most })
+}
+
 /// Its solver, with its memory.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NormalProblem {
@@ -44,7 +49,7 @@ impl NormalProblem {
     /// part, and that of the tangential one for [`NormalProblem::sticking`]. Returns the number of rounds.
     pub(super) fn solve(&mut self, matrix: &Band, right: &[[f64; 2]], acts: impl Fn(usize) -> bool) -> usize {
         let count = right.len();
-        let bound = RESIDUAL * right.iter().fold(0.0_f64, |most, [b, _]| most.max(b.abs()));
+        let bound = RESIDUAL * largest(right.iter().map(|[b, _]| b.abs()));
         self.inside.clear();
         self.inside.extend((0..count).map(|k| right[k][0] < 0.0 && acts(k)));
         self.force.clear();

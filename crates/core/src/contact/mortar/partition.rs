@@ -26,23 +26,27 @@ pub(super) fn place((slave, part): (&Side, &Part), master: &Side, shift: f64, to
     }));
 }
 
-/// Finds all segments on a part of the slave, in ascending order, with the nodes of the master at these places.
-pub(super) fn segments((slave, part): (&Side, &Part), master: &Side, places: &[f64], found: &mut Vec<Segment>) {
-    let mut next = 0;
-    for edge in part.edges.clone() {
-        let first = slave.edges()[edge];
-        let own = [slave.xi()[first], slave.xi()[first + 1]];
-        while next < master.edges().len() && places[master.edges()[next] + 1] <= own[0] {
-            next += 1;
+/// Finds the segments on an edge of the slave, in ascending order, with the nodes of the master at these places. Edges
+/// of the master before `next` end before it; it grows with the edges of a part in ascending order.
+pub(super) fn segments(
+    (slave, edge): (&Side, usize),
+    master: &Side,
+    places: &[f64],
+    next: &mut usize,
+    found: &mut Vec<Segment>,
+) {
+    let first = slave.edges()[edge];
+    let own = [slave.xi()[first], slave.xi()[first + 1]];
+    while *next < master.edges().len() && places[master.edges()[*next] + 1] <= own[0] {
+        *next += 1;
+    }
+    for (other, &first) in master.edges().iter().enumerate().skip(*next) {
+        if places[first] >= own[1] {
+            break;
         }
-        for (other, &first) in master.edges().iter().enumerate().skip(next) {
-            if places[first] >= own[1] {
-                break;
-            }
-            let ends = [own[0].max(places[first]), own[1].min(places[first + 1])];
-            if ends[1] > ends[0] {
-                found.push(Segment { slave: edge, master: other, ends });
-            }
+        let ends = [own[0].max(places[first]), own[1].min(places[first + 1])];
+        if ends[1] > ends[0] {
+            found.push(Segment { slave: edge, master: other, ends });
         }
     }
 }
