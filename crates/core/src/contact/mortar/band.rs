@@ -40,11 +40,14 @@ impl Band {
     /// One component of the product with a vector.
     #[inline]
     pub(super) fn product(&self, row: usize, vector: &[f64]) -> f64 {
-        let before = row.min(self.width);
-        let own = self.row(row)[self.width - before..].iter().zip(&vector[row - before..]);
-        let sum: f64 = own.map(|(a, x)| a * x).sum();
-        let column = self.values[(row + 1) * (self.width + 1)..].iter().skip(self.width - 1).step_by(self.width);
-        column.zip(&vector[row + 1..]).take(self.width).fold(sum, |sum, (a, x)| sum + a * x)
+        let (width, before) = (self.width, row.min(self.width));
+        let own = self.row(row)[width - before..].iter().zip(&vector[row - before..]);
+        let mut sum: f64 = own.map(|(a, x)| a * x).sum();
+        let below = self.values[(row + 1) * (width + 1)..].chunks_exact(width + 1);
+        for ((values, x), at) in below.zip(&vector[row + 1..]).zip((0..width).rev()) {
+            sum += values[at] * x;
+        }
+        sum
     }
 }
 
@@ -66,14 +69,14 @@ impl Factors {
         self.inverse.resize(inside.len(), 0.0);
         for row in (0..inside.len()).filter(|&row| inside[row]) {
             let (done, rest) = self.lower.values.split_at_mut(row * (width + 1));
-            let (now, given) = (&mut rest[..=width], matrix.row(row));
-            for apart in (1..=width.min(row)).rev().filter(|apart| inside[row - apart]) {
-                // Columns that both rows have.
-                let other = &done[(row - apart) * (width + 1)..][apart..width];
-                let sum: f64 = now[..width - apart].iter().zip(other).map(|(y, l)| y * l).sum();
-                now[width - apart] = given[width - apart] - sum;
+            let (now, given, before) = (&mut rest[..=width], matrix.row(row), row.min(width));
+            let rows = done[(row - before) * (width + 1)..].chunks_exact(width + 1);
+            for (at, other) in (width - before..width).zip(rows) {
+                // Columns that both rows have. Those outside the set are 0 in L.
+                let common = now[..at].iter().zip(&other[width - at..width]);
+                now[at] = given[at] - common.map(|(y, l)| y * l).sum::<f64>();
             }
-            let (mut pivot, before) = (given[width], row.min(width));
+            let mut pivot = given[width];
             for (value, inverse) in now[width - before..width].iter_mut().zip(&self.inverse[row - before..row]) {
                 let scaled = *value * inverse;
                 pivot -= *value * scaled;

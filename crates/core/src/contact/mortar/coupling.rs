@@ -128,20 +128,22 @@ impl Coupling {
         }
         let (lines, count) = (shape.lines(), master.edges().len());
         let (places, inverses) = (&self.places[part * self.masters..], &self.inverse[part * count..]);
-        for segment in segments {
-            let low = master.edges()[segment.master];
-            let (from, scale) = (places[low], inverses[segment.master]);
-            let hat = segment.ends.map(|end| (end - from) * scale);
-            let second = segment.ends.map(|end| (end - ends[0]) * inverse);
-            let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
-            for (k, [start, slope]) in lines.into_iter().enumerate() {
-                let [f, g] = second.map(|second| start + slope * second);
+        // The rows of both nodes, the last ones so far.
+        let [own, after] = [self.rows[first], self.rows[first + 1]];
+        let (before, last) = self.master.split_at_mut(after.start);
+        let rows = [(own.first, &mut before[own.start..]), (after.first, last)];
+        for ((first, row), [start, slope]) in rows.into_iter().zip(lines) {
+            for segment in segments {
+                let low = master.edges()[segment.master];
+                let (from, scale) = (places[low], inverses[segment.master]);
+                let hat = segment.ends.map(|end| (end - from) * scale);
+                let [f, g] = segment.ends.map(|end| start + slope * ((end - ends[0]) * inverse));
+                let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
                 // Both factors are linear: exact.
                 let upper = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
-                let Row { first, start } = self.rows[first + k];
-                let row = &mut self.master[start + low - first..][..2];
-                row[0] += 3.0 * sixth * (f + g) - upper;
-                row[1] += upper;
+                let values = &mut row[low - first..][..2];
+                values[0] += 3.0 * sixth * (f + g) - upper;
+                values[1] += upper;
             }
         }
     }

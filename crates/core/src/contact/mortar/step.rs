@@ -65,8 +65,8 @@ impl State {
             nodes,
             inverse_mass: [normal.clone(), tangential.collect()],
             guided,
-            motion: Vec::with_capacity(side.len()),
-            along: Vec::with_capacity(side.len()),
+            motion: vec![[0.0; 2]; side.len()],
+            along: vec![0.0; side.len()],
             range: [0.0; 2],
             force: vec![[0.0; 2]; side.len()],
         }
@@ -81,15 +81,14 @@ impl State {
     ) {
         let (dt, nodes) = (prediction.steps[0], &prediction.nodes[side.position(0)..]);
         let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
-        self.motion.clear();
-        self.along.clear();
-        for (eta, Predicted { displacement, velocity }) in side.eta().iter().zip(nodes) {
+        let own = self.motion.iter_mut().zip(&mut self.along);
+        for ((motion, along), (eta, Predicted { displacement, velocity })) in own.zip(side.eta().iter().zip(nodes)) {
             let eta = eta + dot(displacement, normal) + dt * dot(velocity, normal);
             let speed = dot(velocity, tangent);
             low = if eta < low { eta } else { low };
             high = if eta > high { eta } else { high };
-            self.motion.push([eta, speed]);
-            self.along.push(dot(displacement, tangent) + dt * speed);
+            *motion = [eta, speed];
+            *along = dot(displacement, tangent) + dt * speed;
         }
         self.range = [low, high];
     }
@@ -157,13 +156,13 @@ impl SlidingContact {
             return false;
         }
         sliding.update(coupling, shifts);
-        let [dt, h] = prediction.steps;
-        let mut touches = false;
+        let ([dt, h], mut touches) = (prediction.steps, false);
+        let over = [1.0 / (dt * h), 1.0 / h];
         right.clear();
         right.extend((0..coupling.len()).map(|k| {
             let [gap, slip] = coupling.differences(k, &slave.motion, &master.motion);
             touches |= coupling.is_active(k) && gap < -prediction.tolerance * coupling.weight(k);
-            [gap / (dt * h), slip / h]
+            [gap * over[0], slip * over[1]]
         }));
         touches
     }
