@@ -6,8 +6,8 @@ use super::coupling::Coupling;
 /// A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ (m²/kg): the relative acceleration of weighted values that multipliers cause. `inverse` has
 /// 1/m of the nodes of the slave and of the master (1/kg).
 pub(super) fn gram(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2]) {
-    let width = width(coupling);
-    matrix.reset(coupling.len(), width);
+    matrix.reset(coupling.len(), width(coupling));
+    let width = matrix.width();
     for (row, sums) in matrix.rows_mut().enumerate() {
         let (low, values) = coupling.master_row(row);
         for apart in 0..=width.min(row) {

@@ -302,9 +302,10 @@ fn the_work_is_that_of_the_nodes() {
 fn factors_solve_a_part_of_the_matrix() {
     let mut matrix = Band::default();
     matrix.reset(12, 3);
+    let width = matrix.width();
     for (row, values) in matrix.rows_mut().enumerate() {
         for apart in 0..=row.min(3) {
-            values[3 - apart] = if apart == 0 { 4.0 } else { 1.0 / (1 + apart) as f64 };
+            values[width - apart] = if apart == 0 { 4.0 } else { 1.0 / (1 + apart) as f64 };
         }
     }
     let inside: Vec<bool> = (0..12).map(|k| ![2, 6, 7, 10].contains(&k)).collect();
@@ -323,6 +324,10 @@ fn factors_solve_a_part_of_the_matrix() {
     }
     let mut indefinite = Band::default();
     indefinite.reset(2, 1);
-    indefinite.rows_mut().zip([[0.0, 1.0], [2.0, 1.0]]).for_each(|(row, values)| row.copy_from_slice(&values));
+    let width = indefinite.width();
+    indefinite
+        .rows_mut()
+        .zip([[0.0, 1.0], [2.0, 1.0]])
+        .for_each(|(row, values)| row[width - 1..].copy_from_slice(&values));
     assert!(!factors.factorise(&indefinite, &[true; 2]));
 }
