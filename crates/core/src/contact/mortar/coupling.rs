@@ -131,17 +131,18 @@ impl Coupling {
         // The rows of both nodes, the last ones so far.
         let [own, after] = [self.rows[first], self.rows[first + 1]];
         let (before, last) = self.master.split_at_mut(after.start);
-        let rows = [(own.first, &mut before[own.start..]), (after.first, last)];
-        for ((first, row), [start, slope]) in rows.into_iter().zip(lines) {
-            for segment in segments {
-                let low = master.edges()[segment.master];
-                let (from, scale) = (places[low], inverses[segment.master]);
-                let hat = segment.ends.map(|end| (end - from) * scale);
-                let [f, g] = segment.ends.map(|end| start + slope * ((end - ends[0]) * inverse));
-                let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
+        let mut rows = [(own.first, &mut before[own.start..], lines[0]), (after.first, last, lines[1])];
+        for segment in segments {
+            let low = master.edges()[segment.master];
+            let (from, scale) = (places[low], inverses[segment.master]);
+            let hat = segment.ends.map(|end| (end - from) * scale);
+            let second = segment.ends.map(|end| (end - ends[0]) * inverse);
+            let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
+            for (first, row, [start, slope]) in &mut rows {
+                let [f, g] = second.map(|second| *start + *slope * second);
                 // Both factors are linear: exact.
                 let upper = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
-                let values = &mut row[low - first..][..2];
+                let values = &mut row[low - *first..][..2];
                 values[0] += 3.0 * sixth * (f + g) - upper;
                 values[1] += upper;
             }
