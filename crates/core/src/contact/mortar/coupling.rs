@@ -10,6 +10,9 @@ const LEAST_WEIGHT: f64 = 1e-9;
 /// A force smaller than this part of the one that causes it is rounding.
 const LEAST_PART: f64 = 1e-9;
 
+/// A row of M has room for so many values at least: most surfaces need no more.
+pub(super) const SHORT: usize = 4;
+
 /// D = ∫ψφ, M = ∫ψN and the weights w = ∫ψ of the multipliers (m), on the partition at an instant. The multipliers are
 /// those of the nodes of the slave; N are the hats of the master.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,10 +38,12 @@ pub struct Coupling {
     least: f64,
 }
 
-/// Where a row of M begins: the node of the master, and the place of the value.
+/// A row of M: its first node of the master, the one after the last, and the place of the first value. Room that is left
+/// has zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
     first: usize,
+    end: usize,
     start: usize,
 }
 
@@ -63,7 +68,7 @@ impl Coupling {
             }
         }
         self.before.push(self.segments.len());
-        self.open_row(slave.len(), 0);
+        self.open_row(slave.len() - 1, 0);
         self.weights.extend(self.slave.iter().map(|row| row[0] + row[1] + row[2]));
         self.least = LEAST_WEIGHT * largest(self.weights.iter().copied());
     }
@@ -89,16 +94,18 @@ impl Coupling {
         let [low, high] = [low, high].map(|segment| master.edges()[segment.master]);
         for node in first..first + 2 {
             self.open_row(node, low);
-            let Row { first, start } = self.rows[node];
-            self.master.resize(start + high + 2 - first, 0.0);
+            let row = &mut self.rows[node];
+            row.end = high + 2;
+            self.master.resize(row.start + (row.end - row.first).max(SHORT), 0.0);
         }
     }
 
     /// Begins a row at this node of the master, unless it has begun. Rows before it that have not are empty.
     fn open_row(&mut self, node: usize, first: usize) {
-        let row = Row { first, start: self.master.len() };
         while self.rows.len() <= node {
-            self.rows.push(row);
+            let start = self.master.len();
+            self.rows.push(Row { first, end: first, start });
+            self.master.resize(start + SHORT, 0.0);
         }
     }
 
@@ -218,8 +225,15 @@ impl Coupling {
     #[inline]
     #[must_use]
     pub fn master_row(&self, node: usize) -> (usize, &[f64]) {
-        let Row { first, start } = self.rows[node];
-        (first, &self.master[start..self.rows[node + 1].start])
+        let Row { first, end, start } = self.rows[node];
+        (first, &self.master[start..][..end - first])
+    }
+
+    /// The same with the zeros behind it, at least [`SHORT`] values.
+    #[inline]
+    pub(super) fn room_of_row(&self, node: usize) -> (usize, &[f64]) {
+        let Row { first, end, start } = self.rows[node];
+        (first, &self.master[start..][..(end - first).max(SHORT)])
     }
 
     /// The nodes of the master on which a multiplier acts, but for rounding.

@@ -1,22 +1,43 @@
 //! The matrix of the contact problem of a step.
 
 use super::band::Band;
-use super::coupling::Coupling;
+use super::coupling::{Coupling, SHORT};
 
 /// A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ (m²/kg): the relative acceleration of weighted values that multipliers cause. `inverse` has
 /// 1/m of the nodes of the slave and of the master (1/kg).
-pub(super) fn gram(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2]) {
+pub(super) fn gram(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &mut Vec<f64>) {
     matrix.reset(coupling.len(), width(coupling));
+    let longest = (0..coupling.len()).map(|row| coupling.room_of_row(row).1.len()).fold(SHORT, usize::max);
+    // Short rows are compiled on their own.
+    if longest == SHORT {
+        fill(SHORT, matrix, coupling, inverse, window);
+    } else {
+        fill(longest, matrix, coupling, inverse, window);
+    }
+}
+
+/// Adds up all rows. None of M is longer than `longest`.
+#[inline(always)]
+fn fill(longest: usize, matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &mut Vec<f64>) {
+    // A row of M m'⁻¹ between zeros, from so many nodes before its first one on.
+    window.clear();
+    window.resize(3 * longest, 0.0);
+    let room = |row: usize| {
+        let (low, values) = coupling.room_of_row(row);
+        (low, if longest == SHORT { &values[..SHORT] } else { values })
+    };
     let width = matrix.width();
     for (row, sums) in matrix.rows_mut().enumerate() {
-        let (low, values) = coupling.master_row(row);
+        let (low, values) = room(row);
+        window[longest..].fill(0.0);
+        for (node, (scaled, value)) in (low..).zip(window[longest..].iter_mut().zip(values)) {
+            *scaled = value * inverse[1].get(node).unwrap_or(&0.0);
+        }
         for apart in 0..=width.min(row) {
-            let (other_low, other) = coupling.master_row(row - apart);
-            let from = low.max(other_low);
-            if let (Some(own), Some(other)) = (values.get(from - low..), other.get(from - other_low..)) {
-                let common = own.iter().zip(&inverse[1][from..]).zip(other);
-                sums[width - apart] = common.map(|((own, inverse), other)| own * inverse * other).sum();
-            }
+            let (other_low, other) = room(row - apart);
+            let common = (longest + other_low).checked_sub(low).and_then(|begin| window.get(begin..begin + longest));
+            let Some(common) = common else { continue };
+            sums[width - apart] = common.iter().zip(other).map(|(scaled, other)| scaled * other).sum();
         }
         add_slave(sums, coupling, row, inverse[0]);
     }

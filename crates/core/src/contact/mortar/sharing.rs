@@ -11,7 +11,7 @@ impl Coupling {
     #[must_use]
     pub fn share(&self, inverse: [&[f64]; 2], change: &[f64]) -> [Vec<f64>; 2] {
         let (mut matrix, mut factors) = (Band::default(), Factors::default());
-        gram(&mut matrix, self, inverse);
+        gram(&mut matrix, self, inverse, &mut Vec::new());
         let acting: Vec<bool> = (0..self.len()).map(|k| self.is_active(k)).collect();
         let mut shared = inverse.map(|inverse| vec![0.0; inverse.len()]);
         if !factors.factorise(&matrix, &acting) {

@@ -26,6 +26,8 @@ pub(crate) struct SlidingContact {
     normal_matrix: Band,
     /// Another one only if the tangential motion of some node is prescribed.
     tangential_matrix: Option<Band>,
+    /// Memory of [`gram`].
+    window: Vec<f64>,
     normal: NormalProblem,
     friction: FrictionProblem,
     /// Limits of the tangential multipliers (N/m).
@@ -106,6 +108,7 @@ impl SlidingContact {
             coupling: Coupling::default(),
             normal_matrix: Band::default(),
             tangential_matrix: guided.then(Band::default),
+            window: Vec::new(),
             normal: NormalProblem::default(),
             friction: FrictionProblem::default(),
             limit: Vec::new(),
@@ -172,7 +175,7 @@ impl SlidingContact {
         let Self { coupling, sides: [slave, master], normal, friction, right, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
         let rough = sliding.law().friction() > 0.0;
-        gram(&mut self.normal_matrix, coupling, inverse(0));
+        gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.window);
         normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
         if !rough {
             friction.clear(coupling.len());
@@ -183,7 +186,7 @@ impl SlidingContact {
         self.limit.extend(normal.force().iter().enumerate().map(limit));
         let matrix = match &mut self.tangential_matrix {
             Some(matrix) => {
-                gram(matrix, coupling, inverse(1));
+                gram(matrix, coupling, inverse(1), &mut self.window);
                 &*matrix
             }
             None => &self.normal_matrix,

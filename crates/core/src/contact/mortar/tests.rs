@@ -236,7 +236,7 @@ proptest! {
         let coupling = coupling(&side(&slave), &side(&master), -shift);
         let inverse: [Vec<f64>; 2] = [slave.iter().map(|x| light + x.fract()).collect(), vec![1.0; master.len()]];
         let mut matrix = Band::default();
-        gram(&mut matrix, &coupling, inverse.each_ref().map(|m| &m[..]));
+        gram(&mut matrix, &coupling, inverse.each_ref().map(|m| &m[..]), &mut Vec::new());
         let full = dense(&coupling, inverse.each_ref().map(|m| &m[..]));
         let right: Vec<[f64; 2]> = (0..slave.len()).map(|k| [given[k] * coupling.weight(k), 0.0]).collect();
         let mut problem = NormalProblem::default();
@@ -265,7 +265,7 @@ fn the_work_is_that_of_the_nodes() {
         let coupling = coupling(&slave, &master, 0.3 / count as f64);
         let inverse = [&slave, &master].map(|side| side.xi().iter().map(|xi| 1.0 + 0.3 * xi).collect::<Vec<_>>());
         let mut matrix = Band::default();
-        gram(&mut matrix, &coupling, inverse.each_ref().map(|m| &m[..]));
+        gram(&mut matrix, &coupling, inverse.each_ref().map(|m| &m[..]), &mut Vec::new());
         assert!(matrix.width() <= 4);
         for waves in [0.0, 1.0, 3.0, 7.0] {
             let press = |k: usize| -1.0 - 2.0 * (waves * slave.xi()[k]).sin();
