@@ -234,22 +234,32 @@ impl<const D: usize> BalanceKeeper<D> {
         }
 
         now.step().reaction.iter().for_each(&mut add);
-        let (nodes, u) = (problem.surface().nodes(), now.step().displacement);
-        let (mut work, mut friction) = (0.0, 0.0);
-        self.contact.advance(
-            u,
-            |i| now.step().reaction[i],
-            |i, mean, path| {
-                work += dot(&mean, &path);
-                friction += dissipation(&problem.surface().frame(i, &u[nodes[i].node.index()]), &mean, &path);
-            },
-        );
+        let [work, friction] = contact_works(&mut self.contact, problem, now);
         if !first {
             b.work_of_contact += work;
             b.friction += friction;
         }
         total
     }
+}
+
+/// Work of contact reactions and dissipation since the last call (J).
+fn contact_works<const D: usize, const N: usize>(
+    meter: &mut WorkMeter<D>,
+    problem: &Problem<D, N>,
+    now: &State<'_, D>,
+) -> [f64; 2] {
+    let (surface, u, reaction) = (problem.surface(), now.step().displacement, now.step().reaction);
+    let (mut work, mut friction) = (0.0, 0.0);
+    meter.advance(
+        u,
+        |i| reaction[i],
+        |i, mean, path| {
+            work += dot(&mean, &path);
+            friction += dissipation(&surface.frame(i, &u[surface.nodes()[i].node.index()]), &mean, &path);
+        },
+    );
+    [work, friction]
 }
 
 /// Rounding of the displacements, some 1e-16 of their size, moves nodes by as much in a step; the
@@ -260,6 +270,7 @@ fn rounding_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, time
     let speed = 1e-10 * largest / step;
     problem.mass().iter().sum::<f64>() * speed * speed
 }
+
 /// Σ m|v| along the axis on which it is largest (kg m/s), of several bodies, whose momenta may cancel; 0 of one.
 fn momentum_of_bodies<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     if problem.mesh().parts() == 1 {
