@@ -7,7 +7,7 @@ mod common;
 
 use common::each_case;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use percute_benches::{Contact, Csr, simulated, steps, two_blocks, wall};
+use percute_benches::{Contact, Csr, processor, simulated, steps, two_blocks, wall};
 use percute_core::dynamics::Dynamics;
 use std::cell::LazyCell;
 use std::hint::black_box;
@@ -33,7 +33,7 @@ fn integrator(criterion: &mut Criterion) {
     });
 }
 
-/// Runs of 100 steps, of which all but two have contact: blocks of this height part after some 120.
+/// Processor time of runs of 100 steps, of which all but two have contact: blocks of this height part after some 120.
 fn interface(criterion: &mut Criterion) {
     const STEPS: usize = 100;
     let mut group = criterion.benchmark_group("two blocks, per element");
@@ -43,7 +43,7 @@ fn interface(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(41_000 * STEPS as u64));
         group.bench_function(name, |b| {
             b.iter_custom(|count| {
-                (0..count).map(|_| simulated(&case, STEPS, Some(1), wall).expect("a stable run").0).sum()
+                (0..count).map(|_| simulated(&case, STEPS, Some(1), processor).expect("a stable run").0).sum()
             });
         });
     }
