@@ -40,7 +40,32 @@ pub(crate) fn pieces<'a, const D: usize>(
     })
 }
 
+/// A place on an edge of the slave, from 0 to 1, at which a density has a break.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Break {
+    pub(crate) edge: usize,
+    pub(crate) place: f64,
+}
+
 impl Piece {
+    /// Its parts between the breaks inside of it. Those within rounding of its ends are none.
+    pub(crate) fn cut(self, breaks: &[Break]) -> impl Iterator<Item = Self> {
+        const NEAR: f64 = 1e-12;
+        let [start, end] = self.on_slave;
+        let inside = |at: &Break| at.edge == self.slave[0] && start + NEAR < at.place && at.place < end - NEAR;
+        let mut places: Vec<f64> = breaks.iter().filter(|at| inside(at)).map(|at| at.place).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|next, last| *next < *last + NEAR);
+        places.push(end);
+        places.into_iter().scan(start, move |from, to| {
+            let ends = [std::mem::replace(from, to), to];
+            let parts = ends.map(|place| (place - start) / (end - start));
+            let at = |values: [f64; 2]| parts.map(|part| values[0] + part * (values[1] - values[0]));
+            let length = self.length * (parts[1] - parts[0]);
+            Some(Self { length, ends: at(self.ends), on_slave: ends, on_master: at(self.on_master), ..self })
+        })
+    }
+
     /// At its ends, a field on the slave that is linear between nodes.
     #[inline]
     pub(crate) fn slave_values(&self, field: impl Fn(usize) -> f64) -> [f64; 2] {

@@ -1,37 +1,68 @@
-//! The stress of a traction on an edge less the linear one with the same moments, in the star of a node.
+//! The stress of tractions on the edges of a star less linear ones: what balances itself.
 
-use super::edge_traction::EdgeTraction;
+use super::edge_traction::{on, radii};
 use super::star_stress::{StarElement, StarStress};
+use nalgebra::DMatrix;
 use percute_core::material::LinearLaw;
 
-/// Break points that such a traction may have.
-const POINTS: usize = 8;
+/// Break points that the tractions of a star may have.
+const POINTS: usize = 48;
 
-/// Roots of the energies in the elements of a star (J^½), for a traction on its first (0) or its last edge (1): places
-/// along the edge from the node of the star, ascending, and the values there times the length of the edge (N). None if
-/// there are too many points, or if rounding spoils the stress.
+/// A traction on an edge of a star, and the linear one that is taken off it. Values are times the length of the edge
+/// (N), places are from the node of the star.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EdgeRest {
+    /// Places, ascending, and the values there: linear between, zero before the first and after the last.
+    pub(crate) points: Vec<(f64, [f64; 2])>,
+    /// The linear one at the node and at the other end.
+    pub(crate) linear: [[f64; 2]; 2],
+}
+
+impl EdgeRest {
+    fn component(&self, c: usize) -> Vec<[f64; 2]> {
+        self.points.iter().map(|(place, value)| [*place, value[c]]).collect()
+    }
+
+    fn largest(&self, c: usize) -> f64 {
+        let values = self.points.iter().map(|(_, value)| value).chain(&self.linear);
+        values.fold(0.0, |most, value| most.max(value[c].abs()))
+    }
+}
+
+/// Roots of the energies in the elements of a star (J^½), for what is on its first and on its last edge; both balance
+/// each other. None if there are too many points, or if rounding spoils the stress.
 pub(crate) fn roots<L: LinearLaw>(
     elements: &[StarElement<'_, L>],
-    edge: usize,
-    points: &[(f64, [f64; 2])],
+    edges: &[EdgeRest; 2],
     supported: [[bool; 2]; 2],
 ) -> Option<Vec<f64>> {
-    let last = *points.last().filter(|_| points.len() <= POINTS)?;
-    let component = |c: usize| {
-        let largest = points.iter().fold(0.0_f64, |most, (_, value)| most.max(value[c].abs()));
-        let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-        let at = |k: usize| points.get(k).map_or([last.0, 0.0], |(place, value)| [*place, scale * value[c]]);
-        (largest, EdgeTraction::<POINTS>(std::array::from_fn(at)))
+    if edges.iter().map(|edge| edge.points.len()).sum::<usize>() > POINTS {
+        return None;
+    }
+    // Each component is a column of its own, of size 1.
+    let size = [0, 1].map(|c| edges[0].largest(c).max(edges[1].largest(c)));
+    let own = edges.each_ref().map(|edge| [0, 1].map(|c| edge.component(c)));
+    let forces = |piece: [f64; 2]| {
+        let mut forces = [(); 2].map(|()| DMatrix::zeros(4, 2));
+        for (e, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let ([near, far], values) = (edges[e].linear, on(&own[e][c], piece));
+            for end in 0..2 {
+                let linear = near[c] + (far[c] - near[c]) * piece[end];
+                let scale = if size[c] > 0.0 { (piece[1] - piece[0]) / size[c] } else { 0.0 };
+                forces[e][(2 * end + c, c)] = scale * (values[end] - linear);
+            }
+        }
+        forces
     };
-    let [x, y] = [component(0), component(1)];
-    // Each component is a traction of its own, along its axis: the first column of one, the second of the other.
-    let stress = StarStress::of(elements, &[(edge, x.1), (edge, y.1)], supported);
+    let places = edges.iter().flat_map(|edge| edge.points.iter().map(|(place, _)| *place));
+    let stress = StarStress::under(elements, &radii(places), forces, supported);
     if !stress.residuals.balanced() {
         return None;
     }
+    let [x, y] = size;
     let root = |(element, data): (usize, &StarElement<'_, L>)| {
         let energy = |i: usize, j: usize| stress.energy_in(element, i, j);
-        let sum = x.0 * x.0 * energy(0, 0) + 2.0 * x.0 * y.0 * energy(0, 3) + y.0 * y.0 * energy(3, 3);
+        let sum = x * x * energy(0, 0) + 2.0 * x * y * energy(0, 1) + y * y * energy(1, 1);
         (0.5 * sum / data.law.extent()).max(0.0).sqrt()
     };
     Some(elements.iter().enumerate().map(root).collect())

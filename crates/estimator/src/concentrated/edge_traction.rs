@@ -28,13 +28,7 @@ impl<const P: usize> EdgeTraction<P> {
     /// Moments with the shape functions of both nodes, the near one first. Their sum is the resultant; the second is
     /// the moment about the node.
     pub(crate) fn moments(&self) -> [f64; 2] {
-        let (mut resultant, mut far) = (0.0, 0.0);
-        for span in self.0.windows(2) {
-            let [[a, ta], [b, tb]] = [span[0], span[1]];
-            resultant += 0.5 * (b - a) * (ta + tb);
-            far += (b - a) * (ta * (2.0 * a + b) + tb * (a + 2.0 * b)) / 6.0;
-        }
-        [resultant - far, far]
+        moments(&self.0)
     }
 
     /// The traction that is linear over the whole edge, with the same moments.
@@ -44,20 +38,36 @@ impl<const P: usize> EdgeTraction<P> {
     }
 
     /// Values at both ends of a piece of the edge that has no break points inside.
-    pub(crate) fn on(&self, [start, end]: [f64; 2]) -> [f64; 2] {
-        let middle = 0.5 * (start + end);
-        let span = self.0.windows(2).find(|span| span[0][0] < middle && middle < span[1][0]);
-        let value = |[[a, ta], [b, tb]]: [[f64; 2]; 2], at: f64| ta + (tb - ta) * (at - a) / (b - a);
-        span.map_or([0.0; 2], |span| [start, end].map(|at| value([span[0], span[1]], at)))
+    pub(crate) fn on(&self, piece: [f64; 2]) -> [f64; 2] {
+        on(&self.0, piece)
     }
+}
+
+/// [`EdgeTraction::moments`] of any number of break points.
+pub(super) fn moments(points: &[[f64; 2]]) -> [f64; 2] {
+    let (mut resultant, mut far) = (0.0, 0.0);
+    for span in points.windows(2) {
+        let [[a, ta], [b, tb]] = [span[0], span[1]];
+        resultant += 0.5 * (b - a) * (ta + tb);
+        far += (b - a) * (ta * (2.0 * a + b) + tb * (a + 2.0 * b)) / 6.0;
+    }
+    [resultant - far, far]
+}
+
+/// [`EdgeTraction::on`] of any number of break points.
+pub(super) fn on(points: &[[f64; 2]], [start, end]: [f64; 2]) -> [f64; 2] {
+    let middle = 0.5 * (start + end);
+    let span = points.windows(2).find(|span| span[0][0] < middle && middle < span[1][0]);
+    let value = |[[a, ta], [b, tb]]: [[f64; 2]; 2], at: f64| ta + (tb - ta) * (at - a) / (b - a);
+    span.map_or([0.0; 2], |span| [start, end].map(|at| value([span[0], span[1]], at)))
 }
 
 /// A traction on the first (0) or the last edge of a star (1).
 pub(super) type OnEdge<const P: usize> = (usize, EdgeTraction<P>);
 
 /// Radii of rings, from 1 down to the first break point: break points, and halves between them.
-pub(super) fn radii<const P: usize>(tractions: &[OnEdge<P>]) -> Vec<f64> {
-    let mut breaks: Vec<f64> = tractions.iter().flat_map(|(_, traction)| traction.0.map(|[place, _]| place)).collect();
+pub(super) fn radii(places: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut breaks: Vec<f64> = places.collect();
     breaks.retain(|place| *place > 0.0 && *place < 1.0);
     breaks.sort_by(|a, b| b.total_cmp(a));
     let mut radii = vec![1.0];

@@ -102,9 +102,21 @@ impl StarStress {
         tractions: &[OnEdge<P>],
         supported: [[bool; 2]; 2],
     ) -> Self {
+        let radii = radii(tractions.iter().flat_map(|(_, traction)| traction.0.map(|[place, _]| place)));
+        Self::under(elements, &radii, |piece| forces(piece, tractions), supported)
+    }
+
+    /// Those of tractions that balance themselves, one for each column of `forces`: on a piece of the first and of the
+    /// last edge, two components at its inner and its outer end. They are linear between these radii.
+    pub(super) fn under<L: LinearLaw>(
+        elements: &[StarElement<'_, L>],
+        radii: &[f64],
+        forces: impl Fn([f64; 2]) -> [DMatrix<f64>; 2],
+        supported: [[bool; 2]; 2],
+    ) -> Self {
         // Loads are those of stress times thickness. The modulus makes the system one of numbers near 1.
         let scale = elements[0].law.extent() / elements[0].law.compliance::<2>().0;
-        let solved = solve(elements, scale, tractions, supported);
+        let solved = solve(elements, scale, (radii, forces), supported);
         let (moments, residuals) = gather(&solved, elements.len());
         let works: Vec<_> = (0..=elements.len()).map(|edge| solved.work(edge) / scale).collect();
         let extents: Vec<f64> = elements.iter().map(|element| element.law.extent()).collect();
@@ -137,10 +149,10 @@ impl StarStress {
 }
 
 /// The star, cut at the break points of tractions and at least by halves, and its loads under each of them.
-fn solve<L: LinearLaw, const P: usize>(
+fn solve<L: LinearLaw>(
     elements: &[StarElement<'_, L>],
     scale: f64,
-    tractions: &[OnEdge<P>],
+    (radii, forces): (&[f64], impl Fn([f64; 2]) -> [DMatrix<f64>; 2]),
     supported: [[bool; 2]; 2],
 ) -> Solved {
     let mut fan = vec![elements[0].ends[0]];
@@ -155,7 +167,6 @@ fn solve<L: LinearLaw, const P: usize>(
     };
     let layer = |triangles| Layer::new(panels(triangles), star.sectors(), &supported);
     let (mut ratios, mut layers, mut rings) = (Vec::new(), Vec::new(), Vec::new());
-    let radii = radii(tractions);
     for pair in radii.windows(2) {
         let ratio = pair[1] / pair[0];
         let known = ratios.iter().position(|other| *other == ratio).unwrap_or(ratios.len());
@@ -168,7 +179,7 @@ fn solve<L: LinearLaw, const P: usize>(
     rings.push((layers.len(), radii[radii.len() - 1]));
     layers.push(layer(star.core()));
     let inner = radii[1..].iter().chain(&[0.0]);
-    let given: Vec<_> = inner.zip(&radii).map(|(inner, outer)| forces([*inner, *outer], tractions)).collect();
+    let given: Vec<_> = inner.zip(radii).map(|(inner, outer)| forces([*inner, *outer])).collect();
     Solved::new(&star, Parts { outline: panels(star.outline()), layers, rings }, &given, &supported)
 }
 

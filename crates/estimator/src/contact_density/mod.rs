@@ -15,7 +15,7 @@ pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-pub(crate) use sliding::{SlidingDensity, SlidingFacets, density_on};
+pub(crate) use sliding::{SlaveHat, SlidingDensity, SlidingFacets};
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 

@@ -114,7 +114,8 @@ impl<const D: usize> NormalForces<D> {
         let mut linear: Vec<_> = linear.collect();
         linear.shrink_to_fit();
         let hats = |end: usize| {
-            let hats = densities[end].hats().iter();
+            // Surfaces that slide have a measure of their own.
+            let hats = densities[end].hats().iter().filter(|hat| problem.surface().sliding_of(hat.node).is_none());
             hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.facet, &hat.resultant) })
         };
         let mut hats: Vec<_> = hats(0).chain(hats(1)).collect();

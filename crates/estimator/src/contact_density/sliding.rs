@@ -1,119 +1,76 @@
 //! Densities of surfaces that slide along each other.
 //!
-//! The force R_k of a node of the slave is the density R_k/w_k χ_k on its edges, and the opposite one on the master at
-//! the same place. On an edge of either surface it is linear between the nodes of both. All but its own stress in the
-//! element knows the linear traction with the same moments. The difference of the two balances itself; the norm of its
-//! stress has a bound, C h ∫r², for any partition of the edge.
+//! The force R_k of a node of the slave is the density R_k/w_k χ_k on its edges, or hats where edges leave the other
+//! surface, and the opposite one on the master at the same place. On an edge of either surface it is linear between the
+//! nodes of both and the ends of hats. All but its own stress in the elements knows the linear traction with the same
+//! moments. The difference of the two balances itself; the norm of its stress has a bound, C h ∫r², for any partition
+//! of the edge.
 
-use crate::concentrated::{StarElement, roots};
+mod beside;
+mod facets;
+mod load;
+mod slave_hat;
+
 use crate::direction::along;
-use crate::partition::{Piece, pieces};
+use crate::partition::{Break, Piece, pieces};
 use crate::residual::worse;
-use percute_core::contact::{Coupling, Side, SlidingSurfaces};
-use percute_core::ids::ElementId;
-use percute_core::material::{Hypothesis, Law};
+use beside::{Roots, of_edge};
+pub(crate) use facets::SlidingFacets;
+use load::Load;
+use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
+pub(crate) use slave_hat::SlaveHat;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Where ∫r² is at most this part of ∫F², the bound of its energy is not worth a better one.
-const SMALL: f64 = 1e-3;
-
-/// An edge of a surface that slides, as a candidate facet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct EdgeFacet {
-    /// Position among the candidate facets.
-    pub(crate) facet: usize,
-    /// Position in the facet of the first and of the second node along the tangent.
-    ends: [usize; 2],
-    /// Its length along the tangent (m).
-    length: f64,
-    /// The energy of the stress of r is at most this times ∫r² dξ (m²/N).
-    spread: f64,
-}
-
-/// The edges of slave and master as candidate facets.
-#[derive(Clone, Debug)]
-pub(crate) struct SlidingFacets {
-    edges: [Vec<EdgeFacet>; 2],
-}
-
-impl SlidingFacets {
-    /// Those of all surfaces that slide.
-    pub(crate) fn all<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
-        let surface = problem.surface();
-        let mut starts_at = vec![None; surface.nodes().len()];
-        for (f, facet) in surface.facets().iter().enumerate() {
-            let first = facet.nodes.iter().copied().min().unwrap_or(0);
-            if surface.sliding_of(first).is_some() {
-                starts_at[first] = Some(f);
-            }
-        }
-        let edges = |sliding: &SlidingSurfaces<D>| {
-            let one = |side: &Side, first: usize| {
-                let facet = starts_at[side.position(first)]?;
-                let length = side.xi()[first + 1] - side.xi()[first];
-                let nodes = &surface.facets()[facet].nodes;
-                let ends = [0, 1].map(|k| nodes.iter().position(|&at| at == side.position(first + k)).unwrap_or(k));
-                Some(EdgeFacet { facet, ends, length, spread: spread(problem, facet) * length })
-            };
-            let edges = [sliding.slave(), sliding.master()];
-            Self { edges: edges.map(|side| side.edges().iter().filter_map(|&first| one(side, first)).collect()) }
-        };
-        surface.sliding().iter().map(edges).collect()
-    }
-
-    /// The facets on which a piece is: that of the slave and that of the master.
-    pub(crate) fn of(&self, piece: &Piece) -> [usize; 2] {
-        [self.edges[0][piece.slave[0]].facet, self.edges[1][piece.master[0]].facet]
-    }
-}
-
-/// C over the thickness, with the energy C ℓ ∫r² ds of a traction r without resultant and moment on an edge of length
-/// ℓ: (0.3 + max(0, cot θ)²)/E with the smaller angle θ of the element at the edge. It is above the largest eigenvalue
-/// of the edge in nine shapes of triangles.
-fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: usize) -> f64 {
-    let (mesh, facet) = (problem.mesh(), problem.surface().facets()[facet].facet);
-    let owner: ElementId = mesh.facets()[facet.index()].owner;
-    let (points, law) = (mesh.points(), problem.material(owner));
-    let ends = mesh.facets()[facet.index()].nodes;
-    let apex = mesh.cells()[owner.index()].iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
-    let arm = |from: usize, to: usize| -> [f64; D] { std::array::from_fn(|c| points[to][c] - points[from][c]) };
-    let cotangent = |k: usize| {
-        let (near, far) = (ends[k].index(), ends[D - 1 - k].index());
-        let (edge, side) = (arm(near, far), arm(near, apex.index()));
-        let cross = edge[0] * side[D - 1] - edge[D - 1] * side[0];
-        along(&edge, &side) / cross.abs()
-    };
-    let cotangent = cotangent(0).max(cotangent(D - 1)).max(0.0);
-    let modulus = match law.hypothesis() {
-        Hypothesis::PlaneStrain => law.young() / (1.0 - law.poisson() * law.poisson()),
-        _ => law.young(),
-    };
-    (0.3 + cotangent * cotangent) / modulus / law.extent()
-}
-
-/// The density of two surfaces that slide, at an instant.
+/// The density of two surfaces that slide, at an instant. Of one dimension, its normal part.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SlidingDensity<const D: usize> {
     coupling: Arc<Coupling>,
     /// R_k/w_k of the nodes of the slave (N/m).
     multipliers: Vec<[f64; D]>,
+    /// The tractions of other nodes, in order.
+    hats: Vec<SlaveHat<D>>,
 }
 
 impl<const D: usize> SlidingDensity<D> {
-    /// From the forces R_k of the nodes of the slave (N), with the coupling of the instant.
-    pub(crate) fn new(coupling: &Arc<Coupling>, force: impl Fn(usize) -> [f64; D]) -> Self {
-        let multiplier = |k: usize| {
-            if coupling.is_active(k) { force(k).map(|f| f / coupling.weight(k)) } else { [0.0; D] }
-        };
-        Self { coupling: Arc::clone(coupling), multipliers: (0..coupling.len()).map(multiplier).collect() }
+    /// From the forces R_k of the nodes of the slave (N), with the coupling of the instant, and hats, in the order of
+    /// their nodes.
+    pub(crate) fn new(coupling: &Arc<Coupling>, force: impl Fn(usize) -> [f64; D], hats: Vec<SlaveHat<D>>) -> Self {
+        Self::with_multipliers(coupling, |k| force(k).map(|f| f / coupling.weight(k)), hats)
     }
 
-    /// The mean of both with another coupling, for the middle of a step.
-    pub(crate) fn mean(first: &Self, second: &Self, coupling: Coupling) -> Self {
+    /// The same from multipliers (N/m).
+    pub(crate) fn with_multipliers(
+        coupling: &Arc<Coupling>,
+        multiplier: impl Fn(usize) -> [f64; D],
+        hats: Vec<SlaveHat<D>>,
+    ) -> Self {
+        let acting = |k: usize| if coupling.is_active(k) { multiplier(k) } else { [0.0; D] };
+        Self { coupling: Arc::clone(coupling), multipliers: (0..coupling.len()).map(acting).collect(), hats }
+    }
+
+    /// The mean of both with another coupling, for the middle of a step: hats of both, superposed.
+    pub(crate) fn mean(first: &Self, second: &Self, coupling: &Arc<Coupling>) -> Self {
         let both = first.multipliers.iter().zip(&second.multipliers);
         let half = |(a, b): (&[f64; D], &[f64; D])| std::array::from_fn(|c| 0.5 * (a[c] + b[c]));
-        Self { multipliers: both.map(half).collect(), coupling: Arc::new(coupling) }
+        let hats = first.hats.iter().chain(&second.hats);
+        let hats = hats.map(|hat| SlaveHat { resultant: hat.resultant.map(|f| 0.5 * f), ..*hat }).collect();
+        Self { multipliers: both.map(half).collect(), coupling: Arc::clone(coupling), hats }
+    }
+
+    /// Its component along a unit vector.
+    pub(crate) fn component(&self, direction: &[f64; D]) -> SlidingDensity<1> {
+        let of = |f: &[f64; D]| [along(f, direction)];
+        let hat = |hat: &SlaveHat<D>| {
+            let SlaveHat { node, edge, end, length, halvings, ref resultant } = *hat;
+            SlaveHat { node, edge, end, length, halvings, resultant: of(resultant) }
+        };
+        SlidingDensity {
+            coupling: Arc::clone(&self.coupling),
+            multipliers: self.multipliers.iter().map(of).collect(),
+            hats: self.hats.iter().map(hat).collect(),
+        }
     }
 
     /// The multipliers (N/m).
@@ -121,26 +78,50 @@ impl<const D: usize> SlidingDensity<D> {
         &self.multipliers
     }
 
+    /// The hats, in the order of their nodes.
+    pub(crate) fn hats(&self) -> &[SlaveHat<D>] {
+        &self.hats
+    }
+
     /// Whether there is no force.
     pub(crate) fn is_zero(&self) -> bool {
-        self.multipliers.as_flattened().iter().all(|value| *value == 0.0)
+        self.multipliers.as_flattened().iter().all(|value| *value == 0.0) && self.hats.is_empty()
     }
 
-    /// The density on the slave at the ends of a piece (N/m).
-    fn on(&self, piece: &Piece) -> [[f64; D]; 2] {
-        let components: [[f64; 2]; D] =
-            std::array::from_fn(|c| density_on(&self.coupling, piece, |node| self.multipliers[node][c]));
-        [0, 1].map(|end| components.map(|ends| ends[end]))
+    /// The ends of its hats.
+    pub(crate) fn breaks(&self) -> Vec<Break> {
+        self.hats.iter().map(SlaveHat::ends_at).collect()
     }
 
-    /// Adds the linear tractions with the same moments to those of facets (Pa).
+    /// The density on the slave at the ends of a piece (N/m), inside of which no hat ends.
+    pub(crate) fn on(&self, piece: &Piece) -> [[f64; D]; 2] {
+        let mut values = self.wide_on(piece);
+        let own = self.hats.iter().filter(|hat| hat.edge == piece.slave[0]);
+        own.for_each(|hat| add(&mut values, hat.on(piece)));
+        values
+    }
+
+    /// The same without hats: Σ λ_k χ_k.
+    fn wide_on(&self, piece: &Piece) -> [[f64; D]; 2] {
+        let [edge, first] = piece.slave;
+        let (shape, [a, b]) = (self.coupling.shape(edge), [first, first + 1].map(|k| &self.multipliers[k]));
+        piece.on_slave.map(|second| {
+            let part = shape.density(second);
+            std::array::from_fn(|c| part[0] * a[c] + part[1] * b[c])
+        })
+    }
+
+    /// Adds the linear tractions with the same moments to those of facets (Pa), but those of narrow hats on the slave,
+    /// which are hats of their node.
     pub(crate) fn apply<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
         facets: &SlidingFacets,
         linear: &mut [[[f64; D]; D]],
     ) {
-        for (edge, load) in self.loads(sliding, facets) {
+        let narrow: Vec<&SlaveHat<D>> = self.hats.iter().filter(|hat| hat.is_narrow()).collect();
+        for ((side, edge), load) in self.wide(sliding).into_iter().chain(self.narrow(sliding, &narrow)) {
+            let edge = &facets.edges[side][edge];
             let area = problem.surface().facets()[edge.facet].area;
             for k in 0..2 {
                 let (value, nodal) = (&mut linear[edge.facet][edge.ends[k]], load.nodal(k));
@@ -158,14 +139,19 @@ impl<const D: usize> SlidingDensity<D> {
         linear: &[[[f64; D]; D]],
     ) -> [f64; 2] {
         let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let largest = self.multipliers.iter().map(size).fold(0.0, worse);
-        if largest == 0.0 {
+        if self.is_zero() {
             return [0.0; 2];
         }
-        let outside = self.multipliers.iter().map(|f| {
-            let [tangential, normal] = sliding.law().excess(sliding.frame(), f);
-            worse(tangential, normal) / size(f).max(1e-12 * largest)
-        });
+        let outside = |forces: &[[f64; D]]| {
+            let least = 1e-12 * forces.iter().map(size).fold(0.0, worse);
+            let one = |f: &[f64; D]| {
+                let [tangential, normal] = sliding.law().excess(sliding.frame(), f);
+                worse(tangential, normal) / size(f).max(least).max(f64::MIN_POSITIVE)
+            };
+            forces.iter().map(one).fold(0.0, worse)
+        };
+        let resultants: Vec<[f64; D]> = self.hats.iter().map(|hat| hat.resultant).collect();
+        let outside = worse(outside(&self.multipliers), outside(&resultants));
         let (mut force, mut couple, mut scale) = ([0.0; D], 0.0, 0.0);
         let xi = [sliding.slave().xi(), sliding.master().xi()];
         for (side, edges) in facets.edges.iter().enumerate() {
@@ -183,31 +169,56 @@ impl<const D: usize> SlidingDensity<D> {
             }
         }
         let couple = couple.abs() / problem.mesh().size();
-        [outside.fold(0.0, worse), worse(size(&force), couple) / scale.max(f64::MIN_POSITIVE)]
+        [outside, worse(size(&force), couple) / scale.max(f64::MIN_POSITIVE)]
     }
 
-    /// The elements with a stress beside that of these tractions, and the root of its energy, or a bound of it (J^½).
+    /// The elements with a stress beside that of linear tractions and of the hats of nodes, and the root of its energy,
+    /// or a bound of it (J^½).
     pub(crate) fn beside<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
         facets: &SlidingFacets,
-    ) -> Vec<(ElementId, f64)> {
-        self.loads(sliding, facets).iter().flat_map(|(edge, load)| load.beside(problem, edge)).collect()
+    ) -> Roots {
+        let of_edge = |loads: Loads<D>| {
+            let one =
+                |((side, edge), load): (&(usize, usize), &Load<D>)| of_edge(problem, &facets.edges[*side][*edge], load);
+            loads.iter().flat_map(one).collect::<Roots>()
+        };
+        // Each node with hats by itself: they have one place on the master.
+        let narrow: Vec<&SlaveHat<D>> = self.hats.iter().filter(|hat| hat.is_narrow()).collect();
+        let narrow = narrow.chunk_by(|a, b| a.node == b.node).map(|hats| self.narrow(sliding, hats));
+        std::iter::once(self.wide(sliding)).chain(narrow).flat_map(of_edge).collect()
     }
 
-    /// The loads of the edges that have any, of both surfaces.
-    fn loads(&self, sliding: &SlidingSurfaces<D>, facets: &SlidingFacets) -> Vec<(EdgeFacet, Load<D>)> {
+    /// The loads of all but narrow hats, on both surfaces.
+    fn wide(&self, sliding: &SlidingSurfaces<D>) -> Loads<D> {
         if self.is_zero() {
-            return Vec::new();
+            return Loads::new();
         }
-        let mut loads = facets.edges.each_ref().map(|edges| vec![Load::<D>::default(); edges.len()]);
+        let mut loads = Loads::new();
         for piece in pieces(sliding, &self.coupling) {
-            let values = self.on(&piece);
-            loads[0][piece.slave[0]].add(&piece, piece.on_slave, values, 1.0);
-            loads[1][piece.master[0]].add(&piece, piece.on_master, values, -1.0);
+            let mut values = self.wide_on(&piece);
+            let own = self.hats.iter().filter(|hat| hat.edge == piece.slave[0] && !hat.is_narrow());
+            own.for_each(|hat| add(&mut values, hat.on(&piece)));
+            load(&mut loads, (0, piece.slave[0]), &piece, (piece.on_slave, values));
+            load(&mut loads, (1, piece.master[0]), &piece, (piece.on_master, opposite(values)));
         }
-        let all = facets.edges.iter().flatten().copied().zip(loads.into_iter().flatten());
-        all.filter(|(_, load)| !load.spans.is_empty()).collect()
+        loads
+    }
+
+    /// The loads of some narrow hats, on the master.
+    fn narrow(&self, sliding: &SlidingSurfaces<D>, hats: &[&SlaveHat<D>]) -> Loads<D> {
+        let breaks: Vec<Break> = hats.iter().map(|hat| hat.ends_at()).collect();
+        let mut loads = Loads::new();
+        for piece in pieces(sliding, &self.coupling) {
+            let own: Vec<_> = hats.iter().filter(|hat| hat.edge == piece.slave[0]).collect();
+            for piece in piece.cut(&breaks).filter(|_| !own.is_empty()) {
+                let mut values = [[0.0; D]; 2];
+                own.iter().for_each(|hat| add(&mut values, hat.on(&piece)));
+                load(&mut loads, (1, piece.master[0]), &piece, (piece.on_master, opposite(values)));
+            }
+        }
+        loads
     }
 
     /// The power of the misfit of Coulomb's law, μF_n|w_t| + w_t·F_t, half of it on each of the facets of a piece (W).
@@ -221,7 +232,8 @@ impl<const D: usize> SlidingDensity<D> {
     ) {
         let (law, simplex) = (sliding.law(), problem.mesh().simplex());
         let (normal, tangent) = (sliding.frame().normal(), sliding.tangent());
-        for piece in pieces(sliding, &self.coupling) {
+        let breaks = self.breaks();
+        for piece in pieces(sliding, &self.coupling).flat_map(|piece| piece.cut(&breaks)) {
             let [slave, master] = [piece.slave_values(|node| slip[0][node]), piece.master_values(|node| slip[1][node])];
             let values = self.on(&piece);
             let at_ends = |value: &dyn Fn(usize) -> f64| -> [f64; D] { std::array::from_fn(value) };
@@ -236,126 +248,27 @@ impl<const D: usize> SlidingDensity<D> {
     }
 }
 
-/// Σ λ_k χ_k at the ends of a piece, from the multipliers λ_k of the nodes of the slave.
-pub(crate) fn density_on(coupling: &Coupling, piece: &Piece, multiplier: impl Fn(usize) -> f64) -> [f64; 2] {
-    let [edge, first] = piece.slave;
-    let (shape, values) = (coupling.shape(edge), [multiplier(first), multiplier(first + 1)]);
-    piece.on_slave.map(|second| {
-        let part = shape.density(second);
-        part[0] * values[0] + part[1] * values[1]
-    })
-}
+/// The loads of edges, by side (0 the slave) and position among its edges.
+type Loads<const D: usize> = BTreeMap<(usize, usize), Load<D>>;
 
-/// The density on an edge: between break points.
-#[derive(Clone, Debug)]
-struct Load<const D: usize> {
-    moments: [[f64; D]; 2],
-    /// Places of the ends along the edge, from 0 to 1, and values there (N/m).
-    spans: Vec<([f64; 2], [[f64; D]; 2])>,
-}
-
-impl<const D: usize> Default for Load<D> {
-    fn default() -> Self {
-        Self { moments: [[0.0; D]; 2], spans: Vec::new() }
+/// Adds a piece with these places and values at its ends (N/m) to the load of an edge.
+fn load<const D: usize>(
+    loads: &mut Loads<D>,
+    edge: (usize, usize),
+    piece: &Piece,
+    (places, values): ([f64; 2], [[f64; D]; 2]),
+) {
+    if values.as_flattened().iter().any(|value| *value != 0.0) {
+        loads.entry(edge).or_default().add(piece, places, values);
     }
 }
 
-impl<const D: usize> Load<D> {
-    fn add(&mut self, piece: &Piece, places: [f64; 2], values: [[f64; D]; 2], sign: f64) {
-        let values = values.map(|value| value.map(|f| sign * f));
-        let first = places.map(|place| 1.0 - place);
-        for c in 0..D {
-            let component = values.map(|value| value[c]);
-            self.moments[0][c] += piece.product(first, component);
-            self.moments[1][c] += piece.product(places, component);
-        }
-        self.spans.push((places, values));
-    }
+fn opposite<const D: usize>(values: [[f64; D]; 2]) -> [[f64; D]; 2] {
+    values.map(|value| value.map(|f| -f))
+}
 
-    /// The linear traction with the same moments, at a node (N).
-    fn nodal(&self, end: usize) -> [f64; D] {
-        std::array::from_fn(|c| 4.0 * self.moments[end][c] - 2.0 * self.moments[1 - end][c])
-    }
-
-    /// The elements with the stress of r, and the root of its energy (J^½): the element of the edge with the bound, or
-    /// those of the star of a node, where the load ends on the edge and this is less.
-    fn beside<const N: usize>(&self, problem: &Problem<D, N>, edge: &EdgeFacet) -> Vec<(ElementId, f64)> {
-        let (mesh, rest) = (problem.mesh(), self.rest(edge.length));
-        let facet = problem.surface().facets()[edge.facet].facet;
-        let mut least = vec![(mesh.facets()[facet.index()].owner, (edge.spread * rest).sqrt())];
-        let total = |all: &[(ElementId, f64)]| all.iter().map(|(_, root)| root).sum::<f64>();
-        if rest <= SMALL * self.square(edge.length) {
-            return least;
-        }
-        for end in 0..2 {
-            let Some(other) = self.in_star(problem, edge, end) else { continue };
-            if total(&other) < total(&least) {
-                least = other;
-            }
-        }
-        least
-    }
-
-    /// The same in the star of the node at an end of the edge; none if rounding spoils its stress.
-    fn in_star<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        edge: &EdgeFacet,
-        end: usize,
-    ) -> Option<Vec<(ElementId, f64)>> {
-        let (mesh, facet) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
-        let node = problem.surface().nodes()[facet.nodes[edge.ends[end]]].node;
-        let star = mesh.stars().star(node);
-        let corners = |&id: &ElementId| {
-            let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
-            let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
-            StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
-        };
-        let elements: Vec<_> = star.elements.iter().map(corners).collect();
-        let supported = [star.links.first(), star.links.last()].map(|link| {
-            let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
-            [supported[0], supported[D - 1]]
-        });
-        let side = usize::from(star.links[0] != Some(facet.facet));
-        let roots = roots(&elements, side, &self.points(end, edge.length), supported)?;
-        Some(star.elements.iter().copied().zip(roots).collect())
-    }
-
-    /// Places from an end on, ascending, and the density there times the length of the edge (N).
-    fn points(&self, end: usize, length: f64) -> Vec<(f64, [f64; 2])> {
-        let vector = |value: &[f64; D]| [value[0] * length, value[D - 1] * length];
-        let all = self.spans.iter().flat_map(|(places, values)| [0, 1].map(|k| (places[k], vector(&values[k]))));
-        if end == 0 { all.collect() } else { all.map(|(place, value)| (1.0 - place, value)).rev().collect() }
-    }
-
-    /// ∫F² over the edge (N²/m).
-    fn square(&self, length: f64) -> f64 {
-        let of = |(places, values): &([f64; 2], [[f64; D]; 2])| -> f64 {
-            let sum = (0..D).map(|c| [values[0][c], values[1][c]]).map(|[a, b]| a * a + a * b + b * b);
-            (places[1] - places[0]) * length / 3.0 * sum.sum::<f64>()
-        };
-        self.spans.iter().map(of).sum()
-    }
-
-    /// ∫r² over the edge of this length (N²/m), with the difference r of the density and that linear traction.
-    fn rest(&self, length: f64) -> f64 {
-        let linear = [self.nodal(0), self.nodal(1)];
-        let at = |place: f64, c: usize| (linear[0][c] * (1.0 - place) + linear[1][c] * place) / length;
-        let (mut sum, mut reached) = (0.0, 0.0);
-        let mut add = |[from, to]: [f64; 2], values: [[f64; D]; 2]| {
-            for c in 0..D {
-                let [a, b] = [values[0][c] - at(from, c), values[1][c] - at(to, c)];
-                sum += (to - from) * length / 3.0 * (a * a + a * b + b * b);
-            }
-        };
-        for &(places, values) in &self.spans {
-            add([reached, places[0]], [[0.0; D]; 2]);
-            add(places, values);
-            reached = places[1];
-        }
-        add([reached, 1.0], [[0.0; D]; 2]);
-        sum
-    }
+fn add<const D: usize>(sum: &mut [[f64; D]; 2], values: [[f64; D]; 2]) {
+    sum.as_flattened_mut().iter_mut().zip(values.as_flattened()).for_each(|(sum, value)| *sum += value);
 }
 
 #[cfg(test)]

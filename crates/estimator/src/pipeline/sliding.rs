@@ -3,20 +3,21 @@
 //! It is measured on the partition of an instant, with the admissible motion of both surfaces. Half of each piece
 //! counts in each of its elements.
 
-use crate::contact_density::{LevelDensities, NormalMisfit, SlidingFacets, density_on};
+use crate::contact_density::{LevelDensities, NormalMisfit, SlaveHat, SlidingDensity, SlidingFacets};
 use crate::direction::along;
 use crate::kinematic::{ContactTracks, NormalMotions, SlidingInstant};
-use crate::partition::pieces;
+use crate::partition::{Break, pieces};
 use crate::scratch_file::{ScratchError, ScratchFile};
-use percute_core::contact::SlidingSurfaces;
+use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::sync::Arc;
 
 /// The misfits of all surfaces that slide, at the instants at hand.
 #[derive(Debug)]
 pub(crate) struct SlidingMisfit {
     facets: Vec<SlidingFacets>,
-    /// Normal multipliers of F_DA, and those of the reactions (N/m), of the nodes of each slave at each step.
+    /// The normal densities of the nodes of each slave at each step, of F_DA and of the reactions: see [`numbers`].
     pressures: Vec<NormalMotions>,
     /// The first half-step instant at hand, and ∫F_n gap (J) and ∫F_n|ẋ| (W) from there on, for each candidate facet.
     first: usize,
@@ -25,8 +26,9 @@ pub(crate) struct SlidingMisfit {
 
 impl SlidingMisfit {
     pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, span: usize) -> Self {
-        let store =
-            |sliding: &SlidingSurfaces<D>| NormalMotions::new(sliding.slave().len(), span, ScratchFile::default());
+        let store = |sliding: &SlidingSurfaces<D>| {
+            NormalMotions::new(NUMBERS * sliding.slave().len(), span, ScratchFile::default())
+        };
         Self {
             facets: SlidingFacets::all(problem),
             pressures: problem.surface().sliding().iter().map(store).collect(),
@@ -44,10 +46,10 @@ impl SlidingMisfit {
     ) -> Result<(), ScratchError> {
         for (k, sliding) in problem.surface().sliding().iter().enumerate() {
             self.pressures[k].extend()?;
-            let both = [&densities.acting, &densities.sudden].map(|density| density.sliding()[k].multipliers());
-            for node in 0..sliding.slave().len() {
-                let pair = both.map(|multipliers| along(&multipliers[node], sliding.frame().normal()));
-                self.pressures[k].write(node, step, &[pair])?;
+            let both = [&densities.acting, &densities.sudden]
+                .map(|density| numbers(&density.sliding()[k].component(sliding.frame().normal())));
+            for (place, pair) in both[0].iter().zip(&both[1]).map(|(a, b)| [*a, *b]).enumerate() {
+                self.pressures[k].write(place, step, &[pair])?;
             }
         }
         Ok(())
@@ -68,19 +70,21 @@ impl SlidingMisfit {
         for (index, sliding) in problem.surface().sliding().iter().enumerate() {
             let instants = tracks.sliding(problem, index, first..last + 1)?;
             let steps = first / 2..last.div_ceil(2) + 1;
-            let mut pressures = Vec::with_capacity(sliding.slave().len());
-            for node in 0..sliding.slave().len() {
+            let mut pressures = Vec::with_capacity(NUMBERS * sliding.slave().len());
+            for place in 0..NUMBERS * sliding.slave().len() {
                 let mut pairs = Vec::with_capacity(steps.len());
-                self.pressures[index].read(node, steps.clone(), &mut pairs)?;
+                self.pressures[index].read(place, steps.clone(), &mut pairs)?;
                 pressures.push(pairs);
             }
             for (at, (instant, shown)) in instants.iter().zip(&mut self.shown).enumerate() {
                 // Forces are linear in time over a step.
                 let ends = [(first + at) / 2, (first + at).div_ceil(2)].map(|step| step - steps.start);
-                let pressure = |node: usize, which: usize| {
-                    0.5 * (pressures[node][ends[0]][which] + pressures[node][ends[1]][which])
-                };
-                measure((problem, sliding), &self.facets[index], instant, &pressure, shown);
+                let coupling = Arc::new(sliding.coupling_at(&instant.shifts));
+                let densities = [0, 1].map(|which| {
+                    let [a, b] = ends.map(|end| density(sliding, &coupling, |place| pressures[place][end][which]));
+                    if ends[0] == ends[1] { a } else { SlidingDensity::mean(&a, &b, &coupling) }
+                });
+                measure((problem, sliding), &self.facets[index], (&coupling, instant), &densities, shown);
             }
         }
         Ok(())
@@ -106,22 +110,52 @@ impl SlidingMisfit {
     }
 }
 
-/// Adds ∫F_n gap and ∫F_n|ẋ| at an instant; `pressure` gives the multiplier of a node of the slave, of F_DA or of the
-/// reactions (N/m).
+/// Numbers of a node: its multiplier, and for the hats on the edges before and after it a resultant and halvings.
+const NUMBERS: usize = 5;
+
+/// The numbers of all nodes of a slave.
+fn numbers(density: &SlidingDensity<1>) -> Vec<f64> {
+    let mut numbers: Vec<f64> = density.multipliers().iter().flat_map(|[value]| [*value, 0.0, 0.0, 0.0, 0.0]).collect();
+    for hat in density.hats() {
+        let place = NUMBERS * hat.node + 3 - 2 * hat.end;
+        numbers[place] = hat.resultant[0];
+        numbers[place + 1] = hat.halvings as f64;
+    }
+    numbers
+}
+
+/// The density that such numbers are of.
+fn density<const D: usize>(
+    sliding: &SlidingSurfaces<D>,
+    coupling: &Arc<Coupling>,
+    number: impl Fn(usize) -> f64,
+) -> SlidingDensity<1> {
+    let slave = sliding.slave();
+    let mut hats = Vec::new();
+    for (node, end) in (0..slave.len()).flat_map(|node| [(node, 1), (node, 0)]) {
+        let place = NUMBERS * node + 3 - 2 * end;
+        let resultant = number(place);
+        if resultant != 0.0 {
+            hats.extend(SlaveHat::new(slave, (node, end), number(place + 1) as usize, [resultant]));
+        }
+    }
+    SlidingDensity::with_multipliers(coupling, |node| [number(NUMBERS * node)], hats)
+}
+
+/// Adds ∫F_n gap and ∫F_n|ẋ| at an instant, of the densities of F_DA and of the reactions.
 fn measure<const D: usize, const N: usize>(
     (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
     facets: &SlidingFacets,
-    instant: &SlidingInstant,
-    pressure: &impl Fn(usize, usize) -> f64,
+    (coupling, instant): (&Coupling, &SlidingInstant),
+    densities: &[SlidingDensity<1>; 2],
     sums: &mut [[f64; 2]],
 ) {
-    let coupling = sliding.coupling_at(&instant.shifts);
-    let acts = |node: usize, which: usize| if coupling.is_active(node) { pressure(node, which) } else { 0.0 };
-    if (0..coupling.len()).all(|node| acts(node, 0) == 0.0 && acts(node, 1) == 0.0) {
+    if densities.iter().all(SlidingDensity::is_zero) {
         return;
     }
-    for piece in pieces(sliding, &coupling) {
-        let [acting, sudden] = [0, 1].map(|which| density_on(&coupling, &piece, |node| acts(node, which)));
+    let breaks: Vec<Break> = densities.iter().flat_map(SlidingDensity::breaks).collect();
+    for piece in pieces(sliding, coupling).flat_map(|piece| piece.cut(&breaks)) {
+        let [acting, sudden] = densities.each_ref().map(|density| density.on(&piece).map(|[value]| value));
         let [slave, master] =
             [piece.slave_values(|node| instant.eta[0][node]), piece.master_values(|node| instant.eta[1][node])];
         let energy = piece.product(acting, [0, 1].map(|end| (slave[end] - master[end]).max(0.0)));

@@ -5,10 +5,11 @@ use crate::direction::along;
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::contact::Side;
 use percute_core::problem::Problem;
+use std::sync::Arc;
 
 /// On each candidate facet (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
 /// this density at its end: the trapezoidal rule over its three half-step instants. Facets with a node at two planes
-/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding).
+/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of surfaces that slide have [`add_sliding`].
 pub(super) fn friction<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     length: f64,
@@ -19,7 +20,7 @@ pub(super) fn friction<const D: usize, const N: usize>(
     let surface = problem.surface();
     let mut friction = Vec::with_capacity(surface.facets().len());
     for (f, facet) in surface.facets().iter().enumerate() {
-        if surface.reaches_a_corner(facet) {
+        if surface.reaches_a_corner(facet) || surface.sliding_of(facet.nodes[0]).is_some() {
             friction.push([0.0; 2]);
             continue;
         }
@@ -77,7 +78,7 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
             let quarter = 0.25 * length;
             let at_middle = |k: usize, node: usize| place[k][node] - quarter * (slip[k][node] + to[k][node]);
             let shifts = sliding.shifts(|node| at_middle(0, node), |node| at_middle(1, node));
-            let mean = SlidingDensity::mean(start, end, sliding.coupling_at(&shifts));
+            let mean = SlidingDensity::mean(start, end, &Arc::new(sliding.coupling_at(&shifts)));
             add(&mean, &slip, [half, all]);
         }
     }

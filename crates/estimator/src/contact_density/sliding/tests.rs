@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::contact_density::{Densities, FacetDensity, facet_power};
-use percute_core::contact::Interface;
+use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::TriangleProblem;
@@ -38,7 +38,8 @@ fn on_matching_surfaces_they_are_those_of_pairs() {
 
     let coupling = Arc::new(sliding.coupling_at(&[0.0]));
     let on_slave = |node: usize| at(&slides, sliding.slave().position(node));
-    let density = SlidingDensity::new(&coupling, |node| on_slave(node).map(|f| 0.7 * coupling.weight(node) * f));
+    let density =
+        SlidingDensity::new(&coupling, |node| on_slave(node).map(|f| 0.7 * coupling.weight(node) * f), Vec::new());
     let facets: Arc<[SlidingFacets]> = facets.into();
     let none = Densities::new(&slides, |_, _| [[0.0; 2]; 2]);
     let found = none.with_sliding(&slides, &facets, vec![density.clone()]);

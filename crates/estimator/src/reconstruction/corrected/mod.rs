@@ -146,15 +146,18 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             let concentration = concentration.filter(|_| surface.sliding_of(at).is_none());
             shapes.push(concentration.and_then(|concentration| match facing {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
-                None => concentration.shape(problem, at, force, around.gap),
+                None => concentration.shape(problem, at, (force, 1.0), around.gap),
             }));
+        }
+        if let Some(concentration) = concentration {
+            self.sliding.add_shapes(concentration, around.couplings, (around.gap, &reaction), &mut shapes);
         }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
             let centroid =
                 |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
             correction.apply(&mut reaction, &centroid);
-            self.sliding.correct_moments(around.couplings, &mut reaction);
+            self.sliding.correct_moments(around.couplings, &centroid, &mut reaction);
             for (at, contact) in nodes.iter().enumerate() {
                 if let Some(first) = contact.opposite.filter(|&first| first < at) {
                     reaction[at] = reaction[first].map(|f| -f);
@@ -162,8 +165,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             }
         }
         let density = |f: usize, k: usize| match shaped(k) {
+            _ if surface.sliding_of(k).is_some() => [0.0; D],
             Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),
-            None if surface.sliding_of(k).is_some() => [0.0; D],
             None => reaction[k].map(|r| r / self.tributary[k]),
         };
         let (mut hats, mut shares) = (Vec::new(), 0.0);
@@ -175,7 +178,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             }
         }
         let made = Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats);
-        let sliding = self.sliding.densities(around.couplings, &reaction);
+        let sliding = self.sliding.densities(&shaped, around.couplings, &reaction);
         made.with_shares(shares).with_sliding(problem, self.sliding.facets(), sliding)
     }
 }

@@ -2,17 +2,19 @@
 //!
 //! The nodal forces of the simulation, Dᵀλ and −Mᵀλ, are those of multipliers of the nodes of the slave. The force of
 //! such a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions
-//! by a correction over all nodes that act.
+//! by a correction over all nodes that act. Where edges of the slave leave the master, the density of a node is hats.
 
+use super::concentration::Concentration;
 use super::impulse_smoothing::Stopped;
 use super::moment_correction::{CorrectedNode, Group};
-use crate::contact_density::{SlidingDensity, SlidingFacets};
+use crate::concentrated::TractionShape;
+use crate::contact_density::{SlaveHat, SlidingDensity, SlidingFacets};
 use crate::direction::along;
 use crate::partition::pieces;
 use percute_core::contact::{Coupling, Part, Side, SlidingSurfaces};
 use percute_core::history::State;
 use percute_core::ids::ElementId;
-use percute_core::material::Law;
+use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
@@ -24,16 +26,22 @@ pub(super) struct SlidingForces<'p, const D: usize, const N: usize> {
     facets: Arc<[SlidingFacets]>,
     /// Mean impedance ρc over slave and master of each pair of surfaces, times the thickness (kg/(m s)).
     impedance: Vec<[f64; 2]>,
+    /// The compliance of both surfaces over that of the slave.
+    compliance: Vec<f64>,
 }
 
 impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
-        let impedance =
-            |sliding: &SlidingSurfaces<D>| [sliding.slave(), sliding.master()].map(|side| impedance(problem, side));
+        let mean = |sliding: &SlidingSurfaces<D>, of: fn(&Problem<D, N>, ElementId) -> f64| {
+            [sliding.slave(), sliding.master()].map(|side| mean(problem, side, |element| of(problem, element)))
+        };
+        let all = problem.surface().sliding();
+        let both = |[slave, master]: [f64; 2]| 1.0 + master / slave;
         Self {
             problem,
             facets: SlidingFacets::all(problem).into(),
-            impedance: problem.surface().sliding().iter().map(impedance).collect(),
+            impedance: all.iter().map(|sliding| mean(sliding, impedance)).collect(),
+            compliance: all.iter().map(|sliding| both(mean(sliding, compliance))).collect(),
         }
     }
 
@@ -113,20 +121,60 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         }
     }
 
-    /// Gives the forces of slaves (N) the moment of their reactions, body by body.
-    pub(super) fn correct_moments(&self, couplings: &[Arc<Coupling>], forces: &mut [[f64; D]]) {
-        for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
-            groups(self.problem, sliding, coupling).iter().for_each(|group| group.apply(forces, &|_| None));
+    /// Adds the shapes of the tractions of the nodes of slaves to those of all nodes of the contact surface. There is
+    /// none where the density over whole edges is best, and none beside the end of the master.
+    pub(super) fn add_shapes(
+        &self,
+        concentration: &Concentration<D>,
+        couplings: &[Arc<Coupling>],
+        (gap, forces): (&[f64], &[[f64; D]]),
+        shapes: &mut [Option<TractionShape>],
+    ) {
+        let (problem, surface) = (self.problem, self.problem.surface());
+        for ((sliding, coupling), compliance) in surface.sliding().iter().zip(couplings).zip(&self.compliance) {
+            let slave = sliding.slave();
+            for k in (0..slave.len()).filter(|&k| is_inside(slave, coupling, k)) {
+                let at = slave.position(k);
+                shapes[at] = concentration.shape(problem, at, (&forces[at], *compliance), gap);
+            }
         }
     }
 
-    /// The densities of such forces.
-    pub(super) fn densities(&self, couplings: &[Arc<Coupling>], forces: &[[f64; D]]) -> Vec<SlidingDensity<D>> {
-        let all = self.problem.surface().sliding().iter().zip(couplings);
+    /// Gives the forces of slaves (N) the moment of their reactions, body by body.
+    pub(super) fn correct_moments(
+        &self,
+        couplings: &[Arc<Coupling>],
+        centroid: &dyn Fn(usize) -> Option<[f64; D]>,
+        forces: &mut [[f64; D]],
+    ) {
+        for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
+            groups(self.problem, sliding, coupling).iter().for_each(|group| group.apply(forces, centroid));
+        }
+    }
+
+    /// The densities of such forces, with shapes of their tractions.
+    pub(super) fn densities<'a>(
+        &self,
+        shaped: &impl Fn(usize) -> Option<(&'a Concentration<D>, &'a TractionShape)>,
+        couplings: &[Arc<Coupling>],
+        forces: &[[f64; D]],
+    ) -> Vec<SlidingDensity<D>> {
         let density = |(sliding, coupling): (&SlidingSurfaces<D>, &Arc<Coupling>)| {
-            SlidingDensity::new(coupling, |k| forces[sliding.slave().position(k)])
+            let slave = sliding.slave();
+            let mut hats = Vec::new();
+            for k in 0..slave.len() {
+                let at = slave.position(k);
+                let Some((concentration, shape)) = shaped(at) else { continue };
+                for (far, halvings, resultant) in concentration.shares(at, shape, &forces[at]) {
+                    let end = slave.node_at(far).map(|far| usize::from(far < k));
+                    hats.extend(end.and_then(|end| SlaveHat::new(slave, (k, end), halvings, resultant)));
+                }
+            }
+            let wide =
+                |k: usize| if shaped(slave.position(k)).is_some() { [0.0; D] } else { forces[slave.position(k)] };
+            SlidingDensity::new(coupling, wide, hats)
         };
-        all.map(density).collect()
+        self.problem.surface().sliding().iter().zip(couplings).map(density).collect()
     }
 
     pub(super) fn facets(&self) -> &Arc<[SlidingFacets]> {
@@ -143,17 +191,42 @@ fn mobility(coupling: &Coupling, k: usize, sides: [&Side; 2], mass: impl Fn(&Sid
     own + other.sum::<f64>()
 }
 
-/// Mean of ρc over a surface, by length, times the thickness.
-fn impedance<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
+/// The mean over a surface, by length.
+fn mean<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side, value: impl Fn(ElementId) -> f64) -> f64 {
     let positions = side.position(0)..side.position(side.len());
     let (mut sum, mut length) = (0.0, 0.0);
     for facet in problem.surface().facets().iter().filter(|facet| positions.contains(&facet.nodes[0])) {
         let owner: ElementId = problem.mesh().facets()[facet.facet.index()].owner;
-        let law = problem.material(owner);
-        sum += law.density() * law.wave_speed() * facet.area;
-        length += facet.area / law.extent();
+        let own = facet.area / problem.material(owner).extent();
+        sum += value(owner) * own;
+        length += own;
     }
     sum / length
+}
+
+/// ρc times the thickness (kg/(m s)).
+fn impedance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+    let law = problem.material(element);
+    law.density() * law.wave_speed() * law.extent()
+}
+
+/// 1 over plane modulus and thickness (m/N).
+fn compliance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+    let (law, (alpha, beta)) = (problem.material(element), problem.material(element).compliance::<D>());
+    (alpha - beta) / law.extent()
+}
+
+/// Whether the master faces all of the edges of a node of the slave.
+fn is_inside(slave: &Side, coupling: &Coupling, node: usize) -> bool {
+    let faces = |edge: usize| {
+        let first = slave.edges()[edge];
+        let segments = coupling.segments_of(edge);
+        let ends = [segments.first().map(|s| s.ends[0]), segments.last().map(|s| s.ends[1])];
+        ends == [Some(slave.xi()[first]), Some(slave.xi()[first + 1])]
+    };
+    let own = [node.checked_sub(1), Some(node)].into_iter().flatten();
+    let mut own = own.filter_map(|first| slave.edges().binary_search(&first).ok()).peekable();
+    own.peek().is_some() && own.all(faces)
 }
 
 /// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves.

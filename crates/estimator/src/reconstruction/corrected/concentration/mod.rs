@@ -45,19 +45,20 @@ impl<const D: usize> Concentration<D> {
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node; none where its tributary density is best: where no edge leaves the plane,
-    /// or rounding spoils the stress of hats.
+    /// The shape of the traction of one node under a force (N), where what it touches makes its compliance so many
+    /// times larger. None where its tributary density is best: where no edge leaves the plane, or rounding spoils the
+    /// stress of hats.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         at: usize,
-        force: &[f64; D],
+        (force, compliance): (&[f64; D], f64),
         gap: &[f64],
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
         let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
-        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps)?.shape(normal))
+        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps)?.shape(compliance * normal))
     }
 
     /// The shape at the other one of two nodes that touch.
@@ -132,6 +133,17 @@ impl<const D: usize> Concentration<D> {
             halvings: hat.halvings,
             resultant: force.map(|f| hat.share * f),
         })
+    }
+
+    /// On each edge of a node, the node at its other end, the halvings of its hat, narrow or not, and the resultant (N).
+    pub(super) fn shares<'a>(
+        &'a self,
+        at: usize,
+        shape: &'a TractionShape,
+        force: &'a [f64; D],
+    ) -> impl Iterator<Item = (usize, usize, [f64; D])> + 'a {
+        let hats = self.nodes[at].edges.iter().zip(shape.iter()).filter(|(_, hat)| hat.share != 0.0);
+        hats.map(|(edge, hat)| (edge.far, hat.halvings, force.map(|f| hat.share * f)))
     }
 
     /// The density at the node (Pa) on one of its facets, of a hat as wide as the edge.

@@ -1,0 +1,163 @@
+//! The stress of a density on an edge beside that of the linear traction with the same moments.
+//!
+//! It balances itself. Any stress that does so may be taken: the one of least energy among a bound in the element of
+//! the edge, the stress in the star of a node, and that in the element, cut where the density has its peak.
+
+use super::facets::EdgeFacet;
+use super::load::Load;
+use crate::concentrated::{EdgeRest, StarElement, roots};
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+
+/// Where ∫r² is at most this part of ∫F², the bound of its energy is not worth a better one.
+const SMALL: f64 = 1e-3;
+
+/// Elements with such a stress, and the roots of its energies (J^½).
+pub(super) type Roots = Vec<(ElementId, f64)>;
+
+/// The stress of one edge.
+pub(super) fn of_edge<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    edge: &EdgeFacet,
+    load: &Load<D>,
+) -> Roots {
+    let rest = load.rest(edge);
+    let mut least = vec![(owner(problem, edge), (edge.spread * rest).sqrt())];
+    if rest <= SMALL * load.square(edge) {
+        return least;
+    }
+    let stars = [0, 1].map(|end| in_star(problem, edge, end, load));
+    let inside = load.peak().and_then(|place| in_cut_element(problem, edge, place, load));
+    for other in stars.into_iter().chain([inside]).flatten() {
+        if total(&other) < total(&least) {
+            least = other;
+        }
+    }
+    least
+}
+
+/// The stress in the star of the node at an end of the edge; none if rounding spoils it.
+fn in_star<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    edge: &EdgeFacet,
+    end: usize,
+    load: &Load<D>,
+) -> Option<Roots> {
+    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+    let node = problem.surface().nodes()[candidate.nodes[edge.ends[end]]].node;
+    let star = mesh.stars().star(node);
+    let corners = |&id: &ElementId| {
+        let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
+        let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
+        StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
+    };
+    let elements: Vec<_> = star.elements.iter().map(corners).collect();
+    let supported = [star.links.first(), star.links.last()].map(|link| {
+        let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+        [supported[0], supported[D - 1]]
+    });
+    let mut rests = [EdgeRest::default(), EdgeRest::default()];
+    rests[usize::from(star.links[0] != Some(candidate.facet))] = load.from_end(end, edge);
+    let roots = roots(&elements, &rests, supported)?;
+    Some(star.elements.iter().copied().zip(roots).collect())
+}
+
+/// The stress in the element of an edge, cut from a place on the edge to the corner opposite.
+fn in_cut_element<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    edge: &EdgeFacet,
+    place: f64,
+    load: &Load<D>,
+) -> Option<Roots> {
+    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+    let (id, law) = (owner(problem, edge), problem.material(owner(problem, edge)));
+    let (cell, points) = (&mesh.cells()[id.index()], mesh.cell_points(id));
+    let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
+    let apex = cell.iter().position(|node| !ends.contains(node))?;
+    let corner = |next: usize| points[(apex + next) % N];
+    // Counterclockwise from the corner opposite.
+    let forwards = cell[(apex + 1) % N] == ends[0];
+    let part = if forwards { place } else { 1.0 - place };
+    let at: [f64; D] = std::array::from_fn(|c| corner(1)[c] * (1.0 - part) + corner(N - 1)[c] * part);
+    let arm = |to: [f64; D]| [0, D - 1].map(|c| to[c] - at[c]);
+    let [before, opposite, after] = [arm(corner(1)), arm(points[apex]), arm(corner(N - 1))];
+    let elements = cut_fan([after, opposite, before]).map(|ends| StarElement { ends, law });
+    let [first, second] = load.around(place, edge);
+    let rests = if forwards { [second, first] } else { [first, second] };
+    let supported = problem.supported(candidate.facet);
+    let roots = roots(&elements, &rests, [[supported[0], supported[D - 1]]; 2])?;
+    Some(vec![(id, roots.iter().map(|root| root * root).sum::<f64>().sqrt())])
+}
+
+/// A fan of four triangles around the origin between three points: both angles are cut into halves, because the stress
+/// of a force at the origin needs more than two triangles.
+fn cut_fan([a, b, c]: [[f64; 2]; 3]) -> [[[f64; 2]; 2]; 4] {
+    let halfway = |a: [f64; 2], b: [f64; 2]| {
+        let [p, q] = [a, b].map(|x| x[0].hypot(x[1]));
+        [0, 1].map(|c| (q * a[c] + p * b[c]) / (p + q))
+    };
+    let (d, e) = (halfway(a, b), halfway(b, c));
+    [[a, d], [d, b], [b, e], [e, c]]
+}
+
+fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> ElementId {
+    problem.mesh().facets()[problem.surface().facets()[edge.facet].facet.index()].owner
+}
+
+/// The sum of the roots: whatever they are added to, the least of these sums is best.
+fn total(roots: &Roots) -> f64 {
+    roots.iter().map(|(_, root)| root).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::material::Elastic;
+    use std::f64::consts::{LN_2, PI};
+
+    const YOUNG: f64 = 70e9;
+
+    /// Energies in both halves of a triangle with this apex over an edge from 0 to 1, cut at a place of the edge, under a
+    /// unit force there: hats of this width on both sides, along this direction.
+    fn energies(apex: [f64; 2], place: f64, width: f64, direction: [f64; 2]) -> Option<[f64; 2]> {
+        let law = Elastic::plane_stress(YOUNG, 0.3, 2700.0, 1.0).unwrap();
+        let up = [apex[0] - place, apex[1]];
+        let elements = cut_fan([[1.0 - place, 0.0], up, [-place, 0.0]]).map(|ends| StarElement { ends, law: &law });
+        // The far moment of the linear traction with the resultant and the centroid of the hats, which is the place.
+        let nodal = [4.0 - 6.0 * place, 6.0 * place - 2.0];
+        let linear = |at: f64| nodal[0] * (1.0 - at) + nodal[1] * at;
+        let rest = |end: f64| {
+            let length = (end - place).abs();
+            let scaled = |value: f64| direction.map(|d| d * value * length);
+            let points = vec![(0.0, scaled(1.0 / width)), (width / length, scaled(0.0))];
+            EdgeRest { points, linear: [place, end].map(|at| scaled(linear(at))) }
+        };
+        let energies = roots(&elements, &[rest(1.0), rest(0.0)], [[false; 2]; 2])?;
+        let half = |k: usize| energies[k..k + 2].iter().map(|root| root * root).sum();
+        Some([half(0), half(2)])
+    }
+
+    /// Close to the place the stress is that of a force on a half-plane: each octave costs P²/E ln 2/π along the
+    /// normal. Eight sectors meet there: the energy is larger by some percent.
+    #[test]
+    fn octaves_in_a_cut_element_cost_the_energy_of_the_radial_field() {
+        let exact = LN_2 / PI / YOUNG;
+        for (apex, place) in [([0.0, 1.0], 0.5), ([0.5, 0.8], 0.4), ([0.2, 0.5], 0.7)] {
+            let total = |width: f64| energies(apex, place, width, [0.0, 1.0]).unwrap().iter().sum::<f64>();
+            let octave = (total(1.0 / 1024.0) - total(1.0 / 512.0)) / exact;
+            println!("{octave}");
+            assert!((1.0..1.5).contains(&octave), "{apex:?} {place}: {octave}");
+        }
+    }
+
+    /// The mirror image of a triangle and its load has the same energies.
+    #[test]
+    fn mirrored_loads_have_the_same_energies() {
+        for direction in [[0.0, 1.0], [1.0, 0.0], [0.6, 0.8]] {
+            let [a, b] = energies([0.3, 0.7], 0.35, 1e-2, direction).unwrap();
+            let [c, d] = energies([0.7, 0.7], 0.65, 1e-2, [-direction[0], direction[1]]).unwrap();
+            // Rounding of some hundred operations.
+            assert!((a - d).abs() < 1e-10 * a && (b - c).abs() < 1e-10 * b, "{direction:?}: {a} {b} {c} {d}");
+        }
+    }
+}
