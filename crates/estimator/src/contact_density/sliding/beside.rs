@@ -1,7 +1,8 @@
 //! The stress of a density on an edge beside that of the linear traction with the same moments.
 //!
 //! It balances itself. Any stress that does so may be taken: the one of least energy among a bound in the element of
-//! the edge, the stress in the star of a node, and that in the element, cut where the density has its peak.
+//! the edge, the stress in the star of a node, that in the element, cut where the density has its peak, and one of two
+//! parts where this is close to a node.
 
 use super::facets::EdgeFacet;
 use super::load::Load;
@@ -21,19 +22,41 @@ pub(super) fn of_edge<const D: usize, const N: usize>(
     edge: &EdgeFacet,
     load: &Load<D>,
 ) -> Roots {
-    let rest = load.rest(edge);
-    let mut least = vec![(owner(problem, edge), (edge.spread * rest).sqrt())];
+    let (id, rest) = (owner(problem, edge), load.rest(edge));
+    let mut least = vec![(id, (edge.spread * rest).sqrt())];
     if rest <= SMALL * load.square(edge) {
         return least;
     }
+    let (corners, load) = (corners(problem, edge), &load.without_slivers(edge));
     let stars = [0, 1].map(|end| in_star(problem, edge, end, load));
-    let inside = load.peak().and_then(|place| in_cut_element(problem, edge, place, load));
-    for other in stars.into_iter().chain([inside]).flatten() {
+    let cut = load.peak().and_then(|place| Some(vec![(id, in_cut_triangle((problem, edge), corners, place, load)?)]));
+    let close = [0, 1].map(|end| close_to_a_node(problem, edge, end, load));
+    for other in stars.into_iter().chain([cut]).chain(close).flatten() {
         if total(&other) < total(&least) {
             least = other;
         }
     }
     least
+}
+
+/// The stress of a load in the part of the edge beside its node at an end: first that of its difference to a linear
+/// traction on this part, in the similar part of the element, then that of this traction in the star of the node.
+fn close_to_a_node<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    edge: &EdgeFacet,
+    end: usize,
+    load: &Load<D>,
+) -> Option<Roots> {
+    let part = load.part_at(end).filter(|part| *part < 1.0)?;
+    let [beside, whole] = load.spread_over(part, end, edge);
+    let corners = corners(problem, edge);
+    let similar = |corner: [f64; 2]| [0, 1].map(|c| corners[end][c] + part * (corner[c] - corners[end][c]));
+    let place = beside.peak()?;
+    let short = EdgeFacet { length: part * edge.length, ..*edge };
+    let cut = in_cut_triangle((problem, &short), corners.map(similar), place, &beside)?;
+    let mut roots = in_star(problem, edge, end, &whole)?;
+    roots.push((owner(problem, edge), cut));
+    Some(roots)
 }
 
 /// The stress in the star of the node at an end of the edge; none if rounding spoils it.
@@ -62,31 +85,36 @@ fn in_star<const D: usize, const N: usize>(
     Some(star.elements.iter().copied().zip(roots).collect())
 }
 
-/// The stress in the element of an edge, cut from a place on the edge to the corner opposite.
-fn in_cut_element<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    edge: &EdgeFacet,
+/// The corners of the element of an edge: its first and its second end, and the one opposite.
+fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> [[f64; 2]; 3] {
+    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+    let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
+    let cell = &mesh.cells()[owner(problem, edge).index()];
+    let apex = cell.iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
+    [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points()[node.index()][c]))
+}
+
+/// The root of the energy of the stress in a triangle on an edge, cut from a place on the edge to the corner opposite.
+fn in_cut_triangle<const D: usize, const N: usize>(
+    (problem, edge): (&Problem<D, N>, &EdgeFacet),
+    [a, b, opposite]: [[f64; 2]; 3],
     place: f64,
     load: &Load<D>,
-) -> Option<Roots> {
-    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
-    let (id, law) = (owner(problem, edge), problem.material(owner(problem, edge)));
-    let (cell, points) = (&mesh.cells()[id.index()], mesh.cell_points(id));
-    let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
-    let apex = cell.iter().position(|node| !ends.contains(node))?;
-    let corner = |next: usize| points[(apex + next) % N];
-    // Counterclockwise from the corner opposite.
-    let forwards = cell[(apex + 1) % N] == ends[0];
-    let part = if forwards { place } else { 1.0 - place };
-    let at: [f64; D] = std::array::from_fn(|c| corner(1)[c] * (1.0 - part) + corner(N - 1)[c] * part);
-    let arm = |to: [f64; D]| [0, D - 1].map(|c| to[c] - at[c]);
-    let [before, opposite, after] = [arm(corner(1)), arm(points[apex]), arm(corner(N - 1))];
-    let elements = cut_fan([after, opposite, before]).map(|ends| StarElement { ends, law });
+) -> Option<f64> {
+    let at = [0, 1].map(|c| a[c] * (1.0 - place) + b[c] * place);
+    let [before, after, up] = [a, b, opposite].map(|corner| [0, 1].map(|c| corner[c] - at[c]));
     let [first, second] = load.around(place, edge);
-    let rests = if forwards { [second, first] } else { [first, second] };
-    let supported = problem.supported(candidate.facet);
+    // Counterclockwise.
+    let (fan, rests) = if after[0] * up[1] > after[1] * up[0] {
+        ([after, up, before], [second, first])
+    } else {
+        ([before, up, after], [first, second])
+    };
+    let law = problem.material(owner(problem, edge));
+    let elements = cut_fan(fan).map(|ends| StarElement { ends, law });
+    let supported = problem.supported(problem.surface().facets()[edge.facet].facet);
     let roots = roots(&elements, &rests, [[supported[0], supported[D - 1]]; 2])?;
-    Some(vec![(id, roots.iter().map(|root| root * root).sum::<f64>().sqrt())])
+    Some(roots.iter().map(|root| root * root).sum::<f64>().sqrt())
 }
 
 /// A fan of four triangles around the origin between three points: both angles are cut into halves, because the stress

@@ -4,6 +4,10 @@ use super::facets::EdgeFacet;
 use crate::concentrated::EdgeRest;
 use crate::partition::Piece;
 
+/// Break points nearer than this part of the edge are one where stresses are computed: an energy changes by as much,
+/// and rings between two of them would lose all digits.
+const NEAR: f64 = 1e-6;
+
 /// The density on an edge: between break points.
 #[derive(Clone, Debug)]
 pub(super) struct Load<const D: usize> {
@@ -28,6 +32,33 @@ impl<const D: usize> Load<D> {
             self.moments[1][c] += piece.product(places, component);
         }
         self.spans.push((places, values));
+    }
+
+    /// The same without spans too short for the stress of the load.
+    pub(super) fn without_slivers(&self, edge: &EdgeFacet) -> Self {
+        let mut places: Vec<f64> = self.spans.iter().flat_map(|(places, _)| *places).chain([0.0, 1.0]).collect();
+        places.sort_by(f64::total_cmp);
+        // The last place, then each that is far enough below the one kept before it, and the first.
+        places.dedup_by(|next, kept| *next - *kept < NEAR && *next < 1.0);
+        let kept = |place: f64| {
+            let after = places.partition_point(|other| *other <= place).max(1);
+            if place > 1.0 - NEAR { 1.0 } else { places[after - 1] }
+        };
+        let mut made = Self::default();
+        for (ends, values) in &self.spans {
+            let ends = ends.map(kept);
+            let length = (ends[1] - ends[0]) * edge.length;
+            if length > 0.0 {
+                for c in 0..D {
+                    let [f, g] = values.map(|value| value[c]);
+                    let second = length / 6.0 * (ends[0] * (2.0 * f + g) + ends[1] * (f + 2.0 * g));
+                    made.moments[0][c] += 0.5 * length * (f + g) - second;
+                    made.moments[1][c] += second;
+                }
+                made.spans.push((ends, *values));
+            }
+        }
+        made
     }
 
     /// The linear traction with the same moments, at a node (N).
@@ -72,6 +103,34 @@ impl<const D: usize> Load<D> {
         inside.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
     }
 
+    /// The part of the edge beside an end, of which the peak is the middle, that has all of the load.
+    pub(super) fn part_at(&self, end: usize) -> Option<f64> {
+        let from = |place: f64| if end == 0 { place } else { 1.0 - place };
+        let reach = self.spans.iter().flat_map(|(places, _)| places.map(from)).fold(0.0, f64::max);
+        self.peak().map(|peak| reach.max(2.0 * from(peak)))
+    }
+
+    /// The load of a part of the edge beside an end, as if that part were an edge, and the load of the traction on the
+    /// whole edge that is linear on this part and has the same moments.
+    pub(super) fn spread_over(&self, part: f64, end: usize, edge: &EdgeFacet) -> [Self; 2] {
+        let start = if end == 0 { 0.0 } else { 1.0 - part };
+        let scaled = |places: [f64; 2]| places.map(|place| ((place - start) / part).clamp(0.0, 1.0));
+        let spans = self.spans.iter().map(|&(places, values)| (scaled(places), values)).collect();
+        let moments: [[f64; D]; 2] = {
+            let component = |c: usize| {
+                let resultant = self.moments[0][c] + self.moments[1][c];
+                let second = (self.moments[1][c] - start * resultant) / part;
+                [resultant - second, second]
+            };
+            let all: [[f64; 2]; D] = std::array::from_fn(component);
+            [0, 1].map(|k| all.map(|moments| moments[k]))
+        };
+        let beside = Self { moments, spans };
+        let values = [0, 1].map(|k| beside.nodal(k).map(|f| f / (part * edge.length)));
+        let whole = Self { moments: self.moments, spans: vec![([start, start + part], values)] };
+        [beside, whole]
+    }
+
     /// The density less that linear traction, seen from an end of the edge.
     pub(super) fn from_end(&self, end: usize, edge: &EdgeFacet) -> EdgeRest {
         let [from, to] = [[0.0, 1.0], [1.0, 0.0]][end];
@@ -97,8 +156,6 @@ impl<const D: usize> Load<D> {
         if to < from {
             points.reverse();
         }
-        // Where the density goes on, two spans have one point.
-        points.dedup_by(|next, last| next.0 == last.0 && next.1 == last.1);
         let [first, second] = [self.nodal(0), self.nodal(1)];
         let linear = [from, to].map(|at| scaled(std::array::from_fn(|c| first[c] * (1.0 - at) + second[c] * at), 1.0));
         EdgeRest { points, linear }

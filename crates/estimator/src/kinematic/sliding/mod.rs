@@ -44,8 +44,8 @@ pub(crate) struct SlidingMotion {
 
 /// About how many bytes the motions take of surfaces with so many nodes.
 pub(super) fn memory(nodes: usize) -> usize {
-    // Simulation and change of all nodes, three more pairs of numbers of those of slaves.
-    5 * most_bytes(nodes, usize::MAX)
+    // Simulation and change of all nodes, seven more pairs of numbers of those of slaves.
+    9 * most_bytes(nodes, usize::MAX)
 }
 
 /// Both surfaces at an instant, in the admissible motion.

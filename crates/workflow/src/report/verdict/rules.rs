@@ -120,15 +120,22 @@ pub(super) const RULES: [Rule; 26] = [
         situation: "several contact phases",
         doubt: Some("after several contacts, simulation and solution are no longer in step"),
     },
-    // docs/bodies.md: blocks tilted by 3 and 10 degrees at 2 and 20 m/s, 1.05 to 13.6.
+    // docs/bodies.md, 1.05 to 25: tractions have the width of the edges of the slave.
     Rule {
-        applies: |f| f.slides && matches!(f.contact.touches, Touches::Curve | Touches::Corner),
-        range: [1.0, 15.0],
-        situation: "corners and curves on surfaces that slide",
+        applies: |f| f.slides && f.contact.strikes_flat_slave,
+        range: [1.0, 25.0],
+        situation: "corners and curves that strike a surface of finer edges",
         doubt: Some(
-            "on surfaces that slide, tractions are as wide as edges, too wide for a corner or a curve at low speed; \
-             give both surfaces the same nodes, if they do not slide, and state the contact as matching",
+            "tractions are as wide as the edges of the surface that is struck, too wide for a corner or a curve at low \
+             speed; let the other body have the finer edges at its contact, or both the same nodes",
         ),
+    },
+    // python/percute/verification/struck.py has 1.13 to 3.5, and with μ = 1 up to 3.9.
+    Rule {
+        applies: |f| f.slides && matches!(f.contact.touches, Touches::Curve | Touches::Corner | Touches::End),
+        range: [0.83, 4.0],
+        situation: "corners, curves and ends of edges on surfaces that slide",
+        doubt: None,
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
     // blocks of metals. python/percute/verification/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with

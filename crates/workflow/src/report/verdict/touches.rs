@@ -41,18 +41,21 @@ pub(super) struct Contact {
     pub(super) zones: usize,
     /// Whether a single element fills an obtuse corner at which contact begins or ends.
     pub(super) single_element: bool,
+    /// Whether a corner or a curve strikes a straight part of a slave, along which it slides.
+    pub(super) strikes_flat_slave: bool,
 }
 
 impl Contact {
     pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Self {
         let surface = Surface::new(problem, results);
         let Some(start) = surface.start() else {
-            return Self { touches: Touches::None, zones: 0, single_element: false };
+            return Self { touches: Touches::None, zones: 0, single_element: false, strikes_flat_slave: false };
         };
         let (touches, places) = surface.situation(&start);
         let single = |&at: &usize| surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
         let single_element = D > 1 && places.iter().any(single);
-        Self { touches, zones: surface.zones(), single_element }
+        let strikes_flat_slave = matches!(touches, Touches::Corner | Touches::Curve) && surface.is_flat_slave(&start);
+        Self { touches, zones: surface.zones(), single_element, strikes_flat_slave }
     }
 }
 
@@ -149,6 +152,17 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     /// By how much the outline turns at a node (rad): π less the angle inside the body.
     fn turn(&self, at: usize) -> f64 {
         PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
+    }
+
+    /// Whether the nodes of slaves among these are on straight parts of their surfaces, and those of masters are not.
+    fn is_flat_slave(&self, nodes: &[usize]) -> bool {
+        let sliding = self.problem.surface().sliding();
+        let is_slave = |at: usize| sliding.iter().any(|sliding| sliding.slave().node_at(at).is_some());
+        let slides = |at: usize| self.problem.surface().sliding_of(at).is_some();
+        let (slaves, masters): (Vec<usize>, Vec<usize>) =
+            nodes.iter().copied().filter(|&at| slides(at)).partition(|&at| is_slave(at));
+        let turns = |at: &usize| self.turn(*at).abs() > PARALLEL;
+        !slaves.is_empty() && !slaves.iter().any(turns) && masters.iter().any(turns)
     }
 
     /// The parts of the surface that touch, each joined by edges.

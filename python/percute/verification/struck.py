@@ -1,0 +1,94 @@
+"""Effectivity indices of corners and curves that strike the surface of another body: a table of ``docs/bodies.md``.
+
+``python -m percute.verification.struck`` prints it.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import percute as pc
+from percute.verification.block import ALUMINIUM
+
+STEEL = {"young": 210e9, "poisson": 0.3, "density": 7800.0}
+FRICTION, COURANT = 0.2, 0.9
+"""Coefficient of friction, step over the critical one."""
+SPEEDS = (0.2, 2.0, 20.0, 200.0)
+"""Speeds of the upper body (m/s)."""
+WAY = 1e-6
+"""The gap is the way in so long a time (s)."""
+MESHES, FINER = (0, 1), 3
+"""Refinements of the runs and of the reference."""
+Problem = Callable[[float, int], pc.Problem]
+"""A problem of a speed (m/s) and a number of refinements."""
+
+
+def tilted(angle: float) -> Problem:
+    """Give a block of 40 × 25 mm, tilted (°), whose corner strikes a plate of 60 × 25 mm."""
+
+    def problem(speed: float, refinements: int) -> pc.Problem:
+        block = pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6).refine(refinements)
+        plate = pc.Mesh.rectangle(0.06, 0.025, nx=12, ny=6).refine(refinements)
+        law = pc.Elastic(**ALUMINIUM, plane="stress")
+        above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0123, 0.025 + WAY * speed), velocity=(0.0, -speed))
+        return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
+
+    return problem
+
+
+def disc(speed: float, refinements: int) -> pc.Problem:
+    """Give a disc of steel, of 10 mm radius, that strikes a plate of 40 × 10 mm of aluminium."""
+    mesh = pc.Mesh.disc(0.01, rings=3).refine(refinements)
+    plate = pc.Mesh.rectangle(0.04, 0.01, nx=12, ny=3).refine(refinements)
+    above = pc.Body(name="disc", mesh=mesh, material=pc.Elastic(**STEEL, plane="stress"), origin=(0.0207, 0.02 + WAY * speed), velocity=(0.0, -speed))
+    return _struck(above, pc.Body(name="plate", mesh=plate, material=pc.Elastic(**ALUMINIUM, plane="stress")))
+
+
+def overlapping(overlap: float) -> Problem:
+    """Give a block of 20 × 20 mm that strikes the end of a plate of 40 × 20 mm with so long a part (m) of its lower side."""
+
+    def problem(speed: float, refinements: int) -> pc.Problem:
+        plate, block = (pc.Mesh.rectangle(width, 0.02, nx=nx, ny=6).refine(refinements) for width, nx in ((0.04, 8), (0.02, 7)))
+        law = pc.Elastic(**ALUMINIUM, plane="stress")
+        above = pc.Body(name="block", mesh=block, material=law, origin=(overlap - 0.02, 0.02 + WAY * speed), velocity=(0.0, -speed))
+        return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
+
+    return problem
+
+
+def _struck(above: pc.Body, plate: pc.Body) -> pc.Problem:
+    return pc.Problem(bodies=[plate, above], contacts=[pc.Interface(bodies=(above.name, "plate"), friction=FRICTION)])
+
+
+CASES: tuple[tuple[str, Problem, float], ...] = (
+    *((f"block tilted by {angle:g}°", tilted(angle), 14e-6) for angle in (3.0, 10.0, 29.0)),
+    ("disc", disc, 12e-6),
+    *((f"block that overlaps a plate by {1e3 * overlap:g} mm", overlapping(overlap), 10e-6) for overlap in (0.0003, 0.001, 0.003)),
+)
+"""Names, problems, and ends of the runs (s)."""
+
+
+def indices(problem: Problem, speed: float, end: float) -> list[tuple[float, float]]:
+    """Give the effectivity indices of sup and mean on each mesh."""
+    histories = [pc.simulate(problem(speed, mesh), end=end, courant=COURANT) for mesh in MESHES]
+    errors = pc.true_errors(histories, problem(speed, FINER), end=end, courant=COURANT)
+    found = []
+    for history, error in zip(histories, errors, strict=True):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", pc.SimulationWarning)
+            estimate = pc.estimate(history, every=1)
+        found.append((estimate.sup / error.sup, estimate.mean / error.mean))
+    return found
+
+
+def main() -> None:
+    """Print the table."""
+    print(f"| the body above | {' | '.join(f'{speed:g} m/s' for speed in SPEEDS)} |\n|{'---|' * (len(SPEEDS) + 1)}")
+    for name, problem, end in CASES:
+        found = [[index for both in indices(problem, speed, end) for index in both] for speed in SPEEDS]
+        print(f"| {name} | {' | '.join(f'{min(each):.2f} to {max(each):.2f}' for each in found)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
