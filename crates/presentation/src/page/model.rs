@@ -65,7 +65,7 @@ fn residuals(document: &Document) -> String {
 }
 
 /// Figures of a history of another program.
-const CONSISTENCY: [Named; 16] = [
+const CONSISTENCY: [Named; 17] = [
     ("balance", "residual M a + K u − F − R over its largest term", "%"),
     ("node", "at node", "#"),
     ("time", "at t", "s"),
@@ -75,6 +75,7 @@ const CONSISTENCY: [Named; 16] = [
     ("velocity", "velocities off those of the displacements", "%"),
     ("acceleration", "accelerations off those of the displacements", "%"),
     ("cone", "contact force in tension or beyond Coulomb’s limit", "%"),
+    ("opposite", "contact force on one of two surfaces that slide beyond that of their multipliers", "%"),
     ("slip", "misfit of Coulomb’s law at nodes that slide", "%"),
     ("plane", "gap under contact forces, the same everywhere, over the element size", "%"),
     ("gap_under_force", "gap under a contact force, over the element size", "%"),

@@ -76,6 +76,24 @@ impl<'p, const D: usize, const N: usize> Balance<'p, D, N> {
         Some(Motion { back, forward, acceleration })
     }
 
+    /// The displacements at t_{n+1} if no contact force acted at t_n (m): those of D and M of the step.
+    pub(crate) fn predicted(&self, before: Option<&Held<D>>, now: &Held<D>) -> Vec<[f64; D]> {
+        let (problem, n) = (self.problem, now.index);
+        let (dt, h) = (self.times.step(n), self.times.velocity_step(n));
+        let still = vec![[0.0; D]; now.displacement.len()];
+        let terms = self.terms(now, &still);
+        let back = before.map(|before| (&before.displacement, self.times.step(n - 1)));
+        let node = |node: usize| {
+            let (u, rest) = (&now.displacement[node], terms.rest(node));
+            let speed = |c: usize| match back {
+                Some((earlier, back)) => (u[c] - earlier[node][c]) / back,
+                None => problem.initial_velocity()[node][c],
+            };
+            std::array::from_fn(|c| u[c] + dt * (speed(c) - h * rest[c] / problem.mass()[node]))
+        };
+        (0..still.len()).map(node).collect()
+    }
+
     /// The terms with this acceleration (m/s²).
     pub(crate) fn terms(&self, now: &Held<D>, acceleration: &[[f64; D]]) -> Terms<D> {
         let nodes = now.displacement.len();

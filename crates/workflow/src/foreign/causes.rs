@@ -56,9 +56,10 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(text) = self.evidence.rates.cause().filter(|_| over("velocity")) {
             return Some(text);
         }
-        let told: [(&str, &dyn Fn() -> String); 7] = [
+        let told: [(&str, &dyn Fn() -> String); 8] = [
             ("initial_velocity", &|| self.velocity_at_start()),
             ("energy", &|| self.unstable()),
+            ("opposite", &|| self.evidence.contact.not_opposite()),
             ("plane", &|| planes::place(self, false).unwrap_or_default()),
             ("touching", &|| self.touching()),
             ("cone", &|| planes::friction(self, "or a normal ")),

@@ -1,9 +1,11 @@
 //! What a history of another program lacks, derived from the rest of it.
 
-use super::derive::Derivation;
+use super::derive::{Derivation, Heard};
+use super::opposite::groups;
 use super::pairs;
 use super::window::{Held, windows};
-use crate::message::counted;
+use crate::message::{counted, trimmed};
+use percute_core::contact::ContactSurface;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -59,23 +61,15 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// A node that may touch two planes; surfaces that slide along each other; steps that cannot be read; forces on two
-    /// nodes of different bodies that are not opposite; fewer than three instants of which the last is not known.
+    /// A node that may touch two planes; missing forces between surfaces that slide along each other; steps that cannot
+    /// be read; forces on two nodes of different bodies that are not opposite; fewer than three instants of which the
+    /// last is not known.
     pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
         if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
                  plane a `group` so that no node lies in two, or simulate with percute",
                 contact.node.index()
-            );
-            return Err(told.into());
-        }
-        if let Some(interface) = problem.statement().interfaces.iter().find(|interface| !interface.is_matching()) {
-            let [first, second] = interface.groups();
-            let told = format!(
-                "histories of other programs are read for bodies whose nodes face each other in pairs, and those of \
-                 \"{first}\" and \"{second}\" do not, or slide; give both the same nodes and state the contact as \
-                 matching, or simulate with percute"
             );
             return Err(told.into());
         }
@@ -87,10 +81,14 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         }
         let needed = made.needed_at_the_end()?;
         if lacks.reaction {
-            if !made.derivation.listen(source)? {
-                // Nothing touches: the history is complete.
-                made.lacks = Lacks::default();
-                return Ok(made);
+            match made.derivation.listen(source)? {
+                [_, Some(sliding)] => return Err(forces_missing(problem.surface(), sliding).into()),
+                [Some(_), None] => {}
+                [None, None] => {
+                    // Nothing touches: the history is complete.
+                    made.lacks = Lacks::default();
+                    return Ok(made);
+                }
             }
             made.derived.push(Derived::Reaction);
         }
@@ -154,15 +152,27 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
             if window.now.index < last {
                 return Ok(());
             }
-            let Some(before) = window.before else { return Ok(()) };
             let known = window.now.acceleration.is_some();
-            if !known && window.now.reaction.iter().all(|r| *r == [0.0; D]) {
-                needed = self.derivation.enters(before, window.now);
+            if window.before.is_some() && !known && window.now.reaction.iter().all(|r| *r == [0.0; D]) {
+                needed = self.derivation.enters(window);
             }
             Ok(())
         })?;
         Ok(needed)
     }
+}
+
+/// What to do about the forces of surfaces that slide, if they are missing.
+fn forces_missing<const D: usize>(surface: &ContactSurface<D>, heard: Heard) -> String {
+    let sliding = surface.sliding_of(heard.at).map(|index| &surface.sliding()[index]);
+    let groups = sliding.map(|sliding| groups(surface, sliding).join(" and "));
+    format!(
+        "`reaction` is missing: the contact forces between {}, whose nodes do not face each other or slide, are not \
+         derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, or \
+         simulate with percute",
+        groups.unwrap_or_default(),
+        trimmed(heard.time, 5)
+    )
 }
 
 impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
@@ -188,10 +198,12 @@ impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
                 self.given(now)?
             };
             let reaction = &reaction;
+            if !self.lacks.touching {
+                return take(&Step { reaction, ..now.step() });
+            }
             let next = derivation.touching(window, reaction);
-            let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(reaction));
-            let touching = if self.lacks.touching { &touching } else { &now.touching };
-            take(&Step { reaction, touching, ..now.step() })
+            let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(window, reaction));
+            take(&Step { reaction, touching: &touching, ..now.step() })
         })
     }
 }

@@ -1,10 +1,12 @@
 //! Contact forces against gaps, touching status and Coulomb's law.
 
 use super::balance::{Motion, Terms, dot, norm};
+use super::conditions::Conditions;
 use super::figures::Consistency;
 use super::gaps::Gaps;
 use super::nearness::{ADDED, Nearness, unsure};
-use super::window::{Held, Window};
+use super::opposite::Opposite;
+use super::window::Window;
 use percute_core::contact::{ContactNode, Frame};
 use percute_core::problem::Problem;
 
@@ -41,6 +43,10 @@ pub(super) struct Contact<'p, const D: usize, const N: usize> {
     nearness: Nearness,
     /// Of each plane.
     planes: Vec<PlaneSums>,
+    /// The forces of the instant before (N), and the gaps at its end (m).
+    before: Option<(Vec<[f64; D]>, Vec<f64>)>,
+    /// Of each two surfaces that slide.
+    opposite: Vec<Opposite>,
     /// Nodes of the surface on which a force acts at some instant.
     pub(super) forced: Vec<bool>,
     /// Largest normal force (N), cone excess (N), product of force and gap (N m), penetration (m).
@@ -61,6 +67,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             problem,
             nearness: Nearness::new(problem),
             planes: vec![PlaneSums::new(problem.surface().nodes().len()); problem.obstacles().len()],
+            before: None,
+            opposite: vec![Opposite::default(); problem.surface().sliding().len()],
             forced: vec![false; problem.surface().nodes().len()],
             largest: [0.0; 4],
             pressed: [0.0; 3],
@@ -70,10 +78,10 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
     }
 
-    /// Takes in an instant, its motion in a step of Δt (s) with h (s), and the terms of its balance.
+    /// Takes in an instant with its conditions, its motion in a step of Δt (s) with h (s), and the terms of its balance.
     pub(super) fn take(
         &mut self,
-        window: Window<'_, D>,
+        (window, conditions): (Window<'_, D>, &Conditions<'_, D>),
         motion: Option<&Motion<D>>,
         terms: Option<&Terms<D>>,
         [dt, h]: [f64; 2],
@@ -82,34 +90,46 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         self.unsure = self.unsure.max(unsure([Some(now)]));
         let speed = motion.map_or(0.0, Motion::speed);
         let (faint, least) = (FAINT * speed / h, SLIDING * speed);
+        let (forces, before) = (conditions.forces(&now.reaction), self.before.take());
+        for (opposite, sliding) in self.opposite.iter_mut().zip(problem.surface().sliding()) {
+            opposite.take(sliding, &now.reaction, &forces);
+        }
+        let mut gaps = vec![f64::INFINITY; forces.len()];
         for (at, contact) in problem.surface().nodes().iter().enumerate() {
             let node = contact.node.index();
             let frame = problem.surface().frame(at, &now.displacement[node]);
             self.forced[at] |= now.reaction[at] != [0.0; D];
-            self.press(at, contact, &frame, now);
+            self.press(contact, &frame, &forces[at], before.as_ref().map(|(_, gaps)| gaps[at]));
             let (Some(after), Some(motion)) = (window.after, motion) else { continue };
-            let gap = problem.surface().gap(at, &problem.surface().against_obstacle(at, &after.displacement));
-            let along = along(&frame, problem.surface().point(at), &after.displacement[node]);
-            self.gap(at, (&frame, [gap, along]), (&now.reaction[at], terms.map(|terms| terms.rest(node))));
+            if !conditions.holds(at) {
+                continue;
+            }
+            gaps[at] = conditions.gap(at, &after.displacement);
+            let place = [gaps[at], along(&frame, problem.surface().point(at), &after.displacement[node])];
+            let path = frame.split(&conditions.relative(at, &after.displacement)).0;
+            self.gap(at, (&frame, place, path), (&forces[at], terms.map(|terms| terms.rest(node))));
             if contact.free {
-                self.status(window, after, at, faint * problem.mass()[node]);
-                let velocity = problem.surface().against_obstacle(at, &motion.forward);
-                self.slide(contact, &frame, (&now.reaction[at], &velocity), [dt, least]);
+                let earlier = before.as_ref().map(|(forces, _)| &forces[at]);
+                self.status(
+                    [now, after].map(|held| held.touching[at]),
+                    (&forces[at], earlier),
+                    faint * problem.mass()[node],
+                );
+                let velocity = conditions.relative(at, &motion.forward);
+                self.slide(contact, &frame, (&forces[at], &velocity), [dt, least]);
             }
         }
+        self.before = Some((forces, gaps));
     }
 
-    /// The cone, and penetration.
-    fn press(&mut self, at: usize, contact: &ContactNode, frame: &Frame<D>, now: &Held<D>) {
-        let force = &now.reaction[at];
+    /// The cone, and penetration, from the gap at this instant (m).
+    fn press(&mut self, contact: &ContactNode, frame: &Frame<D>, force: &[f64; D], gap: Option<f64>) {
         let [slip, tension] = self.problem.obstacles()[contact.obstacle].law().excess(frame, force);
         let slip = if contact.guided { 0.0 } else { slip };
         let normal = frame.split(force).0;
         self.largest[0] = self.largest[0].max(normal);
         self.largest[1] = self.largest[1].max(slip).max(tension);
-        if contact.free && now.index > 0 {
-            let surface = self.problem.surface();
-            let gap = surface.gap(at, &surface.against_obstacle(at, &now.displacement));
+        if let Some(gap) = gap.filter(|gap| contact.free && gap.is_finite()) {
             self.largest[3] = self.largest[3].max(-gap);
             if normal > 0.0 {
                 let terms = [-gap * normal, normal * normal, gap * gap];
@@ -118,11 +138,11 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
     }
 
-    /// The gap at t_{n+1} under a force at t_n, or where the balance needs one.
+    /// The gap at t_{n+1} under a force at t_n, or where the balance needs one, with the path along the normal so far.
     fn gap(
         &mut self,
         at: usize,
-        (frame, place): (&Frame<D>, [f64; 2]),
+        (frame, place, path): (&Frame<D>, [f64; 2], f64),
         (force, needed): (&[f64; D], Option<[f64; D]>),
     ) {
         let (contact, [gap, _]) = (&self.problem.surface().nodes()[at], place);
@@ -132,25 +152,25 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             return;
         }
         let plane = &mut self.planes[contact.obstacle];
-        plane.forced.add(at, normal, place, contact.undeformed_gap);
+        plane.forced.add(at, normal, place, path);
         if *force == [0.0; D] {
             let needed = needed.map_or(0.0, |needed| frame.split(&needed).0.max(0.0));
-            plane.missing.add(at, needed, place, contact.undeformed_gap);
+            plane.missing.add(at, needed, place, path);
         }
     }
 
-    /// Touching status at t_{n+1} against the force at t_n; forces below `faint` (N) are none or any.
-    fn status(&mut self, window: Window<'_, D>, after: &Held<D>, at: usize, faint: f64) {
-        let force = &window.now.reaction[at];
+    /// Touching status at t_n and t_{n+1} against the force at t_n and the one before; forces below `faint` (N) are none
+    /// or any.
+    fn status(&mut self, [now, after]: [bool; 2], (force, before): (&[f64; D], Option<&[f64; D]>), faint: f64) {
         let disagree = |touches: bool, force: &[f64; D]| {
             usize::from(if touches { *force == [0.0; D] } else { norm(force) > faint })
         };
-        self.disagree[0] += disagree(after.touching[at], force);
-        self.disagree[1] += disagree(window.now.touching[at], force);
-        self.changes[0] += usize::from(after.touching[at] != window.now.touching[at]);
-        if let Some(before) = window.before {
-            self.disagree[2] += disagree(after.touching[at], &before.reaction[at]);
-            self.changes[1] += usize::from((norm(force) > faint) != (norm(&before.reaction[at]) > faint));
+        self.disagree[0] += disagree(after, force);
+        self.disagree[1] += disagree(now, force);
+        self.changes[0] += usize::from(after != now);
+        if let Some(before) = before {
+            self.disagree[2] += disagree(after, before);
+            self.changes[1] += usize::from((norm(force) > faint) != (norm(before) > faint));
         }
     }
 
@@ -196,10 +216,19 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         (normal > 0.0).then(|| (k, tangential / normal))
     }
 
+    /// What is wrong with forces on surfaces that slide.
+    pub(super) fn not_opposite(&self) -> String {
+        let surface = self.problem.surface();
+        let all = self.opposite.iter().zip(surface.sliding());
+        let worst = all.max_by(|(a, _), (b, _)| a.share().total_cmp(&b.share()));
+        worst.map_or(String::new(), |(opposite, sliding)| opposite.cause(surface, sliding))
+    }
+
     /// Enters the figures.
     pub(super) fn enter(&self, found: &mut Consistency) {
         let ([normal, excess, product, depth], size) = (self.largest, self.nearness.element);
         found.cone = super::ratio(excess, normal.max(excess));
+        found.opposite = self.opposite.iter().map(Opposite::share).reduce(f64::max);
         found.gap_under_force = super::ratio(product, normal * size);
         found.penetration = depth / size;
         let [product, force, path] = self.pressed;

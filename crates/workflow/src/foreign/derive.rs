@@ -1,19 +1,30 @@
 //! Contact forces and touching status that follow from displacements.
 
 use super::balance::{Balance, Terms, norm};
+use super::conditions::Conditions;
 use super::nearness::{ADDED, Nearness, rounding, unsure};
-use super::window::{Held, Window, windows};
+use super::window::{Window, windows};
 use percute_core::contact::{ContactNode, ContactSurface};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::problem::Problem;
 use percute_core::time::is_stable;
+use std::borrow::Cow;
 
 /// Contact forces below so many times the noise of the forces inside the body are noise.
 const ABOVE: f64 = 8.0;
 /// Noise changes the velocity of a node by at most this share of the largest in a step, unless it is rounding. Where
 /// inertia and stiffness do not fit each other, the forces inside the body are not small either.
 const LOUDEST: f64 = 1e-3;
+
+/// A contact force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Heard {
+    /// The position of its node in the contact surface.
+    pub(super) at: usize,
+    /// Its instant (s).
+    pub(super) time: f64,
+}
 
 /// Derives contact forces and touching status.
 pub(super) struct Derivation<'p, const D: usize, const N: usize> {
@@ -38,9 +49,14 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         self.balance.problem().surface()
     }
 
-    /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. Whether it
-    /// has any contact force.
-    pub(super) fn listen(&mut self, source: &dyn StepSource<D>) -> Result<bool, SinkError> {
+    /// The conditions of the step after an instant.
+    pub(super) fn conditions(&self, window: Window<'_, D>) -> Conditions<'p, D> {
+        Conditions::of(&self.balance, window)
+    }
+
+    /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. The first
+    /// contact forces at planes or between pairs of nodes, and the first between surfaces that slide.
+    pub(super) fn listen(&mut self, source: &dyn StepSource<D>) -> Result<[Option<Heard>; 2], SinkError> {
         let (mut inside, mut loudest) = (0.0_f64, 0.0_f64);
         windows(source, &mut |window| {
             let Some(motion) = self.balance.motion(window) else { return Ok(()) };
@@ -53,12 +69,16 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         if inside > 0.0 {
             self.noise = [ABOVE * inside, loudest];
         }
-        let mut any = false;
+        let mut heard = [None; 2];
         windows(source, &mut |window| {
-            any = any || self.reactions(window).is_some_and(|all| all.iter().any(|r| *r != [0.0; D]));
+            let forces = self.reactions(window).into_iter().flatten();
+            for (at, _) in forces.enumerate().filter(|(_, force)| *force != [0.0; D]) {
+                let slides = self.surface().sliding_of(at).is_some();
+                heard[usize::from(slides)].get_or_insert(Heard { at, time: window.now.time });
+            }
             Ok(())
         })?;
-        Ok(any)
+        Ok(heard)
     }
 
     /// The largest acceleration that the forces leave at a node that can touch no plane (m/s²).
@@ -82,10 +102,13 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         let curvature = self.stiffest + 4.0 / (self.balance.times().step(n) * self.balance.times().velocity_step(n));
         let [measured, loudest] = self.noise;
         let noise = measured.min(loudest.max(ADDED * unsure * curvature));
+        let (conditions, places, near) =
+            (self.conditions(window), self.places(window), self.nearness.tolerance(unsure));
         let of = |(at, contact): (usize, &ContactNode)| {
             let node = contact.node.index();
             let force = terms.rest(node);
-            let acts = contact.free && self.near(at, window, unsure) && norm(&force) > noise * problem.mass()[node];
+            let acts =
+                contact.free && conditions.nearest(at, &places) <= near && norm(&force) > noise * problem.mass()[node];
             if acts { force } else { [0.0; D] }
         };
         let mut all: Vec<_> = problem.surface().nodes().iter().enumerate().map(of).collect();
@@ -93,20 +116,18 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         Some(all)
     }
 
-    /// Whether a node is on its plane at t_n or t_{n+1}. The step of the solver after a sample is at most the critical
-    /// one.
-    fn near(&self, at: usize, window: Window<'_, D>, unsure: f64) -> bool {
-        let surface = self.balance.problem().surface();
+    /// The displacements at which a node that touches in the step after t_n may be on its plane: those of t_n and
+    /// t_{n+1}. The step of the solver after a sample is at most the critical one.
+    fn places<'w>(&self, window: Window<'w, D>) -> Vec<Cow<'w, [[f64; D]]>> {
         let (now, critical) = (window.now, 2.0 / self.stiffest.sqrt());
-        let sampled = !is_stable(self.balance.times().step(now.index), critical);
-        let on_its_way = now.velocity.as_ref().filter(|_| sampled).map(|velocity| {
-            let [u, v] = [&now.displacement, velocity].map(|field| surface.against_obstacle(at, field));
-            surface.gap(at, &std::array::from_fn(|c| u[c] + critical * v[c]))
-        });
         let held = [Some(now), window.after].into_iter().flatten();
-        let gaps =
-            held.map(|held| surface.gap(at, &surface.against_obstacle(at, &held.displacement))).chain(on_its_way);
-        gaps.into_iter().any(|gap| gap <= self.nearness.tolerance(unsure))
+        let mut places: Vec<Cow<'w, [[f64; D]]>> = held.map(|held| Cow::from(&held.displacement)).collect();
+        let sampled = !is_stable(self.balance.times().step(now.index), critical);
+        if let Some(velocity) = now.velocity.as_ref().filter(|_| sampled) {
+            let step = |(u, v): (&[f64; D], &[f64; D])| std::array::from_fn(|c| u[c] + critical * v[c]);
+            places.push(now.displacement.iter().zip(velocity).map(step).collect());
+        }
+        places
     }
 
     /// Whether a force at t_n is more than the rounding of a gap: it moves the node by more in the step.
@@ -119,43 +140,37 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
 
     /// Touching status at t_{n+1}: a force acts at t_n.
     pub(super) fn touching(&self, window: Window<'_, D>, reaction: &[[f64; D]]) -> Vec<bool> {
-        let unsure = unsure([Some(window.now), window.after]);
+        let (conditions, places) = (self.conditions(window), self.places(window));
+        let near = self.nearness.tolerance(unsure([Some(window.now), window.after]));
         let nodes = self.balance.problem().surface().nodes();
         let touches = |(at, force): (usize, &[f64; D])| {
-            nodes[at].free && self.acts(at, window.now.index, force) && self.near(at, window, unsure)
+            nodes[at].free && self.acts(at, window.now.index, force) && conditions.nearest(at, &places) <= near
         };
-        reaction.iter().enumerate().map(touches).collect()
+        let mut touching: Vec<bool> = conditions.forces(reaction).iter().enumerate().map(touches).collect();
+        conditions.settle_masters(&mut touching);
+        touching
     }
 
     /// Touching status at t_0: a node at rest on its plane on which a force acts.
-    pub(super) fn touching_at_start(&self, reaction: &[[f64; D]]) -> Vec<bool> {
-        let problem = self.balance.problem();
+    pub(super) fn touching_at_start(&self, window: Window<'_, D>, reaction: &[[f64; D]]) -> Vec<bool> {
+        let (problem, conditions) = (self.balance.problem(), self.conditions(window));
+        let starts = problem.starts_of_contact();
         let touches = |(at, force): (usize, &[f64; D])| {
-            let (gap, speed) = problem.start_of_contact(at);
+            let (gap, speed) = starts[at];
             self.acts(at, 0, force) && gap <= problem.contact_tolerance() && speed.abs() <= problem.speed_tolerance()
         };
-        reaction.iter().enumerate().map(touches).collect()
+        let mut touching: Vec<bool> = conditions.forces(reaction).iter().enumerate().map(touches).collect();
+        conditions.settle_masters(&mut touching);
+        touching
     }
 
     /// Whether a node goes into its plane in the step after the last, without contact forces.
-    pub(super) fn enters(&self, before: &Held<D>, now: &Held<D>) -> bool {
-        let (problem, times, n) = (self.balance.problem(), self.balance.times(), now.index);
-        let terms = self.balance.terms(now, &vec![[0.0; D]; now.displacement.len()]);
-        let (back, dt, h) = (times.step(n - 1), times.step(n), times.velocity_step(n));
+    pub(super) fn enters(&self, window: Window<'_, D>) -> bool {
+        let (problem, now) = (self.balance.problem(), window.now);
         let tolerance = problem.contact_tolerance().max(ADDED * rounding(&now.displacement));
-        let next = |node: usize| -> [f64; D] {
-            let (u, earlier, rest) = (&now.displacement[node], &before.displacement[node], terms.rest(node));
-            let speed = |c: usize| (u[c] - earlier[c]) / back - h * rest[c] / problem.mass()[node];
-            std::array::from_fn(|c| u[c] + dt * speed(c))
-        };
-        let surface = problem.surface();
-        surface.nodes().iter().enumerate().filter(|(_, contact)| contact.free).any(|(at, contact)| {
-            let mut u = next(contact.node.index());
-            if let Some(opposite) = contact.opposite {
-                let other = next(surface.nodes()[opposite].node.index());
-                (0..D).for_each(|c| u[c] -= other[c]);
-            }
-            surface.gap(at, &u) < -tolerance
-        })
+        let next = self.balance.predicted(window.before, now);
+        let conditions = self.conditions(window);
+        let free = problem.surface().nodes().iter().enumerate().filter(|(_, contact)| contact.free);
+        free.into_iter().any(|(at, _)| conditions.gap(at, &next) < -tolerance)
     }
 }

@@ -43,10 +43,10 @@ impl Gaps {
         Self { sums: [0.0; 8], nodes: vec![false; nodes] }
     }
 
-    /// Adds a gap and its place along the plane (m), of a node of the surface with a normal force (N).
-    pub(super) fn add(&mut self, node: usize, force: f64, [gap, along]: [f64; 2], undeformed: f64) {
-        let path = gap - undeformed;
-        let terms = [1.0, gap, gap * gap, undeformed * path, path * path, along, along * along, along * gap];
+    /// Adds a gap, its place along the plane, and the path along the normal to it (m), of a node of the surface with a
+    /// normal force (N).
+    pub(super) fn add(&mut self, node: usize, force: f64, [gap, along]: [f64; 2], path: f64) {
+        let terms = [1.0, gap, gap * gap, (gap - path) * path, path * path, along, along * along, along * gap];
         self.sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += force * force * term);
         self.nodes[node] |= force > 0.0;
     }

@@ -20,6 +20,8 @@ pub(super) const BALANCE: f64 = 1e-2;
 pub(super) const LONG_STEP: f64 = 5e-4;
 /// Limit of `initial_displacement`, a share of the body: single precision has 1e-7.
 pub(super) const PLACE: f64 = 1e-6;
+/// Limit of `opposite`: single precision has 1e-6.
+const OPPOSITE: f64 = 1e-2;
 /// Limit of `cone`: single precision has 1e-6.
 pub(super) const CONE: f64 = 1e-2;
 /// Limit of `gap_under_force` and `penetration`, in elements. The softest penalty of docs/recipes.md has 0.35, which
@@ -108,9 +110,15 @@ fn of_motion(found: &Consistency) -> [Option<Excess>; 5] {
 }
 
 /// Of contact forces against gaps, touching status and Coulomb's law.
-fn of_contact(found: &Consistency) -> [Option<Excess>; 6] {
+fn of_contact(found: &Consistency) -> [Option<Excess>; 7] {
     let slip = if is_off_contact(found) { f64::INFINITY } else { SLIP };
     [
+        excess(
+            found.opposite.unwrap_or(0.0),
+            OPPOSITE,
+            "opposite",
+            "the contact force on one of two surfaces that slide beyond that of their multipliers, over the sum of all,",
+        ),
         excess(
             found.plane,
             PLANE,

@@ -2,6 +2,7 @@
 
 use super::balance::{Balance, Motion, norm};
 use super::complete::Derived;
+use super::conditions::Conditions;
 use super::contact::Contact;
 use super::ends::Ends;
 use super::figures::Consistency;
@@ -109,7 +110,8 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
             self.evidence.residual.expect(FLIGHT * most / steps[1]);
             self.compare(window, motion);
         }
-        self.evidence.contact.take(window, motion.as_ref(), terms.as_ref(), steps);
+        let conditions = Conditions::of(&self.balance, window);
+        self.evidence.contact.take((window, &conditions), motion.as_ref(), terms.as_ref(), steps);
         if n == self.last {
             self.evidence.ends.end(&self.balance, window);
         }

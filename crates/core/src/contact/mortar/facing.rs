@@ -75,6 +75,33 @@ impl<'a, const D: usize> Facing<'a, D> {
         if matches!(place, Place::Slave(_)) { gap } else { -gap }
     }
 
+    /// Whether a node has a condition of contact of its own: of a slave it faces the master, of a master it has none.
+    #[must_use]
+    pub fn has_condition(&self, at: usize) -> bool {
+        match self.place(at) {
+            None => true,
+            Some((sliding, coupling, place)) => matches!(place, Place::Slave(_)) && faces(sliding, coupling, place),
+        }
+    }
+
+    /// The forces of these conditions (N), from those on the nodes: R_k = w_k λ_k of the multipliers of slaves, nothing
+    /// on masters, elsewhere the same. D and M are those of a step if this is at its predicted displacements.
+    #[must_use]
+    pub fn forces(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+        let mut forces = reaction.to_vec();
+        for (sliding, coupling) in self.surface.sliding().iter().zip(&self.couplings) {
+            sliding.gather(coupling, reaction, &mut forces);
+        }
+        forces
+    }
+
+    /// Masters touch where a node of their slave that touches acts on them.
+    pub fn settle_masters(&self, touching: &mut [bool]) {
+        for (sliding, coupling) in self.surface.sliding().iter().zip(&self.couplings) {
+            sliding.settle_master(coupling, touching);
+        }
+    }
+
     fn node(&self, side: &Side, node: usize) -> usize {
         self.surface.nodes()[side.position(node)].node.index()
     }

@@ -230,13 +230,6 @@ impl SlidingContact {
 
     /// The master touches where a node of the slave that touches acts on it.
     pub(crate) fn settle_master<const D: usize>(&self, surface: &ContactSurface<D>, touching: &mut [bool]) {
-        let sliding = &surface.sliding()[self.index];
-        let (slave, master) = (sliding.slave(), sliding.master());
-        (0..master.len()).for_each(|node| touching[master.position(node)] = false);
-        for k in 0..self.coupling.len() {
-            if touching[slave.position(k)] {
-                self.coupling.acts_on(k).for_each(|node| touching[master.position(node)] = true);
-            }
-        }
+        surface.sliding()[self.index].settle_master(&self.coupling, touching);
     }
 }

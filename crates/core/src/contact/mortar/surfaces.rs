@@ -125,6 +125,26 @@ impl<const D: usize> SlidingSurfaces<D> {
         (0..slave.len()).map(|node| std::array::from_fn(|c| components[c][node])).collect()
     }
 
+    /// Puts the forces of the multipliers, R_k = w_k λ_k on the slave and nothing on the master, in the place of those on
+    /// its nodes (N), by their positions in the contact surface. `coupling` is that of the predicted displacements.
+    pub fn gather(&self, coupling: &Coupling, reaction: &[[f64; D]], forces: &mut [[f64; D]]) {
+        self.positions().for_each(|at| forces[at] = [0.0; D]);
+        for (k, multiplier) in self.multipliers(coupling, reaction).iter().enumerate() {
+            forces[self.slave().position(k)] = multiplier.map(|value| coupling.weight(k) * value);
+        }
+    }
+
+    /// The master touches where a node of the slave that touches acts on it.
+    pub(super) fn settle_master(&self, coupling: &Coupling, touching: &mut [bool]) {
+        let (slave, master) = (self.slave(), self.master());
+        (0..master.len()).for_each(|node| touching[master.position(node)] = false);
+        for k in 0..coupling.len() {
+            if touching[slave.position(k)] {
+                coupling.acts_on(k).for_each(|node| touching[master.position(node)] = true);
+            }
+        }
+    }
+
     /// The tangential component of a field at a node of a side.
     pub(super) fn along(&self, surface: &ContactSurface<D>, side: &Side, node: usize, field: &[[f64; D]]) -> f64 {
         dot(&field[surface.nodes()[side.position(node)].node.index()], &self.tangent)

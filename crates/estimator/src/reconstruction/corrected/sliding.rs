@@ -51,8 +51,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         let (surface, step) = (self.problem.surface(), state.step());
         let mut forces = step.reaction.to_vec();
         for sliding in surface.sliding() {
-            let positions = || sliding.positions();
-            if positions().all(|at| step.reaction[at] == [0.0; D]) {
+            if sliding.positions().all(|at| step.reaction[at] == [0.0; D]) {
                 continue;
             }
             // D and M of the step are those of the place at its end without contact.
@@ -69,11 +68,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             };
             let shifts = sliding.shifts(|k| predicted(sliding.slave(), k), |k| predicted(sliding.master(), k));
             let coupling = sliding.coupling_at(&shifts);
-            let multipliers = sliding.multipliers(&coupling, step.reaction);
-            positions().for_each(|at| forces[at] = [0.0; D]);
-            for (k, multiplier) in multipliers.iter().enumerate() {
-                forces[sliding.slave().position(k)] = multiplier.map(|value| coupling.weight(k) * value);
-            }
+            sliding.gather(&coupling, step.reaction, &mut forces);
         }
         forces
     }

@@ -1,0 +1,58 @@
+//! The conditions of contact at a step: at planes and of pairs those of the nodes, of surfaces that slide those of the
+//! multipliers of the slave, with weighted gaps and motions.
+
+use super::balance::Balance;
+use super::window::Window;
+use percute_core::contact::Facing;
+use std::borrow::Cow;
+
+/// The conditions of the step after an instant, by their positions in the contact surface.
+#[derive(Clone, Debug)]
+pub(super) struct Conditions<'p, const D: usize> {
+    /// With D and M of the step.
+    facing: Facing<'p, D>,
+}
+
+impl<'p, const D: usize> Conditions<'p, D> {
+    /// Of the step after `window.now`.
+    pub(super) fn of<const N: usize>(balance: &Balance<'p, D, N>, window: Window<'_, D>) -> Self {
+        let surface = balance.problem().surface();
+        // Elsewhere nothing depends on the place.
+        let facing = if surface.sliding().is_empty() {
+            surface.facing(&[])
+        } else {
+            surface.facing(&balance.predicted(window.before, window.now))
+        };
+        Self { facing }
+    }
+
+    /// Whether there is one at a node of the surface.
+    pub(super) fn holds(&self, at: usize) -> bool {
+        self.facing.has_condition(at)
+    }
+
+    /// The forces that they are about (N), from those on the nodes.
+    pub(super) fn forces(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+        self.facing.forces(reaction)
+    }
+
+    /// The gap of one (m) with these displacements of all nodes; infinite where there is none.
+    pub(super) fn gap(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
+        if self.holds(at) { self.facing.gap(at, displacement) } else { f64::INFINITY }
+    }
+
+    /// The smallest of its gaps (m) with these.
+    pub(super) fn nearest(&self, at: usize, displacements: &[Cow<'_, [[f64; D]]>]) -> f64 {
+        displacements.iter().map(|displacement| self.gap(at, displacement)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A nodal field against what the node faces.
+    pub(super) fn relative(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
+        self.facing.relative(at, field)
+    }
+
+    /// Gives masters the status that follows from that of their slaves.
+    pub(super) fn settle_masters(&self, touching: &mut [bool]) {
+        self.facing.settle_masters(touching);
+    }
+}
