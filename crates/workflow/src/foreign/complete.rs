@@ -167,9 +167,9 @@ fn forces_missing<const D: usize>(surface: &ContactSurface<D>, heard: Heard) -> 
     let sliding = surface.sliding_of(heard.at).map(|index| &surface.sliding()[index]);
     let groups = sliding.map(|sliding| groups(surface, sliding).join(" and "));
     format!(
-        "`reaction` is missing: the contact forces between {}, whose nodes do not face each other or slide, are not \
-         derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, or \
-         simulate with percute",
+        "`reaction` is missing: the contact forces between {}, which slide or whose nodes do not face each other, are \
+         not derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, \
+         or simulate with percute",
         groups.unwrap_or_default(),
         trimmed(heard.time, 5)
     )

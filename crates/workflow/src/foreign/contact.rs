@@ -7,7 +7,7 @@ use super::gaps::Gaps;
 use super::nearness::{ADDED, Nearness, unsure};
 use super::opposite::Opposite;
 use super::window::Window;
-use percute_core::contact::{ContactNode, Frame};
+use percute_core::contact::{ContactNode, Frame, SlidingSurfaces};
 use percute_core::problem::Problem;
 
 /// A force that changes the velocity of its node by less than this share of the largest in a step may be rounding.
@@ -78,7 +78,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
     }
 
-    /// Takes in an instant with its conditions, its motion in a step of Δt (s) with h (s), and the terms of its balance.
+    /// Takes in an instant with its conditions, its motion in a step of Δt (s) with h (s), and the terms of its
+    /// balance.
     pub(super) fn take(
         &mut self,
         (window, conditions): (Window<'_, D>, &Conditions<'_, D>),
@@ -159,8 +160,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
     }
 
-    /// Touching status at t_n and t_{n+1} against the force at t_n and the one before; forces below `faint` (N) are none
-    /// or any.
+    /// Touching status at t_n and t_{n+1} against the force at t_n and the one before; forces below `faint` (N) are
+    /// none or any.
     fn status(&mut self, [now, after]: [bool; 2], (force, before): (&[f64; D], Option<&[f64; D]>), faint: f64) {
         let disagree = |touches: bool, force: &[f64; D]| {
             usize::from(if touches { *force == [0.0; D] } else { norm(force) > faint })
@@ -214,6 +215,12 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let (k, plane) = planes.max_by(|(_, a), (_, b)| a.misfit().abs().total_cmp(&b.misfit().abs()))?;
         let [_, normal, tangential] = plane.slide;
         (normal > 0.0).then(|| (k, tangential / normal))
+    }
+
+    /// Whether a force acts on surfaces that slide.
+    pub(super) fn slides(&self) -> bool {
+        let mut positions = self.problem.surface().sliding().iter().flat_map(SlidingSurfaces::positions);
+        positions.any(|at| self.forced[at])
     }
 
     /// What is wrong with forces on surfaces that slide.

@@ -117,7 +117,7 @@ fn of_contact(found: &Consistency) -> [Option<Excess>; 7] {
             found.opposite.unwrap_or(0.0),
             OPPOSITE,
             "opposite",
-            "the contact force on one of two surfaces that slide beyond that of their multipliers, over the sum of all,",
+            "the contact force on one of two surfaces that slide, beyond that of their multipliers, over all forces,",
         ),
         excess(
             found.plane,

@@ -139,7 +139,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     let of_steps = ["velocity", "touching", "slip", "plane", "gap_under_force"];
     exceeded.retain(|excess| samples.is_none() || !of_steps.contains(&excess.name));
     let touches = evidence.contact.forced.contains(&true);
-    let lacking = lacking(source, &found, (evidence.given, touches), critical);
+    let lacking = lacking(source, &found, (evidence.given, [touches, evidence.contact.slides()]), critical);
     if accept {
         let accepted = lacking.is_some() || !exceeded.is_empty();
         return Ok(Found { consistency: found, samples, shifted: None, accepted });

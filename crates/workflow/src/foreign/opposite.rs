@@ -52,8 +52,8 @@ impl Opposite {
             );
         }
         format!(
-            "the contact forces on {slave} and on {master} are not opposite: give the force on each node of both surfaces, \
-             as it acts on that node"
+            "the contact forces on {slave} and on {master} are not opposite: give the force on each node of both \
+             surfaces, as it acts on that node"
         )
     }
 }
@@ -64,4 +64,75 @@ pub(super) fn groups<const D: usize>(surface: &ContactSurface<D>, sliding: &Slid
         let obstacle = surface.nodes()[side.position(0)].obstacle;
         format!("\"{}\"", surface.obstacles()[obstacle].group().unwrap_or_default())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::contact::Interface;
+    use percute_core::material::Elastic;
+    use percute_core::mesh::TriangleMesh;
+    use percute_core::problem::TriangleProblem;
+    use percute_testkit::translated;
+
+    /// A block on another one, of which it covers a half.
+    fn problem() -> TriangleProblem {
+        let lower = TriangleMesh::rectangle(0.04, 0.025, 8, 2).unwrap();
+        let upper = translated(&TriangleMesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
+        let mesh = TriangleMesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
+        let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
+        let interface = Interface::sliding::<2>("lower.top", "upper.bottom", 0.2).unwrap();
+        TriangleProblem::builder(mesh).material(material).interface(interface).build().unwrap()
+    }
+
+    /// The figure, and what is told, of multipliers of 3 N/m everywhere, after a change of the force on each node: with
+    /// whether it has a condition, and whether it is on the slave.
+    fn measured(change: impl Fn(&mut [f64; 2], bool, bool)) -> (f64, String) {
+        let problem = problem();
+        let surface = problem.surface();
+        let (sliding, still) = (&surface.sliding()[0], vec![[0.0; 2]; problem.mesh().node_count()]);
+        let (coupling, facing) = (sliding.coupling(surface, &still), surface.facing(&still));
+        let mut reaction = vec![[0.0; 2]; surface.nodes().len()];
+        for k in (0..coupling.len()).filter(|&k| coupling.is_active(k)) {
+            for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
+                reaction[sliding.slave().position(k + at - 1)][1] += 3.0 * part;
+            }
+            let (first, row) = coupling.master_row(k);
+            row.iter()
+                .enumerate()
+                .for_each(|(at, part)| reaction[sliding.master().position(first + at)][1] -= 3.0 * part);
+        }
+        for (at, force) in reaction.iter_mut().enumerate() {
+            change(force, facing.has_condition(at), sliding.slave().node_at(at).is_some());
+        }
+        let mut opposite = Opposite::default();
+        opposite.take(sliding, &reaction, &facing.forces(&reaction));
+        (opposite.share(), opposite.cause(surface, sliding))
+    }
+
+    #[test]
+    fn forces_of_multipliers_are_opposite() {
+        // Rounding of a sum of ten forces.
+        assert!(measured(|_, _, _| {}).0 < 1e-15);
+        assert!(measured(|force, _, _| *force = force.map(|x| 7.0 * x)).0 < 1e-15);
+    }
+
+    #[test]
+    fn a_side_without_forces_and_forces_that_face_nothing_are_told_of() {
+        // Without one side, the sum of the other is all there is.
+        for missing in [false, true] {
+            let (share, told) = measured(|force, _, of_slave| {
+                if of_slave == missing {
+                    *force = [0.0; 2];
+                }
+            });
+            assert!((share - 1.0).abs() < 1e-12 && told.contains("are not opposite"), "{share} {told}");
+        }
+        let (share, told) = measured(|force, acts, of_slave| {
+            if of_slave && !acts {
+                force[1] = 0.01;
+            }
+        });
+        assert!(share > 0.1 && told.contains("that do not face \"lower.top\""), "{share} {told}");
+    }
 }

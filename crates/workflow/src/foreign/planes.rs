@@ -15,16 +15,18 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>,
         let normal = suspect.problem.obstacles()[k].flat_frame();
         let turned = turned(normal.normal(), slope.atan());
         return Some(format!(
-            "the `normal` of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be \
-             {turned}, and the nodes are {place} m {side} the plane on average",
+            "{} of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be \
+             {turned}, and the nodes are {place} m {side} {which} on average",
+            told(suspect, k, "normal"),
             trimmed(slope.atan().abs(), 4)
         ));
     }
     let side = if gap > 0.0 { "above" } else { "below" };
     let (away, turn) = (trimmed(gap.abs(), 4), of_friction(suspect));
     Some(format!(
-        "the `point` of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} \
-         m along its normal{turn}",
+        "{} of {which} is off by {away} m: nodes under force are {away} m {side} it on average; move it by {} m along \
+         its normal{turn}",
+        told(suspect, k, "point"),
         trimmed(gap, 4)
     ))
 }
@@ -47,6 +49,15 @@ fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> S
     misfit.map_or(String::new(), |misfit| {
         format!(". Or its `normal` is off: where nodes slide, the friction is off by {}, too", percent(misfit))
     })
+}
+
+/// The key of a plane, or the same of a surface.
+fn told<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize, key: &str) -> String {
+    match suspect.problem.obstacles()[k].as_plane() {
+        Some(_) => format!("the `{key}`"),
+        None if key == "point" => "the place (`origin` of its body)".to_string(),
+        None => "the direction (`rotation` of its body)".to_string(),
+    }
 }
 
 /// A plane, for messages.

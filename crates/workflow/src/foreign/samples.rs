@@ -46,24 +46,26 @@ impl Samples {
 }
 
 /// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in
-/// long steps.
+/// long steps. Where surfaces that slide have contact forces, velocities and accelerations are not enough.
 pub(super) fn lacking<const D: usize>(
     source: &dyn StepSource<D>,
     found: &Consistency,
-    (given, touches): ([bool; 2], bool),
+    (given, [touches, slides]): ([bool; 2], [bool; 2]),
     critical: f64,
 ) -> Option<(String, String)> {
     let (times, distance) = (source.times(), source.times().longest_step());
-    if given == [true; 2] {
+    let whole = given == [true; 2];
+    if whole && !slides {
         return None;
     }
     let long = (0..times.step_count()).filter(|&n| times.step(n) > SAMPLED * critical).count();
     // A few long steps are steps, or instants are missing there: the balance tells.
     let flight = !touches && found.balance.max(found.initial_velocity) <= BALANCE;
-    // An instant between two others has a balance.
-    let exact = found.balance <= EXACT && source.count() > 2;
+    // An instant between two others has a balance; that of given accelerations says nothing about steps.
+    let exact = found.balance <= EXACT && source.count() > 2 && !whole;
     let beyond = 2 * long > times.step_count() && !exact && !flight;
-    let differs = found.acceleration.filter(|differs| given[1] && *differs > BALANCE && found.balance <= BALANCE);
+    let differs = |differs: &f64| given == [false, true] && *differs > BALANCE && found.balance <= BALANCE;
+    let differs = found.acceleration.filter(differs);
     if !beyond && differs.is_none() {
         return None;
     }
@@ -76,12 +78,18 @@ pub(super) fn lacking<const D: usize>(
     let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
     let text = format!(
         "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or \
-         more), or give {} too, at most {GOOD} critical steps apart for a good estimate ({} instants or more); or \
-         `time` is not in seconds",
+         more){}; or `time` is not in seconds",
         trimmed(critical, 4),
         instants(critical),
-        missing(given),
-        instants(GOOD * critical)
+        if slides {
+            ", since contact forces of surfaces that slide are not derived between samples".to_string()
+        } else {
+            let (needs, count) = (missing(given), instants(GOOD * critical));
+            format!(
+                ", or give {needs} too, at most {GOOD} critical steps apart for a good estimate ({count} instants or \
+                 more)"
+            )
+        }
     );
     Some((figure, text))
 }

@@ -3,10 +3,12 @@
 
 use super::axes::{READINGS, read};
 use super::balance::{Balance, dot};
+use super::opposite::groups;
 use super::suspect::Suspect;
 use super::tried::Tried;
 use super::window::windows;
 use crate::message::times;
+use percute_core::contact::{ContactSurface, Side, SlidingSurfaces};
 use percute_core::history::SinkError;
 
 /// On larger surfaces, orders of the rows are not searched: their products take too much memory.
@@ -71,7 +73,9 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
         left: ((rest - own + left).max(0.0) / size).sqrt(),
     };
     let nodes: Vec<usize> = suspect.problem.surface().nodes().iter().map(|contact| contact.node.index()).collect();
-    let parts = PARTS.iter().zip(needed.parts).filter_map(|(part, products)| part.tried(products, own));
+    let parts =
+        sides(suspect.problem.surface(), &needed).into_iter().chain(Part::of_each().into_iter().zip(needed.parts));
+    let parts = parts.filter_map(|(part, products)| part.tried(products, own));
     let mut all: Vec<Tried> = parts.map(|(text, left)| tried(text, left)).collect();
     all.extend(READINGS.iter().zip(needed.read).map(|(text, both)| tried(text.to_string(), needed.without(both))));
     all.extend(known(&nodes).into_iter().map(|(text, of)| tried(text, needed.left(&of))));
@@ -105,38 +109,70 @@ fn known(nodes: &[usize]) -> Vec<(String, Vec<usize>)> {
     told.into_iter().filter(|told| told.2 != own).map(|(order, give, of)| (text(order, give), of)).collect()
 }
 
-/// The tangential or the normal part of contact forces, for messages.
+/// A part of the contact forces, for messages.
 struct Part {
-    name: &'static str,
+    /// What they are.
+    forces: String,
+    /// What to do if there are none.
+    none: String,
+    /// What is right if they have the wrong sign.
     sign: &'static str,
 }
 
-const PARTS: [Part; 2] = [
-    Part { name: "tangential", sign: "act on the body, against its sliding" },
-    Part { name: "normal", sign: "push the body off the planes" },
-];
-
 impl Part {
+    /// The tangential and the normal parts.
+    fn of_each() -> [Self; 2] {
+        let part = |name: &str, sign| Self {
+            forces: format!("the {name} contact forces"),
+            none: format!("the contact forces have no {name} parts: give pressure and friction together"),
+            sign,
+        };
+        [
+            part("tangential", "they act on the body, against its sliding"),
+            part("normal", "they push the body off the planes"),
+        ]
+    }
+
+    /// The forces on one of two surfaces that slide.
+    fn on(group: &str) -> Self {
+        let give = "give the force on each node of both surfaces, as it acts on that node";
+        let forces = format!("the contact forces on {group}");
+        Self { none: format!("{forces} are missing: {give}"), forces, sign: give }
+    }
+
     /// Forces whose part is left out, or needs a factor, with the square of what is left.
     fn tried(&self, [given, wanted, both]: [f64; 3], own: f64) -> Option<(String, f64)> {
-        let (Self { name, sign }, misfit) = (self, given + wanted - 2.0 * both);
+        let (Self { forces, none, sign }, misfit) = (self, given + wanted - 2.0 * both);
         if misfit <= 0.0 {
             return None;
         }
         if given <= NONE * wanted {
-            return Some((
-                format!("the contact forces have no {name} parts: give pressure and friction together"),
-                own - misfit,
-            ));
+            return Some((none.clone(), own - misfit));
         }
         let factor = both / given;
         let text = if (factor + 1.0).abs() < 0.02 {
-            format!("the {name} contact forces have the wrong sign: they {sign}")
+            format!("{forces} have the wrong sign: {sign}")
         } else {
-            format!("the {name} contact forces should be {} as large", times(factor))
+            format!("{forces} should be {} as large", times(factor))
         };
         Some((text, own - misfit + (wanted - factor * both)))
     }
+}
+
+/// The forces on each of two surfaces that slide, with their sums: given, needed, and their product.
+fn sides<const D: usize>(surface: &ContactSurface<D>, needed: &Needed) -> Vec<(Part, [f64; 3])> {
+    let of_side = |(group, side): (&String, &Side)| {
+        let sums = (side.position(0)..side.position(side.len())).fold([0.0; 3], |[given, wanted, both], row| {
+            let product = needed.both[row * needed.count + row];
+            [given + needed.given[row], wanted + needed.needed[row], both + product]
+        });
+        (Part::on(group), sums)
+    };
+    let of_both = |sliding: &SlidingSurfaces<D>| {
+        let groups = groups(surface, sliding);
+        [(&groups[0], sliding.slave()), (&groups[1], sliding.master())].map(of_side)
+    };
+    surface.sliding().iter().flat_map(of_both).collect()
 }
 
 fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Needed, SinkError> {

@@ -125,8 +125,8 @@ impl<const D: usize> SlidingSurfaces<D> {
         (0..slave.len()).map(|node| std::array::from_fn(|c| components[c][node])).collect()
     }
 
-    /// Puts the forces of the multipliers, R_k = w_k λ_k on the slave and nothing on the master, in the place of those on
-    /// its nodes (N), by their positions in the contact surface. `coupling` is that of the predicted displacements.
+    /// Puts the forces of the multipliers, R_k = w_k λ_k on the slave and nothing on the master, in the place of those
+    /// on the nodes (N), by their positions in the contact surface. `coupling` is that of the predicted displacements.
     pub fn gather(&self, coupling: &Coupling, reaction: &[[f64; D]], forces: &mut [[f64; D]]) {
         self.positions().for_each(|at| forces[at] = [0.0; D]);
         for (k, multiplier) in self.multipliers(coupling, reaction).iter().enumerate() {
