@@ -16,8 +16,10 @@ from typing import Any
 import numpy as np
 import percute as pc
 
-FIGURES = ("balance", "initial_velocity", "cone", "slip", "gap_under_force", "penetration", "plane", "touching")
-ARRAYS = tuple(product(("float64", "float32"), ("with forces", "forces derived")))
+FIGURES = ("balance", "initial_velocity", "cone", "slip", "gap_under_force", "penetration", "opposite", "plane", "touching")
+KINDS = ("float64", "float32")
+ARRAYS = tuple(product(KINDS, ("with forces", "forces derived")))
+SLIDING = tuple(product(KINDS, ("surfaces that slide",)))
 END, GAP, FASTEST = 13e-6, 2e-4, 400.0
 """Time (s) and gap (m) at the largest speed (m/s); slower bodies start nearer."""
 
@@ -54,20 +56,40 @@ def problem(mesh: pc.Mesh, speed: float, friction: float) -> pc.Problem:
     return pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(speed, -speed))
 
 
+def blocks(speed: float, friction: float) -> pc.Problem:
+    """Give a block that slides onto another one, and closes at a tenth of the speed: their nodes do not face each other."""
+    law = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    lower = pc.Body(name="lower", mesh=pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=5), material=law)
+    mesh, closing = pc.Mesh.rectangle(0.04, 0.025, nx=9, ny=5), 0.1 * speed
+    place = (0.012, 0.025 + GAP * closing / FASTEST)
+    upper = pc.Body(name="upper", mesh=mesh, material=law, origin=place, velocity=(-speed, -closing))
+    return pc.Problem(bodies=[lower, upper], contacts=[pc.Interface(friction=friction)])
+
+
+def simulated(stated: pc.Problem, courant: float) -> pc.History:
+    """Simulate with equal steps."""
+    steps = max(2, round(END / (courant * stated.critical_time_step)))
+    return pc.simulate(stated, steps=[courant * stated.critical_time_step] * steps)
+
+
 def histories(cases: Cases) -> Iterator[pc.History]:
-    """Simulate each case."""
+    """Simulate each case on planes."""
     for mesh in bodies().values():
         friction = cases.friction if mesh.dimension == 2 else (0.0,)
         for speed, coefficient, courant in product(cases.speeds, friction, cases.courant):
-            stated = problem(mesh, speed, coefficient)
-            steps = max(2, round(END / (courant * stated.critical_time_step)))
-            yield pc.simulate(stated, steps=[courant * stated.critical_time_step] * steps)
+            yield simulated(problem(mesh, speed, coefficient), courant)
+
+
+def of_blocks(cases: Cases) -> Iterator[pc.History]:
+    """Simulate each case of two blocks."""
+    for speed, coefficient, courant in product(cases.speeds, cases.friction, cases.courant):
+        yield simulated(blocks(speed, coefficient), courant)
 
 
 def figures(history: pc.History, kind: str, forces: str) -> dict[str, float]:
     """Give the figures of a history as another program would have stored it; it must not be refused."""
     arrays: dict[str, Any] = {"displacement": history.displacement.astype(kind)}
-    if forces == "with forces":
+    if forces != "forces derived":
         arrays["reaction"] = history.reaction.astype(kind)
     given = pc.History.from_arrays(history.problem, history.time.astype(kind), **arrays)
     estimate = pc.estimate(given, every=len(history))
@@ -79,15 +101,16 @@ def figures(history: pc.History, kind: str, forces: str) -> dict[str, float]:
 
 def table(cases: Cases) -> tuple[dict[tuple[str, str], dict[str, float]], int]:
     """Give the largest figures of all histories for each kind of arrays, and the number of histories."""
-    largest = {key: dict.fromkeys(FIGURES, 0.0) for key in ARRAYS}
+    largest = {key: dict.fromkeys(FIGURES, 0.0) for key in (*ARRAYS, *SLIDING)}
     count = 0
-    for history in histories(cases):
-        for key in ARRAYS:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", pc.InputWarning)
-                found = figures(history, *key)
-            largest[key] = {name: max(value, found[name]) for name, value in largest[key].items()}
-            count += 1
+    for all_of, keys in ((histories(cases), ARRAYS), (of_blocks(cases), SLIDING)):
+        for history in all_of:
+            for key in keys:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore", pc.InputWarning)
+                    found = figures(history, *key)
+                largest[key] = {name: max(value, found[name]) for name, value in largest[key].items()}
+                count += 1
     return largest, count
 
 

@@ -90,7 +90,12 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let (problem, now) = (self.problem, window.now);
         self.unsure = self.unsure.max(unsure([Some(now)]));
         let speed = motion.map_or(0.0, Motion::speed);
-        let (faint, least) = (FAINT * speed / h, SLIDING * speed);
+        let least = SLIDING * speed;
+        // Status is derived without forces that move a node by rounding.
+        let rounding = problem.contact_tolerance() / (dt * h);
+        let faint = |at: usize, mass: f64| {
+            (FAINT * speed / h * mass).max(rounding * problem.surface().moved_mass(at, problem.mass()))
+        };
         let (forces, before) = (conditions.forces(&now.reaction), self.before.take());
         for (opposite, sliding) in self.opposite.iter_mut().zip(problem.surface().sliding()) {
             opposite.take(sliding, &now.reaction, &forces);
@@ -114,7 +119,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
                 self.status(
                     [now, after].map(|held| held.touching[at]),
                     (&forces[at], earlier),
-                    faint * problem.mass()[node],
+                    faint(at, problem.mass()[node]),
                 );
                 let velocity = conditions.relative(at, &motion.forward);
                 self.slide(contact, &frame, (&forces[at], &velocity), [dt, least]);
