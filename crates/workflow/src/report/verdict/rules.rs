@@ -46,7 +46,7 @@ const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 const ACUTE: f64 = 59.9;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 26] = [
+pub(super) const RULES: [Rule; 27] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
