@@ -2,8 +2,10 @@
 
 use super::outline::{Outline, Vector};
 
-/// Bodies that are nearer than this part of the largest coordinate touch.
+/// Bodies that are nearer than this part of the larger one touch, wherever the origin is.
 const TOUCHES: f64 = 1e-12;
+/// Smaller parts of a speed, and of a time, are rounding.
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Two bodies that a straight line separates.
 #[derive(Debug, PartialEq)]
@@ -27,8 +29,7 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
     let gaps: Vec<f64> = normals.iter().map(gap).collect();
     let widest = (0..gaps.len()).reduce(|a, b| if gaps[b] > gaps[a] { b } else { a })?;
-    let far = |p: &Vector| p.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let tolerance = TOUCHES * first.hull.iter().chain(&second.hull).map(far).fold(0.0, f64::max);
+    let tolerance = TOUCHES * first.size.max(second.size);
     if gaps[widest] < -tolerance {
         return None;
     }
@@ -36,14 +37,17 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
         // They touch: whatever moves them, there is contact.
         return Some(Approach { normal: normals[widest], gap: 0.0, meeting: Some((normals[widest], 0.0)) });
     }
+    let speed = relative[0].hypot(relative[1]);
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
     for (k, (normal, &gap)) in normals.iter().zip(&gaps).enumerate() {
         let closing = -dot(&relative, normal);
+        let closing = if closing.abs() > ROUNDING * speed { closing } else { 0.0 };
         match gap > 0.0 {
             true => {
                 let time = if closing > 0.0 { gap / closing } else { f64::INFINITY };
                 // Of several at once, the one along which they are further apart.
-                if time > latest.0 || (time == latest.0 && gap > gaps[latest.1]) {
+                let [before, after] = [1.0 - ROUNDING, 1.0 + ROUNDING].map(|part| part * latest.0);
+                if time > after || (time >= before && gap > gaps[latest.1]) {
                     latest = (time, k);
                 }
             }
@@ -79,7 +83,7 @@ mod tests {
     fn square(corner: Vector, side: f64, velocity: Vector) -> Outline {
         let [x, y] = corner;
         let hull = vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
-        Outline { name: String::new(), edges: Vec::new(), hull, velocity, passage: 1.0 }
+        Outline { name: String::new(), edges: Vec::new(), hull, velocity, size: side * 2.0_f64.sqrt(), passage: 1.0 }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::outline::{Edge, Outline, Vector};
 
 /// Edges that face another body: the cosine of their outward normal and the direction of that body.
 const FACES: f64 = 0.5;
-/// Bodies that are nearer than this part of their size touch.
+/// Lengths below this part of the size of a body, or of an edge, are rounding, wherever the origin is.
 const TOUCH: f64 = 1e-9;
 
 /// All bodies as they are at a time, seen along a direction.
@@ -111,7 +111,7 @@ impl<'o> View<'o> {
                 let Some(distance) = self.seen(body, edge, towards).eta_at(xi).map(|found| found - eta) else {
                     continue;
                 };
-                let room = TOUCH * (eta.abs() + distance.abs());
+                let room = TOUCH * outline.size.max(self.outlines[own].size);
                 if distance >= -room && nearest.is_none_or(|(_, least)| distance < least) {
                     nearest = Some((body, distance.max(0.0)));
                 }

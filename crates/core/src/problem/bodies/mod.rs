@@ -15,7 +15,7 @@ pub use contact::{Between, Contact};
 
 use super::Cause;
 use crate::ids::{FacetId, NodeId};
-use approach::{Approach, approach, dot};
+use approach::{Approach, ROUNDING, approach, dot};
 use facing::{Facing, View};
 use outline::{Edge, Outline, Vector};
 pub(super) use outline::{Start, outlines};
@@ -178,6 +178,11 @@ impl Candidates<'_> {
     }
 }
 
+/// Whether a length is less than another one by more than rounding, wherever the origin is.
+fn less(length: f64, other: f64) -> bool {
+    length < (1.0 - ROUNDING) * other
+}
+
 fn length(edge: &Edge) -> f64 {
     let [a, b] = edge.ends;
     (a[0] - b[0]).hypot(a[1] - b[1])
@@ -217,7 +222,7 @@ impl Shared {
                 let edge = &outlines[body].edges[at];
                 for other in edge.nodes.iter().filter_map(|node| owner.get(node).copied()).filter(|&other| other < k) {
                     // The earlier pair is nearer.
-                    let both = distance < length(edge) || all[k].meets_with(&all[other]);
+                    let both = less(distance, length(edge)) || all[k].meets_with(&all[other]);
                     if both && all[k].shares(&all[other], side) {
                         self.add(k, other, body);
                     }
@@ -244,7 +249,7 @@ fn claimed(
             let is_other = |node: &NodeId| owner.get(node).is_some_and(|&of| !shared.contains(k, of));
             let other = |at: usize| edges[at].nodes.iter().find(|node| is_other(node));
             // Two bodies that are both about to touch an edge would need a node at two surfaces.
-            let near = |at: usize, distance: f64| meets.is_some() && distance < length(&edges[at]);
+            let near = |at: usize, distance: f64| meets.is_some() && less(distance, length(&edges[at]));
             let contested = |&&(at, distance): &&(usize, f64)| near(at, distance) && other(at).is_some();
             if let Some(&(at, _)) = side.seeing.iter().find(contested) {
                 let bodies = Box::new(wanted.pair.map(|body| outlines[body].name.clone()));
@@ -260,7 +265,7 @@ fn claimed(
         let (room, Candidates { at, wanted, slide, sides, .. }) = (candidates.room(outlines), candidates);
         let beside = [0, 1].map(|side| {
             let edges = &outlines[wanted.pair[side]].edges;
-            let near = sides[side].beside.iter().filter(|(_, aside)| *aside <= room).map(|&(at, _)| &edges[at]);
+            let near = sides[side].beside.iter().filter(|(_, aside)| !less(room, *aside)).map(|&(at, _)| &edges[at]);
             let mut chosen = Vec::new();
             for edge in near {
                 if edge.nodes.iter().all(|node| owner.get(node).is_none_or(|&of| shared.contains(k, of))) {
@@ -310,7 +315,7 @@ impl Ways {
     /// The direction and the time (s) at which to look at two bodies; none if no straight line separates them.
     fn view(&self, [a, b]: [usize; 2]) -> Option<(Vector, f64, &Approach)> {
         let way = self.of_pair.get(&[a.min(b), a.max(b)])?.as_ref()?;
-        let reliable = |time: f64| time <= self.first[a] && time <= self.first[b];
+        let reliable = |time: f64| [a, b].iter().all(|&body| time <= (1.0 + ROUNDING) * self.first[body]);
         let (normal, time) = way.meeting.filter(|(_, time)| reliable(*time)).unwrap_or((way.normal, 0.0));
         Some((if a < b { normal } else { normal.map(|x| -x) }, time, way))
     }

@@ -26,6 +26,8 @@ pub(in crate::problem) struct Outline {
     pub(in crate::problem) hull: Vec<Vector>,
     /// Velocity of the centre of mass at the start (m/s).
     pub(in crate::problem) velocity: Vector,
+    /// The largest distance of two of its points (m).
+    pub(in crate::problem) size: f64,
     /// How long a wave takes from end to end (s).
     pub(in crate::problem) passage: f64,
 }
@@ -80,7 +82,7 @@ pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
         let size = hull.iter().map(apart).fold(0.0, f64::max);
         let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
-        Outline { name, edges, hull, velocity, passage: size / slowest }
+        Outline { name, edges, hull, velocity, size, passage: size / slowest }
     };
     names.into_iter().zip(edges).enumerate().map(outline).collect()
 }
@@ -89,16 +91,22 @@ fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {
     [vector[0], vector.get(1).copied().unwrap_or(0.0)]
 }
 
+/// Corners that turn by a smaller sine lie on a straight side: far from the origin, coordinates are rounded more.
+const STRAIGHT: f64 = 1e-9;
+
 /// The corners of the convex hull of some points, counterclockwise.
 fn hull(mut points: Vec<Vector>) -> Vec<Vector> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
-    let turns = |a: &Vector, b: &Vector, c: &Vector| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let turns = |a: &Vector, b: &Vector, c: &Vector| {
+        let ([x, y], [v, w]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        x * w - y * v > STRAIGHT * x.hypot(y) * v.hypot(w)
+    };
     let half = |points: &mut dyn Iterator<Item = &Vector>| {
         let mut chain: Vec<Vector> = Vec::new();
         for point in points {
             while let [.., a, b] = chain.as_slice()
-                && turns(a, b, point) <= 0.0
+                && !turns(a, b, point)
             {
                 chain.pop();
             }

@@ -1,5 +1,7 @@
 //! Surfaces that are found are those that a picture of the bodies shows.
 
+mod shifted;
+
 use crate::material::Elastic;
 use crate::mesh::Mesh;
 use crate::problem::{Between, Builder, Cause, Contact, Initial, Problem};
