@@ -4,8 +4,10 @@ use super::bodies::{Contact, Start};
 use super::boundary::{self, Supports};
 use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
-use super::{Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding};
-use crate::contact::{ContactSurface, Interface, Obstacle, Plane, Side};
+use super::{
+    Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding, start_of_contact,
+};
+use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
 use crate::material::{Elastic, Law};
@@ -194,13 +196,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
-        let bodies = Bodies {
-            mesh,
-            body: Vec::new(),
-            held: boundary::held(mesh, &self.stated),
-            fixed: fixed(mesh.node_count(), &prescribed),
-            law: &of_facet,
-        };
+        let (held, fixed) = (boundary::held(mesh, &self.stated), fixed(mesh.node_count(), &prescribed));
+        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, law: &of_facet };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
@@ -227,7 +224,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             mesh: self.mesh.with_facet_groups(groups),
         };
         start_with_supports(&mut problem)?;
-        check_start_of_contact(&problem)?;
+        start_of_contact::check(&problem)?;
         Ok(problem)
     }
 }
@@ -275,7 +272,8 @@ fn all_contact<const D: usize, const N: usize>(
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
     let Bodies { mesh, body, held, fixed, law } = bodies;
-    let bodies = Bodies { mesh: with_groups.as_ref().unwrap_or(mesh), body, held, fixed, law: &|facet| law(facet) };
+    let mesh = with_groups.as_ref().unwrap_or(mesh);
+    let bodies = Bodies { mesh, body, held, fixed, law: &|facet| law(facet) };
     let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();
@@ -427,51 +425,6 @@ fn start_with_supports<const D: usize, const N: usize>(problem: &mut Problem<D, 
             return Err(cause.at("initial", None, "velocity"));
         }
         *initial = prescribed;
-    }
-    Ok(())
-}
-
-/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity.
-fn check_start_of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
-    let tolerance = problem.contact_tolerance();
-    let nodes = problem.surface.nodes();
-    let starts = problem.starts_of_contact();
-    let decides = |&at: &usize| problem.surface.leads(at);
-    let deeper = |a: usize, b: usize| if starts[b].0 < starts[a].0 { b } else { a };
-    if let Some(at) = (0..nodes.len()).filter(decides).reduce(deeper).filter(|&at| starts[at].0 < -tolerance) {
-        let (obstacle, depth, node) = (nodes[at].obstacle, -starts[at].0, nodes[at].node.index());
-        let cause = match problem.obstacles()[obstacle].as_plane() {
-            Some(plane) => Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() },
-            None => Cause::Overlaps { node, depth },
-        };
-        return Err(InputError { place: problem.place_of_obstacle(obstacle), cause });
-    }
-    for sliding in problem.surface.sliding() {
-        // Surfaces that do not face each other yet must not be behind each other.
-        let displacement = &problem.initial_displacement;
-        if !sliding.coupling(&problem.surface, displacement).segments().is_empty() {
-            continue;
-        }
-        let eta = |side: &Side, k: usize| {
-            let contact = &nodes[side.position(k)];
-            (side.eta()[k] + sliding.frame().split(&displacement[contact.node.index()]).0, contact)
-        };
-        let (slave, master) = (sliding.slave(), sliding.master());
-        let low = (0..slave.len()).map(|k| eta(slave, k)).min_by(|a, b| a.0.total_cmp(&b.0));
-        let high = (0..master.len()).map(|k| eta(master, k).0).max_by(f64::total_cmp);
-        if let (Some((low, contact)), Some(high)) = (low, high)
-            && low < high - tolerance
-        {
-            let cause = Cause::Overlaps { node: contact.node.index(), depth: high - low };
-            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
-        }
-    }
-    for at in (0..nodes.len()).filter(decides) {
-        let ((gap, normal), contact) = (starts[at], &nodes[at]);
-        if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
-            let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
-            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
-        }
     }
     Ok(())
 }

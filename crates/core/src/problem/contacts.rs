@@ -1,6 +1,7 @@
 //! From contacts as users state them to pairs of surfaces.
 
 use super::bodies::{Between, Contact, Found, Start, Wanted, find, outlines};
+use super::facing_edges::facing_each_other;
 use super::joined::{Member, Proposal, Source, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
@@ -125,12 +126,14 @@ impl Surfaces {
         matching: bool,
     ) -> [String; 2] {
         let relation = if matching { "facing" } else { "sliding on" };
+        let mut sides = found.seeing.clone();
+        if !matching {
+            sides.iter_mut().zip(&found.beside).for_each(|(side, beside)| side.extend(beside));
+            sides.iter_mut().for_each(|side| side.sort_unstable());
+        }
+        let mut sides = facing_each_other(mesh, sides);
         [0, 1].map(|side| {
-            let mut facets = found.seeing[side].clone();
-            if !matching {
-                facets.extend(&found.beside[side]);
-                facets.sort_unstable();
-            }
+            let facets = std::mem::take(&mut sides[side]);
             let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
             self.group(mesh, format!("{own} {relation} {other}"), facets)
         })
@@ -143,23 +146,21 @@ impl Surfaces {
         (proposals, members): (&[Proposal<'_>], &[Member]),
         names: &[String],
     ) -> Result<Choice, ObstacleError> {
+        let facets = facets_of_several(mesh, proposals, members);
         let mut make = |is_common: bool| {
-            let mut facets = BTreeSet::new();
             let (mut own, mut others) = (Vec::new(), Vec::new());
             for Member { contact, common } in members {
                 let side = if is_common { *common } else { 1 - common };
-                facets.extend(&proposals[*contact].facets[side]);
                 match proposals[*contact].source {
                     Source::Groups(groups) => own.push(groups[side].as_str()),
                     Source::Found(found) => {
-                        facets.extend(&found.beside[side]);
                         own.push(names[found.pair[side]].as_str());
                         others.push(names[found.pair[1 - side]].as_str());
                     }
                 }
             }
             let relation = if others.is_empty() { String::new() } else { format!(" sliding on {}", listed(&others)) };
-            self.group(mesh, listed(&own) + &relation, facets.into_iter().collect())
+            self.group(mesh, listed(&own) + &relation, facets[usize::from(!is_common)].clone())
         };
         // The sides stay in the order of the first contact.
         let groups = if members[0].common == 0 { [make(true), make(false)] } else { [make(false), make(true)] };
@@ -181,6 +182,28 @@ impl Surfaces {
         self.groups.push((name.clone(), facets));
         name
     }
+}
+
+/// The facets of the common surface of several contacts, and those of the others. All those that the user named stay.
+fn facets_of_several<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    proposals: &[Proposal<'_>],
+    members: &[Member],
+) -> [Vec<FacetId>; 2] {
+    let mut sides = [BTreeSet::new(), BTreeSet::new()];
+    let mut named = false;
+    for Member { contact, common } in members {
+        let Proposal { facets, source, .. } = &proposals[*contact];
+        for (side, all) in [*common, 1 - common].into_iter().zip(&mut sides) {
+            all.extend(&facets[side]);
+            match source {
+                Source::Groups(_) => named = true,
+                Source::Found(found) => all.extend(&found.beside[side]),
+            }
+        }
+    }
+    let sides = sides.map(|side| side.into_iter().collect());
+    if named { sides } else { facing_each_other(mesh, sides) }
 }
 
 /// The pairs of bodies whose surfaces were looked for.

@@ -335,6 +335,13 @@ pub enum Cause {
          the normal", short(*.depth)
     )]
     Overlaps { node: usize, depth: f64 },
+    /// Surfaces that are curved or inclined against each other and so near that a mean gap is negative.
+    #[error(
+        "the bodies start too near: no node is inside the other body, but the gap of node {node}, as the mean over its \
+         edges that contact is solved for, is {} m; move the bodies apart by more than that along the normal, or give \
+         both surfaces smaller edges", trimmed(-*.depth, 4)
+    )]
+    TooNear { node: usize, depth: f64 },
     /// The body on the wrong side of a plane.
     #[error(
         "the whole body lies behind the plane, node {node} by {} m; the normal must point from the plane to the body: \

@@ -3,6 +3,7 @@
 //! They are solved together, as one interface between the common surface and those of the others.
 
 use super::bodies::{Contact, Found, ONE_DIRECTION};
+use super::facing_edges::outward;
 use super::sides::{Bodies, unit};
 use super::{Cause, InputError, Place};
 use crate::contact::dot;
@@ -91,7 +92,7 @@ fn join<const D: usize, const N: usize>(
     if others(first, pair[0]).iter().any(|body| there.contains(body)) {
         return false;
     }
-    let [a, b] = pair.map(|one| outward(bodies, &proposals[one.contact].facets[one.common]));
+    let [a, b] = pair.map(|one| unit(&outward(bodies.mesh, &proposals[one.contact].facets[one.common])));
     if dot(&a, &b) < ONE_DIRECTION {
         return false;
     }
@@ -118,15 +119,6 @@ fn check(first: &Proposal<'_>, second: &Proposal<'_>, node: NodeId) -> Result<()
         return fail(Cause::SharedPairs { node: node.index() });
     }
     Ok(())
-}
-
-fn outward<const D: usize, const N: usize>(bodies: &Bodies<'_, D, N>, facets: &[FacetId]) -> [f64; D] {
-    let mut sum = [0.0; D];
-    for &facet in facets {
-        let (normal, area) = bodies.mesh.facet_normal(facet);
-        (0..D).for_each(|c| sum[c] += area * normal[c]);
-    }
-    unit(&sum)
 }
 
 /// "a", "a and b" or "a, b and c", of different names.

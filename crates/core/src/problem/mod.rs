@@ -6,12 +6,14 @@ mod builder;
 mod candidates;
 mod contacts;
 mod error;
+mod facing_edges;
 mod joined;
 mod pairs;
 mod plausibility;
 mod renumber;
 mod sides;
 mod sliding;
+mod start_of_contact;
 
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};

@@ -1,6 +1,7 @@
 //! The two sides of an interface.
 
 use super::candidates::along_the_boundary;
+use super::facing_edges::outward;
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -10,6 +11,8 @@ use std::collections::BTreeMap;
 
 /// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
 const FACES: f64 = 0.5;
+/// Edges that are found are better aligned, so that rounding does not refuse them.
+pub(super) const FOUND: f64 = FACES + 1e-9;
 
 /// The data of a problem that interfaces need.
 pub(super) struct Bodies<'m, const D: usize, const N: usize> {
@@ -87,11 +90,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         facets.sort_by_key(|&facet| self.body_of(facet));
         let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
         bodies.dedup();
-        let mut outward = [0.0; D];
-        for &facet in &facets {
-            let (normal, area) = self.mesh.facet_normal(facet);
-            (0..D).for_each(|c| outward[c] += area * normal[c]);
-        }
+        let outward = outward(self.mesh, &facets);
         Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, bodies })
     }
 

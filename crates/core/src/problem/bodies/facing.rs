@@ -2,9 +2,8 @@
 
 use super::approach::dot;
 use super::outline::{Edge, Outline, Vector};
+use crate::problem::sides::FOUND;
 
-/// Edges that face another body: the cosine of their outward normal and the direction of that body.
-const FACES: f64 = 0.5;
 /// Lengths below this part of the size of a body, or of an edge, are rounding, wherever the origin is.
 const TOUCH: f64 = 1e-9;
 
@@ -55,7 +54,7 @@ impl<'o> View<'o> {
         let towards = [self.normal, self.normal.map(|x| -x)];
         let sides: [Vec<(usize, Seen)>; 2] = std::array::from_fn(|k| {
             let edges = self.outlines[pair[k]].edges.iter().enumerate();
-            let faces = edges.filter(|(_, edge)| dot(&edge.normal, &towards[k]) >= FACES);
+            let faces = edges.filter(|(_, edge)| dot(&edge.normal, &towards[k]) >= FOUND);
             faces.map(|(at, edge)| (at, self.seen(pair[k], edge, &towards[k]))).collect()
         });
         std::array::from_fn(|k| {

@@ -1,6 +1,7 @@
 //! Surfaces that are found are those that a picture of the bodies shows.
 
 mod shifted;
+mod turned;
 
 use crate::material::Elastic;
 use crate::mesh::Mesh;
