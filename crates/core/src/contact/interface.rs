@@ -26,9 +26,9 @@ impl Interface {
         Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)?, matching: true })
     }
 
-    /// The same for two groups of edges of any nodes, which may slide along each other. The normal is the mean one of
-    /// the group that sticks out less beyond the other one along the interface, or of that with the shorter edges. Ends
-    /// of bars are always matching.
+    /// The same for two groups of edges of any nodes, which may slide along each other. The slave is the group that
+    /// sticks out less beyond the other one along the interface, or that with more edges. The normal is the mean one of the flatter group, or of the master if both are
+    /// equally flat: a corner of the other group slides along its face. Ends of bars are always matching.
     ///
     /// # Errors
     /// As [`Interface::matching`].

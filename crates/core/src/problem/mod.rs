@@ -11,6 +11,7 @@ mod joined;
 mod pairs;
 mod plausibility;
 mod renumber;
+mod roles;
 mod sides;
 mod sliding;
 mod start_of_contact;

@@ -1,6 +1,6 @@
 //! Two surfaces of different bodies that may slide along each other.
 
-use super::sides::{Bodies, Side, check_nodes, unit};
+use super::sides::{Bodies, Side, check_nodes};
 use super::{Cause, candidates};
 use crate::contact::{
     ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
@@ -9,8 +9,6 @@ use crate::ids::{FacetId, NodeId};
 
 /// Places nearer than this part of the size of the mesh are one.
 const ONE_PLACE: f64 = 1e-12;
-/// Surfaces that stick out beyond each other by less than this part of their length are as long as each other.
-const OVERHANG: f64 = 1e-9;
 
 /// Facets of a body in ascending order of ξ, each with its nodes and their ξ (m).
 type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
@@ -26,7 +24,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     let sides = bodies.sides(interface)?;
     check_nodes(surface, &sides)?;
     let slave = bodies.slave(&sides, displacement);
-    let normal = unit(&sides[slave].outward).map(|n| -n);
+    let normal = bodies.normal(&sides, slave);
     bodies.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
     // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
     let origin = bodies.mesh.points()[sides[slave].nodes[0].index()];
@@ -45,29 +43,6 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Which side is the slave: the one of several bodies, else the one that sticks out less beyond the other one at
-    /// the start; of two that do so alike, that with the shorter edges.
-    fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
-        if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
-            return several;
-        }
-        let along = tangent(&unit(&sides[0].outward));
-        let ranges = sides.each_ref().map(|side| {
-            let places = side.nodes.iter().map(|node| {
-                let (x, u) = (&self.mesh.points()[node.index()], &displacement[node.index()]);
-                dot(x, &along) + dot(u, &along)
-            });
-            places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], xi| [low.min(xi), high.max(xi)])
-        });
-        let [first, second] = ranges.map(|[low, high]| high - low);
-        let common = ranges[0][1].min(ranges[1][1]) - ranges[0][0].max(ranges[1][0]);
-        let outside = [first, second].map(|length| length - common.max(0.0));
-        if (outside[0] - outside[1]).abs() > OVERHANG * first.max(second) {
-            return usize::from(outside[1] < outside[0]);
-        }
-        usize::from(sides[1].facets.len() > sides[0].facets.len())
-    }
-
     /// Adds one side to the contact surface.
     fn add_side(
         &self,

@@ -9,3 +9,4 @@ pub(crate) mod setup;
 mod several;
 mod stack;
 mod start;
+mod tilted;
