@@ -27,7 +27,8 @@ impl Interface {
     }
 
     /// The same for two groups of edges of any nodes, which may slide along each other. The slave is the group that
-    /// sticks out less beyond the other one along the interface, or that with more edges. The normal is the mean one of the flatter group, or of the master if both are
+    /// sticks out less beyond the other one along the interface, or that with more edges; of groups alike, that of the
+    /// softer or of the lighter body. The normal is the mean one of the flatter group, or of the master if both are
     /// equally flat: a corner of the other group slides along its face. Ends of bars are always matching.
     ///
     /// # Errors

@@ -197,7 +197,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
         let (held, fixed) = (boundary::held(mesh, &self.stated), fixed(mesh.node_count(), &prescribed));
-        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, law: &of_facet };
+        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, mass: &mass, law: &of_facet };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
@@ -271,9 +271,9 @@ fn all_contact<const D: usize, const N: usize>(
     let facing_planes = surface.facets().iter().map(|facet| facet.facet).collect();
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
-    let Bodies { mesh, body, held, fixed, law } = bodies;
+    let Bodies { mesh, body, held, fixed, mass, law } = bodies;
     let mesh = with_groups.as_ref().unwrap_or(mesh);
-    let bodies = Bodies { mesh, body, held, fixed, law: &|facet| law(facet) };
+    let bodies = Bodies { mesh, body, held, fixed, mass, law: &|facet| law(facet) };
     let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();

@@ -3,17 +3,19 @@
 use super::sides::{Bodies, Side, unit};
 use crate::contact::{dot, tangent};
 use crate::ids::NodeId;
+use crate::material::Law;
 
 /// Surfaces that stick out beyond each other by less than this part of their length are as long as each other.
 const OVERHANG: f64 = 1e-9;
-/// The square of the length of a vector that has no direction.
+/// Moduli, masses and distances that differ by a smaller part are equal.
 const EQUAL: f64 = 1e-9;
 /// Mean squares of deviations from a normal that differ by a smaller part are equal, and so are those of rounding.
 const FLAT: f64 = 1e-9;
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Which side is the slave: the one of several bodies, else the one that sticks out less beyond the other one at
-    /// the start; of two that do so alike, that with the shorter edges.
+    /// the start; of two that do so alike, that with the shorter edges, else that of the softer body, of the lighter
+    /// one, or of the one whose centre of mass is nearer. Of bodies that are all alike it is the lower or the left one.
     pub(super) fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
         if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
             return several;
@@ -33,7 +35,10 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         if (outside[0] - outside[1]).abs() > OVERHANG * lengths[0].max(lengths[1]) {
             return usize::from(outside[1] < outside[0]);
         }
-        usize::from(sides[1].facets.len() > sides[0].facets.len())
+        if sides[0].facets.len() != sides[1].facets.len() {
+            return usize::from(sides[1].facets.len() > sides[0].facets.len());
+        }
+        self.weaker(sides, &direction, displacement).unwrap_or_else(|| usize::from(!is_upward(&direction)))
     }
 
     /// The unit normal from the master to the slave: that of the flatter surface, along which a corner of the other one
@@ -59,6 +64,45 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         sum / length
     }
 
+    /// The side of the softer body, or of the lighter one, or of that whose centre of mass is nearer to its surface
+    /// along a direction.
+    fn weaker(&self, sides: &[Side<D>; 2], direction: &[f64; D], displacement: &[[f64; D]]) -> Option<usize> {
+        let less = |[first, second]: [f64; 2]| {
+            ((first - second).abs() > EQUAL * first.abs().max(second.abs())).then_some(usize::from(second < first))
+        };
+        let masses = sides.each_ref().map(|side| self.mass_and_centre(side, displacement));
+        let depth = |side: &Side<D>, centre: &[f64; D]| {
+            let count = side.nodes.len() as f64;
+            let places = side.nodes.iter().map(|&node| dot(&self.place(node, displacement), direction));
+            (places.sum::<f64>() / count - dot(centre, direction)).abs()
+        };
+        less(sides.each_ref().map(|side| self.modulus(side)))
+            .or_else(|| less(masses.map(|(mass, _)| mass)))
+            .or_else(|| less([0, 1].map(|side| depth(&sides[side], &masses[side].1))))
+    }
+
+    /// The mean modulus λ + 2G = ρc² at the edges of a side, by length (Pa).
+    fn modulus(&self, side: &Side<D>) -> f64 {
+        let (mut sum, mut length) = (0.0, 0.0);
+        for &facet in &side.facets {
+            let (law, area) = ((self.law)(facet), self.mesh.facet_normal(facet).1);
+            sum += area * law.density() * law.wave_speed().powi(2);
+            length += area;
+        }
+        sum / length
+    }
+
+    /// The mass (kg) and the centre of mass (m) of the first body of a side.
+    fn mass_and_centre(&self, side: &Side<D>, displacement: &[[f64; D]]) -> (f64, [f64; D]) {
+        let (mut mass, mut centre) = (0.0, [0.0; D]);
+        for (index, _) in self.body.iter().enumerate().filter(|(_, body)| **body == side.bodies[0]) {
+            let place = self.place(NodeId::new(index), displacement);
+            mass += self.mass[index];
+            (0..D).for_each(|c| centre[c] += self.mass[index] * place[c]);
+        }
+        (mass, centre.map(|moment| moment / mass))
+    }
+
     fn place(&self, node: NodeId, displacement: &[[f64; D]]) -> [f64; D] {
         std::array::from_fn(|c| self.mesh.points()[node.index()][c] + displacement[node.index()][c])
     }
@@ -70,4 +114,22 @@ fn between<const D: usize>(sides: &[Side<D>; 2]) -> [f64; D] {
     let sum: [f64; D] = std::array::from_fn(|c| outward[0][c] - outward[1][c]);
     // Sides that do not face each other are refused later.
     if dot(&sum, &sum) < EQUAL { outward[0] } else { unit(&sum) }
+}
+
+/// Whether a direction is upward or, if it is horizontal, to the right.
+fn is_upward<const D: usize>(direction: &[f64; D]) -> bool {
+    let leading = direction.iter().rev().find(|component| component.abs() > EQUAL);
+    leading.is_none_or(|component| *component > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_upward;
+
+    #[test]
+    fn a_direction_and_its_opposite_differ() {
+        for direction in [[0.0, 1.0], [1.0, 0.0], [-0.6, 0.8], [1.0, 1e-16], [1.0, -1e-16]] {
+            assert!(is_upward(&direction) && !is_upward(&direction.map(|x: f64| -x)), "{direction:?}");
+        }
+    }
 }

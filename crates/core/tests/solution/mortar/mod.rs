@@ -5,6 +5,7 @@ mod law;
 mod limits;
 mod patch;
 mod refusals;
+mod roles;
 pub(crate) mod setup;
 mod several;
 mod stack;
