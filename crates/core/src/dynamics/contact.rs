@@ -83,17 +83,21 @@ impl<const D: usize> Contact<D> {
         self.sliding.iter().for_each(|sliding| sliding.add(problem.surface(), &self.reaction, force));
     }
 
-    /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is
-    /// active.
+    /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is active; a node of a
+    /// master that such a multiplier acts on, if it faces the slave at t_0 already.
     pub(super) fn settle_start<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>) {
         let problem = dynamics.problem;
-        for (at, (gap, normal)) in problem.starts_of_contact().into_iter().enumerate() {
+        let starts = problem.starts_of_contact();
+        for (at, &(gap, normal)) in starts.iter().enumerate() {
             self.touching[at] = self.touching_next[at]
                 && gap <= problem.contact_tolerance()
                 && normal.abs() <= problem.speed_tolerance();
         }
         for sliding in &self.sliding {
             sliding.settle_master(problem.surface(), &mut self.touching);
+        }
+        for (touches, (gap, _)) in self.touching.iter_mut().zip(&starts) {
+            *touches &= gap.is_finite();
         }
     }
 }

@@ -43,6 +43,28 @@ fn bodies_that_are_pressed_together_touch_at_the_start() {
     check(&pressed(matching.bodies(matching.mesh(), |v| v).interface(pairs)), true);
 }
 
+/// A block slides along a plate: nodes of the plate that it reaches within the first step face nothing at t_0.
+#[test]
+fn a_node_that_faces_nothing_does_not_touch_at_the_start() {
+    let blocks = Blocks {
+        cells: [[7, 3], [8, 3]],
+        widths: [0.02, 0.04],
+        aside: 0.005,
+        velocities: [[20.0, 0.0], [0.0; 2]],
+        ..together()
+    };
+    let force = BodyForce { group: Some("upper".into()), value: Table::constant([0.0, -2.65e8]) };
+    let builder = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).body_force(force);
+    let problem = builder.build().unwrap();
+    let run = run(&problem, &steps(&problem, 2e-6));
+    let touching = run.history.step(0).unwrap().touching;
+    let starts = problem.starts_of_contact();
+    assert!(touching.iter().filter(|touches| **touches).count() > 8);
+    for at in (0..touching.len()).filter(|&at| touching[at]) {
+        assert!(starts[at].0 <= problem.contact_tolerance(), "{at}: {}", starts[at].0);
+    }
+}
+
 /// Tractions on the far sides: the wave arrives later.
 #[test]
 fn tractions_press_bodies_together() {
