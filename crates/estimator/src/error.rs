@@ -49,7 +49,7 @@ pub enum EstimateError {
     /// A first velocity that is not the initial one.
     #[error("the velocity of node {node} at step 0 is not the initial velocity of the problem")]
     StartVelocity { node: usize },
-    /// A node that is said to touch at t = 0, but does not rest on its plane.
+    /// A node that is said to touch at t = 0, but does not rest on its obstacle.
     #[error(
         "node {node} touches at step 0, but its gap is {} m and its normal velocity {} m/s; both must be zero",
         trimmed(*.gap, 5), trimmed(*.speed, 5)
@@ -62,7 +62,8 @@ pub enum EstimateError {
     Overflow,
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
-        "node {node} starts {} m from its plane and touches at step 1; no admissible motion exists below a gap of {} m",
+        "node {node} starts {} m from the plane or body that it may touch and touches at step 1; no admissible motion \
+         exists below a gap of {} m",
         trimmed(*.gap, 7), trimmed(*.smallest_gap, 7)
     )]
     StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },

@@ -30,15 +30,17 @@ pub enum SimulationError {
     },
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
-        "node {node} starts {gap:.6e} m from its plane at {speed} m/s and touches in the first step of {step:.4e} s, \
-         too near to come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most \
-         {largest_step:.4e} s"
+        "node {node} starts {gap:.6e} m from {} at {speed} m/s and touches in the first step of {step:.4e} s, too near to \
+         come to rest there; start at least {smallest_gap:.6e} m away, or with a first step of at most \
+         {largest_step:.4e} s", if *.plane { "its plane" } else { "the other body" }
     )]
     StartsTooNear {
         /// The node.
         node: usize,
         /// Which obstacle, from 0.
         obstacle: usize,
+        /// Whether this is a plane, or else another body.
+        plane: bool,
         /// Its gap (m).
         gap: f64,
         /// Its speed towards the obstacle (m/s).

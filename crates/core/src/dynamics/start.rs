@@ -73,9 +73,11 @@ fn refuse_a_start_too_near<const D: usize, const N: usize>(
         if gap < smallest_gap {
             let largest_step = 4.0 * gap / speed;
             let obstacle = node.obstacle;
+            let plane = problem.obstacles()[obstacle].as_plane().is_some();
             return Err(SimulationError::StartsTooNear {
                 node: node.node.index(),
                 obstacle,
+                plane,
                 gap,
                 speed,
                 step,

@@ -63,8 +63,8 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     let moves = |a: usize| bodies.iter().any(|&b| velocity[a] != velocity[b]);
     let alone = *bodies.iter().find(|&&a| !touches[a] && moves(a))?;
     let message = format!(
-        "the body of node {alone} moves against others, but no contact with them is stated: the run ends with an error \
-         where it enters one; give the groups of edges that may touch"
+        "the body of node {alone} moves against others, but no contact with them is stated or found: the run ends with \
+         an error where it enters one; give the groups of edges that may touch"
     );
     Some(plausibility_warning(
         at("contact", None, ""),
