@@ -162,15 +162,16 @@ fn effectivity_indices_of_two_blocks_that_slide() {
     }
 }
 
-/// A block on its corner (10°) at three speeds: measured are 1.72 to 1.77, 1.73 to 1.86 and 2.22 to 2.37. With tractions
+/// A block on its corner (10°) at three speeds: measured are 1.68 to 1.70, 1.94 to 2.05 and 2.22 to 2.40. With tractions
 /// as wide as edges it would be 10 to 25 at the lowest speed.
 #[test]
 fn effectivity_indices_of_a_corner_that_slides() {
-    for (speed, most) in [(100.0, 1.9), (10.0, 2.0), (1.0, 2.5)] {
+    for (speed, most) in [(100.0, 1.9), (10.0, 2.2), (1.0, 2.6)] {
         let velocities = [[0.0, -speed], [0.0, speed]];
         let place = Row { width: 0.02, aside: 0.0113, tilt: 10.0, friction: 0.2, ..HEAD_ON };
         let row = Row { name: "corner", velocities, gap: 2e-6 * speed, ..place };
         let found = row.indices(MESHES[0].0, [[56, 48], [60, 48]]);
+        println!("{speed} m/s: {found:?}");
         assert!(found.iter().all(|index| (1.0..=most).contains(index)), "{speed} m/s: {found:?}");
     }
 }
