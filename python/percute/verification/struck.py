@@ -24,12 +24,12 @@ Problem = Callable[[float, int], pc.Problem]
 """A problem of a speed (m/s) and a number of refinements."""
 
 
-def tilted(angle: float) -> Problem:
-    """Give a block of 40 × 25 mm, tilted (°), whose corner strikes a plate of 60 × 25 mm."""
+def tilted(angle: float, width: float = 0.06) -> Problem:
+    """Give a block of 40 × 25 mm, tilted (°), whose corner strikes a plate of this width (m) and 25 mm."""
 
     def problem(speed: float, refinements: int) -> pc.Problem:
         block = pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6).refine(refinements)
-        plate = pc.Mesh.rectangle(0.06, 0.025, nx=12, ny=6).refine(refinements)
+        plate = pc.Mesh.rectangle(width, 0.025, nx=round(width / 0.005), ny=6).refine(refinements)
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0123, 0.025 + WAY * speed), velocity=(0.0, -speed))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
@@ -63,6 +63,7 @@ def _struck(above: pc.Body, plate: pc.Body) -> pc.Problem:
 
 CASES: tuple[tuple[str, Problem, float], ...] = (
     *((f"block tilted by {angle:g}°", tilted(angle), 14e-6) for angle in (3.0, 10.0, 29.0)),
+    ("block tilted by 10° that sticks out of a plate of 30 mm", tilted(10.0, width=0.03), 14e-6),
     ("disc", disc, 12e-6),
     *((f"block that overlaps a plate by {1e3 * overlap:g} mm", overlapping(overlap), 10e-6) for overlap in (0.0003, 0.001, 0.003)),
 )

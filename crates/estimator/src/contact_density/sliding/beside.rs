@@ -80,7 +80,7 @@ fn in_star<const D: usize, const N: usize>(
         [supported[0], supported[D - 1]]
     });
     let mut rests = [EdgeRest::default(), EdgeRest::default()];
-    rests[usize::from(star.links[0] != Some(candidate.facet))] = load.from_end(end, edge);
+    rests[usize::from(star.links[0] != Some(candidate.facet))] = load.seen_from(end, edge);
     let roots = roots(&elements, &rests, supported)?;
     Some(star.elements.iter().copied().zip(roots).collect())
 }

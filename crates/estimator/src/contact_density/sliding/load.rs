@@ -132,7 +132,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// The density less that linear traction, seen from an end of the edge.
-    pub(super) fn from_end(&self, end: usize, edge: &EdgeFacet) -> EdgeRest {
+    pub(super) fn seen_from(&self, end: usize, edge: &EdgeFacet) -> EdgeRest {
         let [from, to] = [[0.0, 1.0], [1.0, 0.0]][end];
         self.between([from, to], edge)
     }

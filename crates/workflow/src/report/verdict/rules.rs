@@ -124,10 +124,10 @@ pub(super) const RULES: [Rule; 27] = [
     Rule {
         applies: |f| f.slides && f.contact.strikes_flat_slave,
         range: [1.0, 25.0],
-        situation: "corners and curves that strike a surface of finer edges",
+        situation: "corners and curves of the longer one of two surfaces that slide",
         doubt: Some(
             "tractions are as wide as the edges of the surface that is struck, too wide for a corner or a curve at low \
-             speed; let the other body have the finer edges at its contact, or both the same nodes",
+             speed; refine that surface",
         ),
     },
     // python/percute/verification/struck.py has 1.13 to 3.5, and with μ = 1 up to 3.9.
