@@ -23,11 +23,17 @@ impl EdgeRest {
         self.points.iter().map(|(place, value)| [*place, value[c]]).collect()
     }
 
+    /// The largest force along an axis between two break points, or of the linear traction (N).
     fn largest(&self, c: usize) -> f64 {
-        let values = self.points.iter().map(|(_, value)| value).chain(&self.linear);
-        values.fold(0.0, |most, value| most.max(value[c].abs()))
+        let force = |[a, fa]: [f64; 2], [b, fb]: [f64; 2]| 0.5 * (b - a) * (fa.abs() + fb.abs());
+        let [near, far] = self.linear;
+        let spans = self.points.windows(2).map(|span| force([span[0].0, span[0].1[c]], [span[1].0, span[1].1[c]]));
+        spans.fold(force([0.0, near[c]], [1.0, far[c]]), f64::max)
     }
 }
+
+/// Energies below minus this part of their sum show that rounding has spoilt a stress.
+const NEGATIVE: f64 = 1e-10;
 
 /// Roots of the energies in the elements of a star (J^½), for what is on its first and on its last edge; both balance
 /// each other. None if there are too many points, or if rounding spoils the stress.
@@ -39,7 +45,7 @@ pub(crate) fn roots<L: LinearLaw>(
     if edges.iter().map(|edge| edge.points.len()).sum::<usize>() > POINTS {
         return None;
     }
-    // Each component is a column of its own, of size 1.
+    // Each component is a column of its own, with forces near 1.
     let size = [0, 1].map(|c| edges[0].largest(c).max(edges[1].largest(c)));
     let own = edges.each_ref().map(|edge| [0, 1].map(|c| edge.component(c)));
     let forces = |piece: [f64; 2]| {
@@ -60,10 +66,13 @@ pub(crate) fn roots<L: LinearLaw>(
         return None;
     }
     let [x, y] = size;
-    let root = |(element, data): (usize, &StarElement<'_, L>)| {
-        let energy = |i: usize, j: usize| stress.energy_in(element, i, j);
-        let sum = x * x * energy(0, 0) + 2.0 * x * y * energy(0, 1) + y * y * energy(1, 1);
-        (0.5 * sum / data.law.extent()).max(0.0).sqrt()
+    let energy = |(element, data): (usize, &StarElement<'_, L>)| {
+        let form = |i: usize, j: usize| stress.energy_in(element, i, j);
+        let sum = x * x * form(0, 0) + 2.0 * x * y * form(0, 1) + y * y * form(1, 1);
+        0.5 * sum / data.law.extent()
     };
-    Some(elements.iter().enumerate().map(root).collect())
+    let energies: Vec<f64> = elements.iter().enumerate().map(energy).collect();
+    let total: f64 = energies.iter().sum();
+    let spoilt = energies.iter().any(|energy| *energy < -NEGATIVE * total);
+    (!spoilt && total >= 0.0).then(|| energies.iter().map(|energy| energy.max(0.0).sqrt()).collect())
 }

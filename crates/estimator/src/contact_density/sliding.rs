@@ -29,7 +29,7 @@ pub(crate) struct SlidingDensity<const D: usize> {
     coupling: Arc<Coupling>,
     /// R_k/w_k of the nodes of the slave (N/m).
     multipliers: Vec<[f64; D]>,
-    /// The tractions of other nodes, in order.
+    /// The tractions of other nodes, in order, but for a mean.
     hats: Vec<SlaveHat<D>>,
 }
 
@@ -78,7 +78,7 @@ impl<const D: usize> SlidingDensity<D> {
         &self.multipliers
     }
 
-    /// The hats, in the order of their nodes.
+    /// The hats, in the order of their nodes, but for those of a mean.
     pub(crate) fn hats(&self) -> &[SlaveHat<D>] {
         &self.hats
     }
@@ -208,11 +208,17 @@ impl<const D: usize> SlidingDensity<D> {
 
     /// The loads of some narrow hats, on the master.
     fn narrow(&self, sliding: &SlidingSurfaces<D>, hats: &[&SlaveHat<D>]) -> Loads<D> {
-        let breaks: Vec<Break> = hats.iter().map(|hat| hat.ends_at()).collect();
         let mut loads = Loads::new();
+        if hats.is_empty() {
+            return loads;
+        }
+        let breaks: Vec<Break> = hats.iter().map(|hat| hat.ends_at()).collect();
         for piece in pieces(sliding, &self.coupling) {
             let own: Vec<_> = hats.iter().filter(|hat| hat.edge == piece.slave[0]).collect();
-            for piece in piece.cut(&breaks).filter(|_| !own.is_empty()) {
+            if own.is_empty() {
+                continue;
+            }
+            for piece in piece.cut(&breaks) {
                 let mut values = [[0.0; D]; 2];
                 own.iter().for_each(|hat| add(&mut values, hat.on(&piece)));
                 load(&mut loads, (1, piece.master[0]), &piece, (piece.on_master, opposite(values)));

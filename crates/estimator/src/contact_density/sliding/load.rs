@@ -12,7 +12,7 @@ const NEAR: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct Load<const D: usize> {
     moments: [[f64; D]; 2],
-    /// Places of the ends along the edge, from 0 to 1, and values there (N/m).
+    /// Places of the ends along the edge, from 0 to 1, and values there (N/m), in ascending order.
     spans: Vec<([f64; 2], [[f64; D]; 2])>,
 }
 
@@ -31,14 +31,16 @@ impl<const D: usize> Load<D> {
             self.moments[0][c] += piece.product(first, component);
             self.moments[1][c] += piece.product(places, component);
         }
-        self.spans.push((places, values));
+        // Another body of the slave may stand before those so far.
+        let next = self.spans.partition_point(|(other, _)| other[0] <= places[0]);
+        self.spans.insert(next, (places, values));
     }
 
     /// The same without spans too short for the stress of the load.
     pub(super) fn without_slivers(&self, edge: &EdgeFacet) -> Self {
         let mut places: Vec<f64> = self.spans.iter().flat_map(|(places, _)| *places).chain([0.0, 1.0]).collect();
         places.sort_by(f64::total_cmp);
-        // The last place, then each that is far enough below the one kept before it, and the first.
+        // The first place, then each that is far enough above the last one kept; 1 stays, and draws those below it.
         places.dedup_by(|next, kept| *next - *kept < NEAR && *next < 1.0);
         let kept = |place: f64| {
             let after = places.partition_point(|other| *other <= place).max(1);
@@ -95,26 +97,33 @@ impl<const D: usize> Load<D> {
         sum
     }
 
-    /// The place inside the edge where the density is largest, from 0 to 1.
-    pub(super) fn peak(&self) -> Option<f64> {
+    /// The places inside the edge where the density is largest, from 0 to 1; none if there are many.
+    pub(super) fn peaks(&self) -> Vec<f64> {
+        const SAME: f64 = 1.0 - 1e-9;
+        const MANY: usize = 4;
         let size = |value: &[f64; D]| value.iter().map(|f| f * f).sum::<f64>();
         let ends = self.spans.iter().flat_map(|(places, values)| [0, 1].map(|k| (places[k], size(&values[k]))));
-        let inside = ends.filter(|(place, _)| 0.0 < *place && *place < 1.0);
-        inside.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| place)
+        let inside: Vec<_> = ends.filter(|(place, _)| 0.0 < *place && *place < 1.0).collect();
+        let largest = inside.iter().fold(0.0, |most: f64, (_, size)| most.max(*size));
+        // Rounding must not choose between equal ones.
+        let mut peaks: Vec<f64> =
+            inside.iter().filter(|(_, size)| *size >= SAME * largest).map(|(at, _)| *at).collect();
+        peaks.dedup();
+        if peaks.len() <= MANY { peaks } else { Vec::new() }
     }
 
-    /// The part of the edge beside an end, of which the peak is the middle, that has all of the load.
-    pub(super) fn part_at(&self, end: usize) -> Option<f64> {
+    /// The part of the edge beside an end that has all of the load, at least twice as long as the way to a place.
+    pub(super) fn part_at(&self, end: usize, place: f64) -> f64 {
         let from = |place: f64| if end == 0 { place } else { 1.0 - place };
         let reach = self.spans.iter().flat_map(|(places, _)| places.map(from)).fold(0.0, f64::max);
-        self.peak().map(|peak| reach.max(2.0 * from(peak)))
+        reach.max(2.0 * from(place))
     }
 
     /// The load of a part of the edge beside an end, as if that part were an edge, and the load of the traction on the
     /// whole edge that is linear on this part and has the same moments.
     pub(super) fn spread_over(&self, part: f64, end: usize, edge: &EdgeFacet) -> [Self; 2] {
         let start = if end == 0 { 0.0 } else { 1.0 - part };
-        let scaled = |places: [f64; 2]| places.map(|place| ((place - start) / part).clamp(0.0, 1.0));
+        let scaled = |places: [f64; 2]| places.map(|place| place_in(part, end, place));
         let spans = self.spans.iter().map(|&(places, values)| (scaled(places), values)).collect();
         let moments: [[f64; D]; 2] = {
             let component = |c: usize| {
@@ -147,10 +156,16 @@ impl<const D: usize> Load<D> {
         let part = (to - from).abs();
         let scaled = |value: [f64; D], length: f64| [0, D - 1].map(|c| value[c] * length * part);
         let [low, high] = [from.min(to), from.max(to)];
-        let mut points = Vec::with_capacity(2 * self.spans.len());
+        let (mut points, mut reached) = (Vec::with_capacity(2 * self.spans.len()), None);
+        let at = |place: f64| (place - from) / (to - from);
         for &(places, values) in &self.spans {
             if low <= places[0] && places[1] <= high {
-                points.extend([0, 1].map(|k| (((places[k] - from) / (to - from)), scaled(values[k], edge.length))));
+                // Nothing acts in a hole.
+                if let Some(end) = reached.filter(|end| *end < places[0]) {
+                    points.extend([end, places[0]].map(|place| (at(place), [0.0; 2])));
+                }
+                reached = Some(places[1]);
+                points.extend([0, 1].map(|k| (at(places[k]), scaled(values[k], edge.length))));
             }
         }
         if to < from {
@@ -159,5 +174,73 @@ impl<const D: usize> Load<D> {
         let [first, second] = [self.nodal(0), self.nodal(1)];
         let linear = [from, to].map(|at| scaled(std::array::from_fn(|c| first[c] * (1.0 - at) + second[c] * at), 1.0));
         EdgeRest { points, linear }
+    }
+}
+
+/// A place on an edge as one on the part of the edge beside an end.
+pub(super) fn place_in(part: f64, end: usize, place: f64) -> f64 {
+    let start = if end == 0 { 0.0 } else { 1.0 - part };
+    ((place - start) / part).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EDGE: EdgeFacet = EdgeFacet { facet: 0, ends: [0, 1], length: 0.3, spread: 1.0 };
+
+    /// A load with a narrow peak and a hole, and its image with the ends of the edge exchanged.
+    fn loads() -> [Load<2>; 2] {
+        let spans = vec![
+            ([0.02, 0.05], [[0.0, 0.0], [1.0, 9.0]]),
+            ([0.05, 0.09], [[1.0, 9.0], [0.0, 2.0]]),
+            ([0.11, 0.12], [[0.0, 1.0], [0.5, 3.0]]),
+        ];
+        let image = spans.iter().rev().map(|&([a, b], [f, g])| ([1.0 - b, 1.0 - a], [g, f])).collect();
+        [spans, image].map(|spans| Load { moments: [[0.0; 2]; 2], spans }.without_slivers(&EDGE))
+    }
+
+    /// Moments of a load are those of its spans, and a part of the edge has those of a shorter edge.
+    #[test]
+    fn parts_keep_their_moments() {
+        let same = |a: &Load<2>, b: &Load<2>| {
+            let both = a.moments.as_flattened().iter().zip(b.moments.as_flattened());
+            // Rounding of some sums.
+            both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-14
+        };
+        for (end, load) in loads().iter().enumerate() {
+            let [peak] = load.peaks()[..] else { panic!("one peak") };
+            let part = load.part_at(end, peak);
+            assert!((part - 0.12).abs() < 1e-15, "{part}");
+            let [beside, whole] = load.spread_over(part, end, &EDGE);
+            assert!(same(&whole, load) && same(&whole.without_slivers(&EDGE), load));
+            let short = EdgeFacet { length: part * EDGE.length, ..EDGE };
+            assert!(same(&beside.without_slivers(&short), &beside));
+            assert!(beside.spans.iter().any(|(places, _)| places[1] == place_in(part, end, peak)));
+        }
+    }
+
+    /// Seen from the other end, the image is the load; nothing acts in its hole.
+    #[test]
+    fn images_and_holes() {
+        let [load, image] = loads();
+        let (one, other) = (load.seen_from(0, &EDGE), image.seen_from(1, &EDGE));
+        assert_eq!(one.points.len(), other.points.len());
+        for ((a, f), (b, g)) in one.points.iter().zip(&other.points) {
+            assert!((a - b).abs() < 1e-15 && (0..2).all(|c| (f[c] - g[c]).abs() < 1e-15), "{a} {b}");
+        }
+        let hole: Vec<_> = one.points.iter().filter(|(_, value)| *value == [0.0; 2]).map(|(place, _)| *place).collect();
+        assert_eq!(hole, [0.02, 0.09, 0.11]);
+    }
+
+    /// Break points nearer than a millionth of the edge are one, also beside its ends.
+    #[test]
+    fn slivers_are_left_out() {
+        let value = [[1.0, 1.0]; 2];
+        let spans = vec![([1e-8, 0.4], value), ([0.4, 0.4 + 1e-7], value), ([0.4 + 1e-7, 1.0 - 1e-8], value)];
+        let load = Load { moments: [[0.0; 2]; 2], spans }.without_slivers(&EDGE);
+        let places: Vec<_> = load.spans.iter().map(|(places, _)| *places).collect();
+        assert_eq!(places, [[0.0, 0.4], [0.4, 1.0]]);
+        assert!(load.nodal(0).iter().all(|f| (f - 0.3).abs() < 1e-15));
     }
 }

@@ -11,7 +11,7 @@ use crate::concentrated::TractionShape;
 use crate::contact_density::{SlaveHat, SlidingDensity, SlidingFacets};
 use crate::direction::along;
 use crate::partition::pieces;
-use percute_core::contact::{Coupling, Part, Side, SlidingSurfaces};
+use percute_core::contact::{Coupling, Part, Segment, Side, SlidingSurfaces};
 use percute_core::history::State;
 use percute_core::ids::ElementId;
 use percute_core::material::{Law, LinearLaw};
@@ -211,13 +211,18 @@ fn compliance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: 
     (alpha - beta) / law.extent()
 }
 
+/// Parts of an edge nearer than this part of its length have nothing between them.
+const JOINED: f64 = 1e-12;
+
 /// Whether the master faces all of the edges of a node of the slave.
 fn is_inside(slave: &Side, coupling: &Coupling, node: usize) -> bool {
     let faces = |edge: usize| {
         let first = slave.edges()[edge];
-        let segments = coupling.segments_of(edge);
+        let (own, segments) = ([slave.xi()[first], slave.xi()[first + 1]], coupling.segments_of(edge));
         let ends = [segments.first().map(|s| s.ends[0]), segments.last().map(|s| s.ends[1])];
-        ends == [Some(slave.xi()[first]), Some(slave.xi()[first + 1])]
+        // A step of the master has two ends at one place, to rounding; a slot is wider.
+        let joined = |pair: &[Segment]| pair[1].ends[0] - pair[0].ends[1] <= JOINED * (own[1] - own[0]);
+        ends == own.map(Some) && segments.windows(2).all(joined)
     };
     let own = [node.checked_sub(1), Some(node)].into_iter().flatten();
     let mut own = own.filter_map(|first| slave.edges().binary_search(&first).ok()).peekable();

@@ -41,7 +41,7 @@ pub(super) struct Contact {
     pub(super) zones: usize,
     /// Whether a single element fills an obtuse corner at which contact begins or ends.
     pub(super) single_element: bool,
-    /// Whether a corner or a curve strikes a straight part of a slave, along which it slides.
+    /// Whether a corner or a curve of a master strikes a straighter part of a slave, along which it slides.
     pub(super) strikes_flat_slave: bool,
 }
 
@@ -154,15 +154,16 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
     }
 
-    /// Whether the nodes of slaves among these are on straight parts of their surfaces, and those of masters are not.
+    /// Whether the outline turns more at a node of a master among these than at the node of a slave that is struck.
     fn is_flat_slave(&self, nodes: &[usize]) -> bool {
         let sliding = self.problem.surface().sliding();
         let is_slave = |at: usize| sliding.iter().any(|sliding| sliding.slave().node_at(at).is_some());
         let slides = |at: usize| self.problem.surface().sliding_of(at).is_some();
         let (slaves, masters): (Vec<usize>, Vec<usize>) =
             nodes.iter().copied().filter(|&at| slides(at)).partition(|&at| is_slave(at));
-        let turns = |at: &usize| self.turn(*at).abs() > PARALLEL;
-        !slaves.is_empty() && !slaves.iter().any(turns) && masters.iter().any(turns)
+        let struck = slaves.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
+        let sharpest = masters.iter().map(|&at| self.turn(at)).fold(0.0, f64::max);
+        struck.is_some_and(|at| sharpest > self.turn(at).max(PARALLEL))
     }
 
     /// The parts of the surface that touch, each joined by edges.
