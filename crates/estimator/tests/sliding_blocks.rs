@@ -162,8 +162,8 @@ fn effectivity_indices_of_two_blocks_that_slide() {
     }
 }
 
-/// A block on its corner (10°) at three speeds: measured are 1.68 to 1.70, 1.94 to 2.05 and 2.22 to 2.40. With tractions
-/// as wide as edges it would be 10 to 25 at the lowest speed.
+/// A block on its corner (10°) at three speeds: measured are 1.68 to 1.70, 1.94 to 2.05 and 2.22 to 2.40. With
+/// tractions as wide as edges it would be 10 to 25 at the lowest speed.
 #[test]
 fn effectivity_indices_of_a_corner_that_slides() {
     for (speed, most) in [(100.0, 1.9), (10.0, 2.2), (1.0, 2.6)] {

@@ -28,7 +28,7 @@ const EXAMPLES: [Example; 12] = [
     Example("tilted", "result    sup 7.97 % (209.5 J^½ at 1.6e-5 s), mean 6.20 %", 1.114),
     Example("two_blocks", "result    sup 9.30 % (6.142 J^½ at 2e-5 s), mean 7.06 %", 1.14),
     Example("sliding_blocks", "result    sup 3.92 % (5.157 J^½ at 2e-5 s), mean 3.19 %", 1.17),
-    Example("block_on_two", "result    sup 7.04 % (7.249 J^½ at 2e-5 s), mean 5.58 %", 1.156),
+    Example("block_on_two", "result    sup 6.83 % (7.037 J^½ at 2e-5 s), mean 5.50 %", 1.122),
     Example("two_bars", "result    sup 3.51 % (0.1997 J^½ at 2.4956e-4 s), mean 3.06 %", 1.028),
     Example("cradle", "result    sup 4.55 % (0.2114 J^½ at 2.5e-4 s), mean 3.67 %", 1.05),
     Example("three_blocks", "result    sup 15.6 % (10.24 J^½ at 2e-5 s), mean 10.2 %", 1.111),

@@ -1,6 +1,6 @@
 //! Edges that are found and that face the other surface of their interface.
 
-use super::sides::{FOUND, unit};
+use super::alignment::{FOUND, outward, unit};
 use crate::contact::dot;
 use crate::ids::FacetId;
 use crate::mesh::Mesh;
@@ -35,14 +35,4 @@ pub(super) fn facing_each_other<const D: usize, const N: usize>(
         }
         sides = rest;
     }
-}
-
-/// Σ of outward normals times areas of facets (m or 1).
-pub(super) fn outward<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> [f64; D] {
-    let mut sum = [0.0; D];
-    for &facet in facets {
-        let (normal, area) = mesh.facet_normal(facet);
-        (0..D).for_each(|c| sum[c] += area * normal[c]);
-    }
-    sum
 }

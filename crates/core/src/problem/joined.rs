@@ -2,9 +2,9 @@
 //!
 //! They are solved together, as one interface between the common surface and those of the others.
 
+use super::alignment::{outward, unit};
 use super::bodies::{Contact, Found, ONE_DIRECTION};
-use super::facing_edges::outward;
-use super::sides::{Bodies, unit};
+use super::sides::Bodies;
 use super::{Cause, InputError, Place};
 use crate::contact::dot;
 use crate::ids::{FacetId, NodeId};

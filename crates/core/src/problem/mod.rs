@@ -1,5 +1,6 @@
 //! The reference problem, eq. \[3\]–\[11\], stated and checked.
 
+mod alignment;
 mod bodies;
 mod boundary;
 mod builder;

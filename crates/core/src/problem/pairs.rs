@@ -1,7 +1,8 @@
 //! Pairs of nodes of two bodies that face each other across an interface.
 
 use super::Cause;
-use super::sides::{Bodies, Side, check_nodes, unit};
+use super::alignment::unit;
+use super::sides::{Bodies, Side, check_nodes};
 use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FacetId, NodeId};
 use std::collections::BTreeMap;

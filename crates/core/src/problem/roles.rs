@@ -1,6 +1,7 @@
 //! Which of two surfaces that slide is the slave, and the normal of both.
 
-use super::sides::{Bodies, Side, unit};
+use super::alignment::unit;
+use super::sides::{Bodies, Side};
 use crate::contact::{dot, tangent};
 use crate::ids::NodeId;
 use crate::material::Law;

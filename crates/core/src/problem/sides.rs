@@ -1,18 +1,13 @@
 //! The two sides of an interface.
 
+use super::alignment::{FACES, outward};
 use super::candidates::along_the_boundary;
-use super::facing_edges::outward;
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
-
-/// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
-const FACES: f64 = 0.5;
-/// Edges that are found are better aligned, so that rounding does not refuse them.
-pub(super) const FOUND: f64 = FACES + 1e-9;
 
 /// The data of a problem that interfaces need.
 pub(super) struct Bodies<'m, const D: usize, const N: usize> {
@@ -137,10 +132,4 @@ pub(super) fn check_touching<const D: usize, const N: usize>(
         Some(pair) => Err(Cause::TouchUnstated { elements: pair.map(ElementId::index) }),
         None => Ok(()),
     }
-}
-
-/// A vector of length 1.
-pub(super) fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
-    let length = dot(vector, vector).sqrt();
-    vector.map(|x| x / length)
 }

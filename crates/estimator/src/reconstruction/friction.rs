@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 /// On each candidate facet (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
 /// this density at its end: the trapezoidal rule over its three half-step instants. Facets with a node at two planes
-/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of surfaces that slide have [`add_sliding`].
+/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of surfaces that slide have
+/// [`add_sliding`].
 pub(super) fn friction<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     length: f64,

@@ -38,8 +38,8 @@ pub struct Coupling {
     least: f64,
 }
 
-/// A row of M: its first node of the master, the one after the last, and the place of the first value. Room that is left
-/// has zeros.
+/// A row of M: its first node of the master, the one after the last, and the place of the first value. Room that is
+/// left has zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
     first: usize,

@@ -31,7 +31,7 @@ impl FrictionProblem {
     }
 
     /// Solves by the primal–dual active set of those that stick, for the pressed multipliers, within these limits (N/m)
-    /// of all. `sticking` has the normal and tangential forces of all (N/m) if all pressed ones stick, or is empty. Returns
+    /// of all. `sticking` has the forces of all (N/m) if all pressed ones stick, or is empty. Returns
     /// the number of rounds, 0 if these are within the limits.
     pub(super) fn solve(
         &mut self,

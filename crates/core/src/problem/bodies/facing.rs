@@ -2,7 +2,7 @@
 
 use super::approach::dot;
 use super::outline::{Edge, Outline, Vector};
-use crate::problem::sides::FOUND;
+use crate::problem::alignment::FOUND;
 
 /// Lengths below this part of the size of a body, or of an edge, are rounding, wherever the origin is.
 const TOUCH: f64 = 1e-9;

@@ -148,8 +148,8 @@ mod tests {
 
     const YOUNG: f64 = 70e9;
 
-    /// Energies in both halves of a triangle with this apex over an edge from 0 to 1, cut at a place of the edge, under a
-    /// unit force there: hats of this width on both sides, along this direction.
+    /// Energies in both halves of a triangle with this apex over an edge from 0 to 1, cut at a place of the edge. A
+    /// unit force acts there along a direction: hats of this width on both sides.
     fn energies(apex: [f64; 2], place: f64, width: f64, direction: [f64; 2]) -> Option<[f64; 2]> {
         let law = Elastic::plane_stress(YOUNG, 0.3, 2700.0, 1.0).unwrap();
         let up = [apex[0] - place, apex[1]];

@@ -135,7 +135,8 @@ impl<const D: usize> Concentration<D> {
         })
     }
 
-    /// On each edge of a node, the node at its other end, the halvings of its hat, narrow or not, and the resultant (N).
+    /// On each edge of a node, the node at its other end, the halvings of its hat, narrow or not, and the resultant
+    /// (N).
     pub(super) fn shares<'a>(
         &'a self,
         at: usize,
