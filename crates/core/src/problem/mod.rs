@@ -6,6 +6,7 @@ mod boundary;
 mod builder;
 mod candidates;
 mod contacts;
+mod distance;
 mod error;
 mod facing_edges;
 mod joined;

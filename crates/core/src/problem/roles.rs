@@ -1,6 +1,7 @@
 //! Which of two surfaces that slide is the slave, and the normal of both.
 
 use super::alignment::unit;
+use super::distance::nearest;
 use super::sides::{Bodies, Side};
 use crate::contact::{dot, tangent};
 use crate::ids::NodeId;
@@ -14,9 +15,11 @@ const EQUAL: f64 = 1e-9;
 const FLAT: f64 = 1e-9;
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Which side is the slave: the one of several bodies, else the one that sticks out less beyond the other one at
-    /// the start; of two that do so alike, that with the shorter edges, else that of the softer body, of the lighter
-    /// one, or of the one whose centre of mass is nearer. Of bodies that are all alike it is the lower or the left one.
+    /// Which side is the slave: the one of several bodies, else the one that strikes the other side with a corner, or a
+    /// flat one with a curve: a node is nearer to it at the start than all nodes of that. Else it is the one that sticks
+    /// out less beyond the other one; of two that do so alike, that with the shorter edges, else that of the softer body,
+    /// of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike it is the lower or
+    /// the left one.
     pub(super) fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
         if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
             return several;
@@ -32,6 +35,16 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         });
         let common = (first[1].min(second[1]) - first[0].max(second[0])).max(0.0);
         let lengths = [first, second].map(|[low, high]| high - low);
+        let rounding = EQUAL * lengths[0].min(lengths[1]);
+        let edges = sides.each_ref().map(|side| self.edges(side, displacement));
+        let nodes = nearest(edges.each_ref().map(Vec::as_slice), &direction, &along, rounding);
+        let strikes = |one: usize| {
+            let (own, other) = (nodes[one], nodes[1 - one]);
+            other.distance - own.distance > rounding && (own.is_corner || self.spread(&sides[1 - one]) <= FLAT)
+        };
+        if let Some(striking) = [0, 1].into_iter().find(|&one| strikes(one)) {
+            return striking;
+        }
         let outside = lengths.map(|length| length - common);
         if (outside[0] - outside[1]).abs() > OVERHANG * lengths[0].max(lengths[1]) {
             return usize::from(outside[1] < outside[0]);
@@ -102,6 +115,12 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
             (0..D).for_each(|c| centre[c] += self.mass[index] * place[c]);
         }
         (mass, centre.map(|moment| moment / mass))
+    }
+
+    /// The ends of the edges of a side (m).
+    fn edges(&self, side: &Side<D>, displacement: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
+        let nodes = side.facets.iter().map(|facet| &self.mesh.facets()[facet.index()].nodes);
+        nodes.map(|nodes| std::array::from_fn(|k| self.place(nodes[k.min(nodes.len() - 1)], displacement))).collect()
     }
 
     fn place(&self, node: NodeId, displacement: &[[f64; D]]) -> [f64; D] {

@@ -94,7 +94,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
             return (Touches::Edge, start.to_vec());
         }
         let zone = self.flat_zone(start);
-        if !zone.contains(&true) {
+        if !self.is_along(&zone, start) {
             let turns = start.iter().any(|&at| self.turn(at) > CORNER);
             return (if turns { Touches::Corner } else { Touches::Curve }, start.to_vec());
         }
@@ -110,6 +110,13 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
             () => Touches::Edge,
         };
         (touches, ends)
+    }
+
+    /// Whether contact begins along an edge of this zone: of two surfaces that slide, along edges of both.
+    fn is_along(&self, zone: &[bool], start: &[usize]) -> bool {
+        let (slaves, masters) = self.sides(start);
+        let along = |nodes: &[usize]| nodes.iter().any(|&at| zone[at]);
+        if slaves.is_empty() && masters.is_empty() { along(start) } else { along(&slaves) && along(&masters) }
     }
 
     /// Whether each node is on an edge that is parallel to the plane and joined with the start by such edges.
@@ -156,14 +163,18 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// Whether the outline turns more at a node of a master among these than at the node of a slave that is struck.
     fn is_flat_slave(&self, nodes: &[usize]) -> bool {
-        let sliding = self.problem.surface().sliding();
-        let is_slave = |at: usize| sliding.iter().any(|sliding| sliding.slave().node_at(at).is_some());
-        let slides = |at: usize| self.problem.surface().sliding_of(at).is_some();
-        let (slaves, masters): (Vec<usize>, Vec<usize>) =
-            nodes.iter().copied().filter(|&at| slides(at)).partition(|&at| is_slave(at));
+        let (slaves, masters) = self.sides(nodes);
         let struck = slaves.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
         let sharpest = masters.iter().map(|&at| self.turn(at)).fold(0.0, f64::max);
         struck.is_some_and(|at| sharpest > self.turn(at).max(PARALLEL))
+    }
+
+    /// The nodes among these of slaves, and those of masters, of surfaces that slide.
+    fn sides(&self, nodes: &[usize]) -> (Vec<usize>, Vec<usize>) {
+        let surface = self.problem.surface();
+        let is_slave = |at: usize| surface.sliding().iter().any(|sliding| sliding.slave().node_at(at).is_some());
+        let slides = |at: usize| surface.sliding_of(at).is_some();
+        nodes.iter().copied().filter(|&at| slides(at)).partition(|&at| is_slave(at))
     }
 
     /// The parts of the surface that touch, each joined by edges.

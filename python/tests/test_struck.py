@@ -1,0 +1,85 @@
+"""The verdict on corners and curves that strike a surface along which they slide."""
+
+import json
+from typing import Any
+
+import numpy as np
+import percute as pc
+import pytest
+from percute.verification.block import ALUMINIUM
+from percute.verification.struck import Problem, disc, overlapping, tilted
+
+pytestmark = pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+STRUCK = [0.83, 4.0]
+"""Range of the indices of ``docs/bodies.md``, corners and curves, and as much beyond it."""
+
+
+def verdict(problem: pc.Problem, end: float) -> tuple[pc.Estimate, dict[str, Any]]:
+    estimate = pc.estimate(pc.simulate(problem, end=end, courant=0.9), every=1)
+    found: dict[str, Any] = json.loads(estimate.to_json())["verdict"]
+    return estimate, found
+
+
+@pytest.mark.parametrize(
+    ("problem", "touches"),
+    [(tilted(3.0), "corner"), (tilted(10.0), "corner"), (disc, "curve"), (overlapping(0.0003), "end"), (overlapping(0.003), "end")],
+    ids=["tilted by 3°", "tilted by 10°", "disc", "overlap of 0.3 mm", "overlap of 3 mm"],
+)
+def test_how_bodies_that_slide_touch(problem: Problem, touches: str) -> None:
+    """The upper surface of the plate is an edge: it does not make one of a corner."""
+    estimate, found = verdict(problem(20.0, 0), 6e-6)
+    assert found["touches"] == touches
+    assert found["effectivity"] == STRUCK and estimate.trust == "limited"
+    assert "corners, curves and parts of an edge on surfaces that slide" in found["text"][0]
+    assert found["untested"] == []
+
+
+def test_contact_of_more_than_two_elements_is_none_of_these() -> None:
+    found = verdict(overlapping(0.012)(20.0, 0), 6e-6)[1]
+    assert found["elements_in_contact"] > 2 and found["effectivity"] == [0.83, 1.8]
+
+
+def test_the_extent_of_a_surface_makes_no_difference() -> None:
+    """Stated groups go on to the end of the plate, found ones end beside the contact."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.04, 0.02, nx=8, ny=6), material=law)
+    block = pc.Body(
+        name="block", mesh=pc.Mesh.rectangle(0.02, 0.02, nx=7, ny=6), material=law, origin=(-0.0197, 0.02002), velocity=(0.0, -20.0)
+    )
+    for contact in (pc.Interface(friction=0.2), pc.Interface(groups=("plate.top", "block.bottom"), friction=0.2)):
+        assert verdict(pc.Problem(bodies=[plate, block], contacts=[contact]), 6e-6)[1]["effectivity"] == STRUCK
+
+
+@pytest.mark.parametrize("width", [0.018, 0.024, 0.03, 0.06])
+def test_a_corner_is_seen_by_a_plate_of_any_width(width: float) -> None:
+    """The corner is on the slave, whose node may not enter the plate: mean gaps of edges below it would be no bound."""
+    history = pc.simulate(tilted(10.0, width)(20.0, 0), end=1e-5, courant=0.9)
+    contact = pc.estimate(history, every=1).contact
+    corner = int(np.argmin(np.hypot(*(contact.points - [0.0123, 0.02502]).T)))
+    assert np.isfinite(contact.first_touch[corner])
+    # The gap is a mean over the covered part of an edge, which turns a little. Without contact it would be -0.18 mm.
+    assert np.nanmin(contact.gap[:, corner]) > -1e-9
+    assert contact.impulse[corner, 1] > 1.0
+
+
+def test_a_corner_that_strikes_two_bodies_has_low_trust() -> None:
+    """Surfaces of several bodies are slaves: gaps and tractions are means over their edges."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    half = pc.Mesh.rectangle(0.03, 0.02, nx=6, ny=4)
+    lower = [pc.Body(name=name, mesh=half, material=law, origin=(x, 0.0)) for name, x in (("left", 0.0), ("right", 0.0301))]
+    upper = pc.Body(
+        name="upper", mesh=pc.Mesh.rectangle(0.02, 0.02, nx=7, ny=7), material=law, rotation=10.0, origin=(0.0235, 0.02001), velocity=(0.0, -40.0)
+    )
+    estimate, found = verdict(pc.Problem(bodies=[*lower, upper], contacts=[pc.Interface(friction=0.2)]), 2e-5)
+    assert found["touches"] == "corner" and estimate.trust == "low"
+    assert found["effectivity"] is None and "no range of estimate over true error is known" in found["text"][0]
+    assert "refine that surface" in found["text"][-1]
+
+
+def test_discs() -> None:
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    mesh = pc.Mesh.disc(0.01, rings=3)
+    lower = pc.Body(name="lower", mesh=mesh, material=law)
+    upper = pc.Body(name="upper", mesh=mesh.refine(), material=law, origin=(0.0, 0.0205), velocity=(0.0, -20.0))
+    found = verdict(pc.Problem(bodies=[lower, upper], contacts=[pc.Interface(friction=0.2)]), 4e-5)[1]
+    assert found["touches"] == "curve" and found["effectivity"] == STRUCK
