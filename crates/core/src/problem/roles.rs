@@ -16,10 +16,10 @@ const FLAT: f64 = 1e-9;
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Which side is the slave: the one of several bodies, else the one that strikes the other side with a corner, or a
-    /// flat one with a curve: a node is nearer to it at the start than all nodes of that. Else it is the one that sticks
-    /// out less beyond the other one; of two that do so alike, that with the shorter edges, else that of the softer body,
-    /// of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike it is the lower or
-    /// the left one.
+    /// flat one with a curve: a node is nearer to it at the start than all nodes of that. Else it is the one that
+    /// sticks out less beyond the other one; of two that do so alike, that with the shorter edges, else that of the
+    /// softer body, of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike it
+    /// is the lower or the left one.
     pub(super) fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
         if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
             return several;
