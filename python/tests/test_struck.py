@@ -62,6 +62,30 @@ def test_a_corner_is_seen_by_a_plate_of_any_width(width: float) -> None:
     assert contact.impulse[corner, 1] > 1.0
 
 
+@pytest.mark.parametrize("place", [0.035, 0.0375, 0.039])
+def test_a_disc_beside_the_end_of_a_plate_is_a_curve(place: float) -> None:
+    """The last node of the plate takes a share of the force, but nothing strikes there."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.04, 0.01, nx=12, ny=3), material=law)
+    mesh = pc.Mesh.disc(0.01, rings=3)
+    disc = pc.Body(name="disc", mesh=mesh, material=law, origin=(place, 0.02002), velocity=(0.0, -20.0))
+    estimate, found = verdict(pc.Problem(bodies=[plate, disc], contacts=[pc.Interface(friction=0.2)]), 8e-6)
+    assert found["touches"] == "curve" and found["effectivity"] == STRUCK and estimate.trust == "limited"
+
+
+@pytest.mark.filterwarnings("ignore:.*the run ends at:percute.InputWarning")
+def test_a_run_without_contact_of_surfaces_that_slide_is_limited() -> None:
+    """The corner is inside the plate, whose end covers less than half of its edge: a limit in ``docs/bodies.md``."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=6), material=law)
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6)
+    block = pc.Body(name="block", mesh=mesh, material=law, rotation=10.0, origin=(0.0215, 0.02502), velocity=(0.0, -20.0))
+    estimate, found = verdict(pc.Problem(bodies=[plate, block], contacts=[pc.Interface(friction=0.2)]), 1e-5)
+    assert found["touches"] == "none" and estimate.trust == "limited"
+    assert found["untested"] == ["surfaces that slide without contact"]
+    assert found["text"][-1].startswith("Refine the whole mesh")
+
+
 def test_a_corner_that_strikes_two_bodies_has_low_trust() -> None:
     """Surfaces of several bodies are slaves: gaps and tractions are means over their edges."""
     law = pc.Elastic(**ALUMINIUM, plane="stress")

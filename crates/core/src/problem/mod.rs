@@ -252,6 +252,17 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         obstacle.checked_sub(planes).map(|after| planes + (after ^ 1))
     }
 
+    /// Of two surfaces that slide, of which an obstacle is one, that on whose nodes contact acts; else the obstacle.
+    #[must_use]
+    pub fn slave_of(&self, obstacle: usize) -> usize {
+        let first = self.surface.nodes().iter().position(|contact| contact.obstacle == obstacle);
+        let is_master = |at: &usize| {
+            let sliding = self.surface.sliding_of(*at).map(|sliding| &self.surface.sliding()[sliding]);
+            sliding.is_some_and(|sliding| sliding.slave().node_at(*at).is_none())
+        };
+        first.filter(is_master).and_then(|_| self.opposite_obstacle(obstacle)).unwrap_or(obstacle)
+    }
+
     /// The two surfaces that may touch of which an obstacle is one; none for a plane.
     #[must_use]
     pub fn interface_of(&self, obstacle: usize) -> Option<&Interface> {

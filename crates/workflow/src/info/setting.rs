@@ -53,12 +53,12 @@ pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) ->
         PlaneInfo {
             groups: problem.interface_of(obstacle).map(|interface| interface.groups().map(str::to_string)),
             matching: problem.interface_of(obstacle).map(Interface::is_matching),
-            gap: problem.initial_gap(obstacle),
+            gap: problem.initial_gap(problem.slave_of(obstacle)),
             contact_nodes: mine.count(),
             approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
         }
     };
-    // The two sides of an interface have the same gaps.
+    // The two sides of a pair have the same gaps; of surfaces that slide, those of the slave count.
     (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle)).map(told).collect()
 }
 

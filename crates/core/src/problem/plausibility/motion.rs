@@ -190,7 +190,8 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
     };
     let flight = |obstacle: usize| Some(&flights[on(obstacle).next()?]);
     let several = |obstacle: usize| on(obstacle).any(|body| Some(body) != on(obstacle).next());
-    let approach = |obstacle: usize| {
+    let approach = |leading: usize| {
+        let obstacle = problem.slave_of(leading);
         let (at, gap) = problem.nearest(obstacle)?;
         let node = problem.surface().nodes()[at].node.index();
         let normal = *problem.obstacles()[obstacle].flat_frame().normal();

@@ -68,6 +68,7 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     let touches = match facts.contact.touches {
         Touches::Edge if facts.dimension == 1 => "An end of the bar touches",
         Touches::Edge => "An edge touches",
+        Touches::End if facts.slides => "A part of an edge touches",
         Touches::End => "An edge beside an inclined side touches",
         Touches::Curve => "A curve touches",
         Touches::Corner => "A corner touches",
@@ -105,6 +106,7 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
     }
     let place = match facts.expected {
         _ if facts.flat => return "Make the elements that are nearly flat less so, or mesh again.".to_string(),
+        _ if facts.contact.touches == Touches::None => "Refine the whole mesh",
         _ if facts.contact.single_element => "Cut the corner that one element fills into two elements",
         Some(expected) if expected.surface > LOCAL => "Refine the elements that touch",
         _ => "Refine the whole mesh",

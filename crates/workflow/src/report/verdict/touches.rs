@@ -10,8 +10,10 @@ use std::f64::consts::PI;
 /// Sine of the largest angle between a plane and an edge that counts as parallel to it: coordinates with six digits.
 const PARALLEL: f64 = 1e-5;
 /// Where the outline turns by more (rad), it has a corner; else it is a curve. The evidence has curves of edges that
-/// turn by up to 22.5°, and corners that turn by 45° and more.
-const CORNER: f64 = 30.0 * PI / 180.0;
+/// turn by up to 30°, and corners that turn by 45° and more.
+const CORNER: f64 = 40.0 * PI / 180.0;
+/// Gaps that differ by less than this part of the size of the mesh are equal.
+const EQUAL: f64 = 1e-9;
 /// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes
 /// straight on: the stress is singular there. The evidence has angles of 90° and of 117° and more.
 const OBTUSE: f64 = 100.0 * PI / 180.0;
@@ -54,7 +56,8 @@ impl Contact {
         let (touches, places) = surface.situation(&start);
         let single = |&at: &usize| surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
         let single_element = D > 1 && places.iter().any(single);
-        let strikes_flat_slave = matches!(touches, Touches::Corner | Touches::Curve) && surface.is_flat_slave(&start);
+        let strikes = matches!(touches, Touches::Corner | Touches::Curve);
+        let strikes_flat_slave = strikes && surface.striking(&start).is_some_and(|(_, is_master)| is_master);
         Self { touches, zones: surface.zones(), single_element, strikes_flat_slave }
     }
 }
@@ -95,7 +98,10 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         }
         let zone = self.flat_zone(start);
         if !self.is_along(&zone, start) {
-            let turns = start.iter().any(|&at| self.turn(at) > CORNER);
+            let turns = match self.striking(start) {
+                Some((at, _)) => self.turn(at) > CORNER,
+                None => start.iter().any(|&at| self.turn(at) > CORNER),
+            };
             return (if turns { Touches::Corner } else { Touches::Curve }, start.to_vec());
         }
         let inside = |at: usize| self.beside[at].iter().filter(|&&other| zone[other]).count() > 1;
@@ -161,12 +167,17 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
     }
 
-    /// Whether the outline turns more at a node of a master among these than at the node of a slave that is struck.
-    fn is_flat_slave(&self, nodes: &[usize]) -> bool {
+    /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there it
+    /// is nearer than the mean gap of the slave, and the outline turns more. Other nodes share the force, far from it.
+    fn striking(&self, nodes: &[usize]) -> Option<(usize, bool)> {
         let (slaves, masters) = self.sides(nodes);
-        let struck = slaves.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
-        let sharpest = masters.iter().map(|&at| self.turn(at)).fold(0.0, f64::max);
-        struck.is_some_and(|at| sharpest > self.turn(at).max(PARALLEL))
+        let least = |nodes: Vec<usize>| nodes.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
+        let slave = least(slaves)?;
+        let strikes = |&at: &usize| {
+            let nearer = self.gap[at] < self.gap[slave] - EQUAL * self.problem.mesh().size();
+            nearer && self.turn(at) > self.turn(slave) + PARALLEL
+        };
+        Some(least(masters).filter(strikes).map_or((slave, false), |at| (at, true)))
     }
 
     /// The nodes among these of slaves, and those of masters, of surfaces that slide.
