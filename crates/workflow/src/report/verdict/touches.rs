@@ -167,8 +167,9 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
     }
 
-    /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there it
-    /// is nearer than the mean gap of the slave, and the outline turns more. Other nodes share the force, far from it.
+    /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there
+    /// it is nearer than the mean gap of the slave, and the outline turns more. Nodes far from contact share the force,
+    /// too.
     fn striking(&self, nodes: &[usize]) -> Option<(usize, bool)> {
         let (slaves, masters) = self.sides(nodes);
         let least = |nodes: Vec<usize>| nodes.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
