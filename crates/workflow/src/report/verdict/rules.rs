@@ -292,14 +292,7 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     if let Some(other) = facts.acceleration.filter(|_| !facts.vibrates_with_closest()) {
         untested.push(format!("acceleration `{other}`"));
     }
-    if facts.slides && facts.contact.touches == Touches::None {
-        // A mean gap may be open although a corner is inside the other body.
-        untested.push("surfaces that slide without contact".to_string());
-    }
-    let pairs = facts.bodies && !facts.slides;
-    if pairs && facts.dimension == 2 && !matches!(facts.contact.touches, Touches::Edge | Touches::End) {
-        untested.push("bodies that strike each other so".to_string());
-    }
+    untested.extend(untested_of_bodies(facts).map(str::to_string));
     if facts.slip > SLIP {
         untested.push(format!("pairs of nodes that slip by {} edges", crate::message::short(facts.slip, 2)));
     }
@@ -328,4 +321,16 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
         untested.push("samples instead of steps".to_string());
     }
     untested
+}
+
+/// How bodies touch each other where no case of the evidence has it.
+fn untested_of_bodies(facts: &Facts) -> Option<&'static str> {
+    match facts.contact.touches {
+        _ if !facts.bodies || facts.dimension == 1 => None,
+        // A mean gap may be open although a corner is inside the other body.
+        Touches::None if facts.slides => Some("surfaces that slide without contact"),
+        Touches::Edge | Touches::End => None,
+        _ if facts.slides => None,
+        _ => Some("bodies that strike each other so"),
+    }
 }
