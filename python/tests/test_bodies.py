@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
+from percute.verification.block import ALUMINIUM
 
 BASE = Path(__file__).parents[2] / "tests" / "bases" / "bodies.toml"
 
@@ -367,3 +368,17 @@ def test_bodies_that_overlap_are_named() -> None:
     bodies = [pc.Body(name="anvil", mesh=mesh, material=steel()), pc.Body(name="hammer", mesh=mesh, material=aluminium(), origin=(0, 0.02))]
     with pytest.raises(pc.InputError, match=r'`bodies\[1\]`: "hammer" overlaps "anvil"; bodies may touch'):
         pc.Problem(bodies=bodies)
+
+
+def test_a_body_that_turns_is_a_warning() -> None:
+    """Small rotations are assumed. Without contact the motion is ωt, of which the strain is 0 in linear elasticity."""
+    mesh = pc.Mesh.rectangle(0.02, 0.01, nx=4, ny=2)
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    spin = 4000.0 * (mesh.points - [0.01, 0.005])[:, ::-1] * [-1.0, 1.0]
+    problem = pc.Problem(mesh, material=law, initial_velocity=spin)
+    with pytest.warns(pc.SimulationWarning, match=r"a body turns by up to 0\.040 rad.* counts as a strain of 8\.0e-4"):
+        estimate = pc.estimate(pc.simulate(problem, end=1e-5, courant=0.9))
+    assert any("turns" in told for told in estimate.warnings)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", pc.SimulationWarning)
+        pc.estimate(pc.simulate(problem, end=4e-6, courant=0.9))

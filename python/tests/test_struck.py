@@ -7,7 +7,7 @@ import numpy as np
 import percute as pc
 import pytest
 from percute.verification.block import ALUMINIUM
-from percute.verification.struck import Problem, disc, overlapping, tilted
+from percute.verification.struck import Problem, beside_end, disc, overlapping, tilted
 
 pytestmark = pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 STRUCK = [0.83, 4.0]
@@ -62,6 +62,58 @@ def test_a_corner_is_seen_by_a_plate_of_any_width(width: float) -> None:
     assert contact.impulse[corner, 1] > 1.0
 
 
+@pytest.mark.parametrize("angle", [10.0, 28.0])
+@pytest.mark.parametrize("covered", [0.1, 0.3, 0.49, 0.51, 0.9])
+def test_a_corner_beside_the_end_of_a_plate_does_not_enter(angle: float, covered: float) -> None:
+    """The plate covers a part of the edge beside the corner, of which the gap at the corner is known."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.024, 0.025, nx=10, ny=10), material=law)
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=16, ny=10)
+    place = 0.024 - covered * 0.0025 * np.cos(np.radians(angle))
+    block = pc.Body(name="block", mesh=mesh, material=law, rotation=angle, origin=(place, 0.02502), velocity=(0.0, -20.0))
+    history = pc.simulate(pc.Problem(bodies=[plate, block], contacts=[pc.Interface(friction=0.2)]), end=2e-5, courant=0.9)
+    corner = len(plate.mesh.points)
+    top = np.unique(plate.mesh.edge_groups["top"])
+    places = np.asarray(history.problem.mesh.points) + history.displacement
+    face = [np.interp(place[corner, 0], *place[top].T) for place in places]
+    # The gap is that at places of the undeformed surfaces, of which strains of 1e-3 move the corner by micrometres along a face of slope 0.05. One step of
+    # 0.28 µs without contact would be -5.6 µm.
+    assert (places[:, corner, 1] - face).min() > -2e-7
+    force = np.linalg.norm(history.contact.force, axis=-1).sum(axis=1)
+    # The gap of 20 µm closes after 1 µs; a step is 0.28 µs long, and the force acts at its start.
+    assert 0.7e-6 < history.time[np.argmax(force > 0.0)] < 1e-6
+
+
+@pytest.mark.filterwarnings("ignore:.*the run ends at:percute.InputWarning")
+def test_a_corner_that_enters_is_a_warning() -> None:
+    """The corner of the plate is between a short edge and a long one, which the block covers by less than half: its gap is a mean."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.02, 0.025, nx=7, ny=3), material=law)
+    turned = np.radians(57.0)
+    below, along = np.array([np.sin(turned), -np.cos(turned)]), np.array([np.cos(turned), np.sin(turned)])
+    origin = np.array([0.0, 0.025]) - 5e-5 * below - 0.002 * along
+    mesh = pc.Mesh.rectangle(0.01, 0.005, nx=7, ny=4)
+    block = pc.Body(name="block", mesh=mesh, material=law, rotation=57.0, origin=(origin[0], origin[1]), velocity=(0.0, -50.0))
+    history = pc.simulate(pc.Problem(bodies=[plate, block], contacts=[pc.Interface(friction=0.2)]), end=1.2e-5, courant=0.9)
+    # 50 m/s for 12 µs less the gap, on the slope of the face, over an edge of 20/7 mm.
+    with pytest.warns(pc.SimulationWarning, match=r"up to 0\.\d+ of its edge inside the other body"):
+        estimate = pc.estimate(history, every=1)
+    assert estimate.trust != "high" and any("inside the other body" in told for told in estimate.warnings)
+    assert any("inside the other body" in told for told in json.loads(estimate.to_json())["verdict"]["untested"])
+
+
+@pytest.mark.parametrize("angle", [3.0, 28.0])
+def test_the_estimate_of_a_corner_beside_the_end_of_a_plate(angle: float) -> None:
+    """At low speed the force is narrower than the part of the edge that the plate covers. With a density over this part the index is up to 10."""
+    problem = beside_end(angle)
+    history = pc.simulate(problem(2.0, 0), end=14e-6, courant=0.9)
+    estimate = pc.estimate(history, every=1)
+    assert json.loads(estimate.to_json())["largest_residual"]["value"] < 1e-10
+    [error] = pc.true_errors([history], problem(2.0, 2), end=14e-6, courant=0.9)
+    for index in (estimate.sup / error.sup, estimate.mean / error.mean):
+        assert STRUCK[0] < index < STRUCK[1]
+
+
 @pytest.mark.parametrize("place", [0.035, 0.0375, 0.039])
 def test_a_disc_beside_the_end_of_a_plate_is_a_curve(place: float) -> None:
     """The last node of the plate takes a share of the force, but nothing strikes there."""
@@ -75,12 +127,12 @@ def test_a_disc_beside_the_end_of_a_plate_is_a_curve(place: float) -> None:
 
 @pytest.mark.filterwarnings("ignore:.*the run ends at:percute.InputWarning")
 def test_a_run_without_contact_of_surfaces_that_slide_is_limited() -> None:
-    """The corner is inside the plate, whose end covers less than half of its edge: a limit in ``docs/bodies.md``."""
-    law = pc.Elastic(**ALUMINIUM, plane="stress")
-    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=6), material=law)
-    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6)
-    block = pc.Body(name="block", mesh=mesh, material=law, rotation=10.0, origin=(0.0215, 0.02502), velocity=(0.0, -20.0))
-    estimate, found = verdict(pc.Problem(bodies=[plate, block], contacts=[pc.Interface(friction=0.2)]), 1e-5)
+    """The block vibrates before it strikes."""
+    struck = tilted(10.0)(20.0, 2)
+    velocity = np.array(struck.initial_velocity)
+    velocity[:, 1] *= 1.0 + struck.mesh.points[:, 0] ** 2 / 0.04
+    problem = pc.Problem(struck.mesh, material=struck.material, contacts=struck.contacts, initial_velocity=velocity)
+    estimate, found = verdict(problem, 8e-7)
     assert found["touches"] == "none" and estimate.trust == "limited"
     assert found["untested"] == ["surfaces that slide without contact"]
     assert found["text"][-1].startswith("Refine the whole mesh")

@@ -116,7 +116,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         // Equal steps need no critical step.
         let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
         let subject = Subject { name: "", problem, times, critical_step, held: *held, checked: checked.as_ref() };
-        warnings_of(&subject, *options, &simulation.balance, estimate, contact.slip)
+        warnings_of(&subject, *options, &simulation.balance, estimate, contact)
     }
 
     /// A document made from the report; if that is there as a text only, this text, which has all of it.

@@ -37,6 +37,19 @@ def tilted(angle: float, width: float = 0.06) -> Problem:
     return problem
 
 
+def beside_end(angle: float) -> Problem:
+    """Give a block of 40 × 25 mm, tilted (°), whose corner strikes 1.5 mm beside the end of a plate of 24 × 25 mm: 0.3 of its edge on the first mesh."""
+
+    def problem(speed: float, refinements: int) -> pc.Problem:
+        block = pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5).refine(refinements)
+        plate = pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5).refine(refinements)
+        law = pc.Elastic(**ALUMINIUM, plane="stress")
+        above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0225, 0.025 + WAY * speed), velocity=(0.0, -speed))
+        return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
+
+    return problem
+
+
 def disc(speed: float, refinements: int) -> pc.Problem:
     """Give a disc of steel, of 10 mm radius, that strikes a plate of 40 × 10 mm of aluminium."""
     mesh = pc.Mesh.disc(0.01, rings=3).refine(refinements)
@@ -64,6 +77,7 @@ def _struck(above: pc.Body, plate: pc.Body) -> pc.Problem:
 CASES: tuple[tuple[str, Problem, float], ...] = (
     *((f"block tilted by {angle:g}°", tilted(angle), 14e-6) for angle in (3.0, 10.0, 29.0)),
     ("block tilted by 10° that sticks out of a plate of 30 mm", tilted(10.0, width=0.03), 14e-6),
+    *((f"block tilted by {angle:g}°, 1.5 mm beside the end of a plate", beside_end(angle), 14e-6) for angle in (3.0, 28.0)),
     ("disc", disc, 12e-6),
     *((f"block that overlaps a plate by {1e3 * overlap:g} mm", overlapping(overlap), 10e-6) for overlap in (0.0003, 0.001, 0.003)),
 )

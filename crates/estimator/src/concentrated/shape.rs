@@ -123,18 +123,24 @@ impl<'a> ShapeCosts<'a> {
     /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored
     /// shapes may cost the same: rounding must not choose between them, and the best symmetric one is taken.
     pub(crate) fn shape(&self, normal: f64) -> TractionShape {
-        let halvings = || 0..=HATS;
+        self.shape_within(normal, [0; 2])
+    }
+
+    /// The same of hats with so many halvings at least on each edge.
+    pub(crate) fn shape_within(&self, normal: f64, least: [usize; 2]) -> TractionShape {
+        let halvings = |edge: usize| least[edge]..=HATS;
         if self.gaps.len() == 1 {
-            return self.cheapest(halvings().map(TractionShape::of_one), normal).1;
+            return self.cheapest(halvings(0).map(TractionShape::of_one), normal).1;
         }
         let pair = |halvings: [usize; 2]| {
             let share = self.share(halvings, normal);
             TractionShape::of_two([share, 1.0 - share], halvings)
         };
-        let (cost, best) = self.cheapest(halvings().flat_map(|a| halvings().map(move |b| [a, b])).map(pair), normal);
+        let (cost, best) = self.cheapest(halvings(0).flat_map(|a| halvings(1).map(move |b| [a, b])).map(pair), normal);
         let [first, second] = best.hats.map(|hat| hat.halvings);
-        let tied = first != second && self.cost(&pair([second, first]), normal) <= (1.0 + TIE) * cost;
-        if tied { self.cheapest(halvings().map(|k| pair([k, k])), normal).1 } else { best }
+        let alike = least[0] == least[1] && first != second;
+        let tied = alike && self.cost(&pair([second, first]), normal) <= (1.0 + TIE) * cost;
+        if tied { self.cheapest(halvings(0).map(|k| pair([k, k])), normal).1 } else { best }
     }
 
     /// The cheapest of some shapes, with its cost over the normal force (m).
@@ -255,6 +261,26 @@ mod tests {
                     let closed = costs.cost(&shape(costs.share([a, b], force)), force);
                     assert!(closed <= least * (1.0 + 1e-12), "{a} {b} {closed} {least}");
                 }
+            }
+        }
+    }
+
+    /// Hats within a part of an edge are the best of those that are halved often enough.
+    #[test]
+    fn hats_may_be_within_a_part_of_an_edge() {
+        let (energy, gaps) = corner(0.3);
+        let costs = costs(&energy, &gaps);
+        for force in [1e2, 1e5, 1e8] {
+            for least in [[1, 0], [0, 3], [2, 5], [HATS, HATS]] {
+                let shape = costs.shape_within(force, least);
+                assert!(shape.iter().zip(least).all(|(hat, least)| hat.halvings >= least), "{shape:?}");
+                let pairs = (least[0]..=HATS).flat_map(|a| (least[1]..=HATS).map(move |b| [a, b]));
+                let cost = |pair| {
+                    let share = costs.share(pair, force);
+                    costs.cost(&TractionShape::of_two([share, 1.0 - share], pair), force)
+                };
+                let best = pairs.map(cost).fold(f64::INFINITY, f64::min);
+                assert!(costs.cost(&shape, force) <= best * (1.0 + TIE), "{force} {least:?}");
             }
         }
     }

@@ -36,7 +36,7 @@ impl Report {
         let Subject { name, times, critical_step, held, checked, problem: problem_of } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
-        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate, contact.slip);
+        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate, contact);
         warnings.extend(told_before);
         Self {
             format: FORMAT,
@@ -109,14 +109,13 @@ fn foreseen<const D: usize, const N: usize>(
     all
 }
 
-/// The warnings of a result: those that only the result shows, and those that a run is told of before. `slip` is that
-/// of [`ContactResults`].
+/// The warnings of a result: those that only the result shows, and those that a run is told of before.
 pub fn warnings_of<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
     balance: &Balance,
     estimate: &Estimate<D>,
-    slip: f64,
+    contact: &ContactResults<D>,
 ) -> [Vec<Warning>; 2] {
     let Subject { times, checked, critical_step, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
@@ -132,7 +131,9 @@ pub fn warnings_of<const D: usize, const N: usize>(
         reconstruction: options.reconstruction,
         kept_impulse: estimate.kept_impulse,
         own_contacts: estimate.own_contacts,
-        slip,
+        slip: contact.slip,
+        depth: contact.depth,
+        rotation: contact.rotation,
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),
         critical_step,

@@ -115,7 +115,7 @@ impl Coupling {
         let ends = [slave.xi()[first], slave.xi()[first + 1]];
         let segments = &self.segments[self.before[edge]..];
         let moments = Moments::of(ends, inverse, segments);
-        let shape = moments.shape(ends[1] - ends[0]);
+        let shape = moments.shape(ends[1] - ends[0], slave.is_end(edge));
         self.shapes.push(shape);
         let [one, two] = moments.hats;
         match shape {
@@ -123,6 +123,14 @@ impl Coupling {
             DualShape::Both(_) => {
                 self.slave[first][1] += one;
                 self.slave[first + 1][1] += two;
+            }
+            DualShape::Part(hats) => {
+                // Each multiplier stands for one end of the part: ∫ψ_k f = f there times half of the length.
+                let half = 0.5 * moments.covered;
+                self.slave[first][1] += half * (1.0 - hats[0]);
+                self.slave[first][2] += half * hats[0];
+                self.slave[first + 1][0] += half * (1.0 - hats[1]);
+                self.slave[first + 1][1] += half * hats[1];
             }
             DualShape::One(0) => {
                 self.slave[first][1] += one;

@@ -75,6 +75,31 @@ impl<'a, const D: usize> Facing<'a, D> {
         if matches!(place, Place::Slave(_)) { gap } else { -gap }
     }
 
+    /// How deep a node of two surfaces that slide is inside the other one at its own place, along the normal (m): a
+    /// weighted gap that is not negative does not exclude it. 0 outside, beside the other surface and elsewhere.
+    #[must_use]
+    pub fn depth(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
+        let Some((sliding, coupling, place)) = self.place(at) else { return 0.0 };
+        let (slave, master) = (sliding.slave(), sliding.master());
+        let eta = |side: &Side, node: usize| {
+            side.eta()[node] + dot(&displacement[self.node(side, node)], sliding.frame().normal())
+        };
+        let gap = match place {
+            Place::Slave(node) => {
+                let (places, xi) = (coupling.places(slave.part_of(node)), slave.xi()[node]);
+                if aside(places, master.edges(), xi) > 0.0 {
+                    return 0.0;
+                }
+                eta(slave, node) - interpolated(places, xi, |node| eta(master, node))
+            }
+            Place::Master(_) if !faces(sliding, coupling, place) => return 0.0,
+            Place::Master(_) => {
+                -difference(sliding, coupling, place, (|node| eta(slave, node), |node| eta(master, node)))
+            }
+        };
+        (-gap).max(0.0)
+    }
+
     /// Whether a node has a condition of contact of its own: of a slave it faces the master, of a master it has none.
     #[must_use]
     pub fn has_condition(&self, at: usize) -> bool {
@@ -121,7 +146,7 @@ fn faces<const D: usize>(sliding: &SlidingSurfaces<D>, coupling: &Coupling, plac
         Place::Slave(node) => coupling.is_active(node),
         Place::Master(node) => {
             let slave = sliding.slave();
-            (0..slave.parts().len()).any(|part| aside(slave, part, coupling.places(part)[node]) <= 0.0)
+            (0..slave.parts().len()).any(|part| beside(slave, part, coupling.places(part)[node]) <= 0.0)
         }
     }
 }
@@ -144,7 +169,7 @@ fn difference<const D: usize>(
         Place::Master(node) => {
             // The body that it faces, or is nearest to.
             let side = sliding.slave();
-            let away = |part: &usize| aside(side, *part, coupling.places(*part)[node]);
+            let away = |part: &usize| beside(side, *part, coupling.places(*part)[node]);
             let part = (0..side.parts().len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
             let nodes = side.parts()[part].nodes.clone();
             let first = nodes.start;
@@ -154,8 +179,12 @@ fn difference<const D: usize>(
 }
 
 /// How far a place is beside the edges of a part (m); 0 on one of them.
-fn aside(side: &Side, part: usize, place: f64) -> f64 {
-    let (xi, edges) = (side.xi(), &side.edges()[side.parts()[part].edges.clone()]);
+fn beside(side: &Side, part: usize, place: f64) -> f64 {
+    aside(side.xi(), &side.edges()[side.parts()[part].edges.clone()], place)
+}
+
+/// The same of edges by their first nodes, with the places of all nodes.
+fn aside(xi: &[f64], edges: &[usize], place: f64) -> f64 {
     let after = edges.partition_point(|&first| xi[first] <= place);
     let before = after.checked_sub(1).map_or(f64::INFINITY, |edge| place - xi[edges[edge] + 1]);
     before.min(edges.get(after).map_or(f64::INFINITY, |&first| xi[first] - place)).max(0.0)

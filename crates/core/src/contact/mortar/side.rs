@@ -66,6 +66,14 @@ impl Side {
         self.parts.partition_point(|part| part.edges.end <= edge)
     }
 
+    /// Whether each node of an edge has no other one: the surface ends there.
+    #[inline]
+    pub(super) fn is_end(&self, edge: usize) -> [bool; 2] {
+        let first = self.edges[edge];
+        let before = edge.checked_sub(1).is_some_and(|before| self.edges[before] + 1 == first);
+        [!before, self.edges.get(edge + 1) != Some(&(first + 1))]
+    }
+
     /// The part of a node.
     #[inline]
     #[must_use]

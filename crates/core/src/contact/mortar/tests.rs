@@ -165,16 +165,37 @@ fn one_side_may_be_narrower() {
     assert!(apart.segments().is_empty() && (0..4).all(|k| !apart.is_active(k)));
 }
 
-/// The node inside the overlap, and in the middle of an edge the nearer one, has the multiplier.
+/// From a node at the end of the slave on, a part of an edge has a multiplier for each of its ends, but for a short
+/// one. Elsewhere the node inside the overlap has the only one, and in the middle of an edge the nearer one.
 #[test]
-fn an_edge_that_is_covered_in_part_has_one_multiplier() {
+fn an_edge_may_be_covered_in_part() {
     let slave = side(&[0.0, 1.0, 2.0]);
     let shape = |from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(0);
     assert_eq!(shape(0.6, 3.0), DualShape::One(1));
-    assert_eq!(shape(-1.0, 0.45), DualShape::One(0));
+    assert_eq!(shape(-1.0, 0.45), DualShape::Part([0.0, 0.45]));
+    assert_eq!(shape(-1.0, 0.015), DualShape::One(0));
+    let last = |from: f64| coupling(&slave, &side(&[from, 3.0]), 0.0).shape(1);
+    assert_eq!(last(1.75), DualShape::Part([0.75, 1.0]));
+    assert_eq!(last(1.985), DualShape::One(1));
     assert_eq!(shape(0.55, 0.8), DualShape::One(1));
     assert!(matches!(shape(0.5, 3.0), DualShape::Both(_)));
     assert_eq!(shape(1.5, 3.0), DualShape::None);
+}
+
+/// The gaps of a slave that is covered by less than half of an edge are those at both ends of the part.
+#[test]
+fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
+    let slave = side(&[0.0, 1.0]);
+    for covered in [0.02, 0.3, 0.49] {
+        for (from, to) in [(-1.0, covered), (1.0 - covered, 3.0)] {
+            let coupling = coupling(&slave, &side(&[from, to]), 0.0);
+            let gap = |xi: f64| 0.2 + 0.7 * xi;
+            let found = [0, 1].map(|k| coupling.difference(k, |k| gap(slave.xi()[k]), |_| 0.0) / coupling.weight(k));
+            for (found, expected) in found.into_iter().zip([from.max(0.0), to.min(1.0)].map(gap)) {
+                assert!((found - expected).abs() < 1e-14, "{covered}: {found} {expected}");
+            }
+        }
+    }
 }
 
 /// A surface in two pieces: nothing acts in the hole.

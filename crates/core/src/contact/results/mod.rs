@@ -7,6 +7,7 @@
 
 mod recorder;
 mod resultant;
+mod rotation;
 mod summary;
 
 pub use recorder::{ContactMemoryError, ContactRecorder};
@@ -33,6 +34,11 @@ pub struct ContactResults<const D: usize> {
     /// The farthest that two nodes of different bodies in contact were moved along their interface, over the length of
     /// their shortest edge; 0 without such nodes.
     pub slip: f64,
+    /// The deepest that a node of two surfaces that slide was inside the other body at its own place, along the normal,
+    /// over the length of its shortest edge: its gap is a mean. 0 without such nodes.
+    pub depth: f64,
+    /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
+    pub rotation: f64,
     /// All nodes at all instants, if requested.
     pub steps: Option<ContactSteps<D>>,
 }

@@ -1,6 +1,7 @@
 //! Contact results of the steps of a run or a history.
 
 use super::resultant::{Share, Sum};
+use super::rotation::Rotation;
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
@@ -35,8 +36,9 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     now: Vec<NodeState<D>>,
     /// What the nodes face at the instant that is recorded.
     facing: Facing<'p, D>,
-    /// The shortest edge of each node of a pair (m); infinite at rigid obstacles, and on a bar.
+    /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
+    rotation: Rotation<D>,
     results: ContactResults<D>,
 }
 
@@ -61,12 +63,15 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             total: Vec::new(),
             obstacles: vec![Vec::new(); problem.obstacles().len()],
             slip: 0.0,
+            depth: 0.0,
+            rotation: 0.0,
             steps: None,
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let facing = problem.surface().facing(problem.initial_displacement());
-        Self { problem, times, laws, now, facing, shortest: shortest_edges(problem), results }
+        let (shortest, rotation) = (shortest_edges(problem), Rotation::new(problem, times.step_count()));
+        Self { problem, times, laws, now, facing, shortest, rotation, results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -98,11 +103,14 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         let frame = surface.frame(at, &relative);
         let status = self.laws[at].status(&frame, &force);
         let normal_force = frame.split(&force).0;
-        if status != Status::Free && self.shortest[at] < f64::INFINITY {
+        let is_of_pair = surface.nodes()[at].opposite.is_some();
+        if status != Status::Free && is_of_pair {
             let (_, aside) = frame.split(&relative);
             let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
             self.results.slip = self.results.slip.max(slip);
         }
+        let depth = self.facing.depth(at, step.displacement) / self.shortest[at];
+        self.results.depth = self.results.depth.max(depth);
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
@@ -161,6 +169,7 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
         self.facing.update(step.displacement);
+        self.results.rotation = self.results.rotation.max(self.rotation.at(step.index, step.displacement));
         for at in 0..self.now.len() {
             let share = self.node(at, step);
             sums[self.results.nodes[at].obstacle].add(&share);
@@ -194,7 +203,8 @@ fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Ve
     let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
     for facet in surface.facets().iter().filter(|_| D > 1) {
         let (_, length) = problem.mesh().facet_normal(facet.facet);
-        for &at in facet.nodes.iter().filter(|&&at| surface.nodes()[at].opposite.is_some()) {
+        let is_of_body = |at: usize| surface.nodes()[at].opposite.is_some() || surface.sliding_of(at).is_some();
+        for &at in facet.nodes.iter().filter(|&&at| is_of_body(at)) {
             shortest[at] = shortest[at].min(length);
         }
     }

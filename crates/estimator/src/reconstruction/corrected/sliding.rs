@@ -4,14 +4,14 @@
 //! such a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions
 //! by a correction over all nodes that act. Where edges of the slave leave the master, the density of a node is hats.
 
-use super::concentration::Concentration;
+use super::concentration::{Concentration, Reach};
 use super::impulse_smoothing::Stopped;
 use super::moment_correction::{CorrectedNode, Group};
 use crate::concentrated::TractionShape;
 use crate::contact_density::{SlaveHat, SlidingDensity, SlidingFacets};
 use crate::direction::along;
 use crate::partition::pieces;
-use percute_core::contact::{Coupling, Part, Segment, Side, SlidingSurfaces};
+use percute_core::contact::{Coupling, DualShape, Part, Segment, Side, SlidingSurfaces};
 use percute_core::history::State;
 use percute_core::ids::ElementId;
 use percute_core::material::{Law, LinearLaw};
@@ -117,7 +117,8 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
     }
 
     /// Adds the shapes of the tractions of the nodes of slaves to those of all nodes of the contact surface. There is
-    /// none where the density over whole edges is best, and none beside the end of the master.
+    /// none where the density over whole edges is best. Beside the end of the master, hats are within the part of the
+    /// edge that it faces.
     pub(super) fn add_shapes(
         &self,
         concentration: &Concentration<D>,
@@ -128,9 +129,10 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         let (problem, surface) = (self.problem, self.problem.surface());
         for ((sliding, coupling), compliance) in surface.sliding().iter().zip(couplings).zip(&self.compliance) {
             let slave = sliding.slave();
-            for k in (0..slave.len()).filter(|&k| is_inside(slave, coupling, k)) {
-                let at = slave.position(k);
-                shapes[at] = concentration.shape(problem, at, (&forces[at], *compliance), gap);
+            for k in 0..slave.len() {
+                let (at, Some([before, after])) = (slave.position(k), reaches(slave, coupling, k)) else { continue };
+                let reach = |far: usize| if slave.node_at(far).is_some_and(|far| far < k) { before } else { after };
+                shapes[at] = concentration.shape_within(problem, at, (&forces[at], *compliance), gap, reach);
             }
         }
     }
@@ -214,19 +216,34 @@ fn compliance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: 
 /// Parts of an edge nearer than this part of its length have nothing between them.
 const JOINED: f64 = 1e-12;
 
-/// Whether the master faces all of the edges of a node of the slave.
-fn is_inside(slave: &Side, coupling: &Coupling, node: usize) -> bool {
-    let faces = |edge: usize| {
+/// How far the master faces the edges of a node of the slave, before and after it. None where it does not face one of
+/// them from the node on, and where gaps on a part of an edge are not known.
+fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]> {
+    let reach = |edge: usize, end: usize| -> Option<Reach> {
         let first = slave.edges()[edge];
         let (own, segments) = ([slave.xi()[first], slave.xi()[first + 1]], coupling.segments_of(edge));
-        let ends = [segments.first().map(|s| s.ends[0]), segments.last().map(|s| s.ends[1])];
+        let ends = [segments.first()?.ends[0], segments.last()?.ends[1]];
         // A step of the master has two ends at one place, to rounding; a slot is wider.
         let joined = |pair: &[Segment]| pair[1].ends[0] - pair[0].ends[1] <= JOINED * (own[1] - own[0]);
-        ends == own.map(Some) && segments.windows(2).all(joined)
+        if ends[end] != own[end] || !segments.windows(2).all(joined) {
+            return None;
+        }
+        if ends == own {
+            return Some(Reach::WHOLE);
+        }
+        let faces = (ends[1] - ends[0]) / (own[1] - own[0]);
+        match coupling.shape(edge) {
+            DualShape::Both(_) => Some(Reach { faces, known: 1.0 }),
+            DualShape::Part(_) => Some(Reach { faces, known: faces }),
+            DualShape::None | DualShape::One(_) => None,
+        }
     };
-    let own = [node.checked_sub(1), Some(node)].into_iter().flatten();
-    let mut own = own.filter_map(|first| slave.edges().binary_search(&first).ok()).peekable();
-    own.peek().is_some() && own.all(faces)
+    let edge = |first: Option<usize>| first.and_then(|first| slave.edges().binary_search(&first).ok());
+    let edges = [edge(node.checked_sub(1)), edge(Some(node))];
+    edges.iter().any(Option::is_some).then_some(())?;
+    // The node is the second one of the edge before it.
+    let [before, after] = [0, 1].map(|k| edges[k].map_or(Some(Reach::WHOLE), |edge| reach(edge, 1 - k)));
+    Some([before?, after?])
 }
 
 /// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves.

@@ -45,8 +45,9 @@ pub(super) fn write<const D: usize>(
     write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
     write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
-    if results.slip > 0.0 {
-        write("slip", "", &[1], &[results.slip])?;
+    let largest = [("slip", "", results.slip), ("depth", "", results.depth), ("rotation", "rad", results.rotation)];
+    for (name, of, value) in largest.into_iter().filter(|(.., value)| *value > 0.0) {
+        write(name, of, &[1], &[value])?;
     }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;
     write("gap", "m", &[instants, nodes], &steps.gap)?;

@@ -53,7 +53,9 @@ impl Reader<'_, '_> {
         }
         let steps = self.steps(instants.len(), count)?;
         Ok(ContactResults {
-            slip: self.slip()?,
+            slip: self.one("slip")?,
+            depth: self.one("depth")?,
+            rotation: self.one("rotation")?,
             nodes: self.places(&node, of_obstacles.len())?,
             summary: self.summary(count, &steps)?,
             total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,
@@ -63,11 +65,11 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// 0 unless bodies touch each other.
-    fn slip(&self) -> Result<f64, FileCause> {
-        let Some(slip) = self.part.optional("slip")? else { return Ok(0.0) };
-        slip.expect(&[1], "one number")?;
-        Ok(slip.floats()?[0])
+    /// A number that is left out where it is 0.
+    fn one(&self, name: &str) -> Result<f64, FileCause> {
+        let Some(number) = self.part.optional(name)? else { return Ok(0.0) };
+        number.expect(&[1], "one number")?;
+        Ok(number.floats()?[0])
     }
 
     fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<ContactPoint<D>>, FileCause> {

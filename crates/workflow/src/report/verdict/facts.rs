@@ -46,6 +46,8 @@ pub(in crate::report) struct Facts {
     pub(super) slides: bool,
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
     pub(super) slip: f64,
+    /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
+    pub(super) depth: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -122,6 +124,7 @@ impl Facts {
             bodies,
             slides: !problem.surface().sliding().is_empty(),
             slip: results.slip,
+            depth: results.depth,
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

@@ -4,7 +4,7 @@
 use super::facts::Facts;
 use super::touches::Touches;
 use crate::message::percent;
-use crate::report::warnings::SLIP;
+use crate::report::warnings::{DEPTH, SLIP};
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
@@ -292,10 +292,7 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     if let Some(other) = facts.acceleration.filter(|_| !facts.vibrates_with_closest()) {
         untested.push(format!("acceleration `{other}`"));
     }
-    untested.extend(untested_of_bodies(facts).map(str::to_string));
-    if facts.slip > SLIP {
-        untested.push(format!("pairs of nodes that slip by {} edges", crate::message::short(facts.slip, 2)));
-    }
+    untested.extend(untested_of_bodies(facts));
     if facts.dimension == 2 && facts.contact.touches == Touches::Edge && facts.passages > LONGEST {
         untested.push(format!("{} wave passages", crate::message::short(facts.passages, 2)));
     }
@@ -324,13 +321,18 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
 }
 
 /// How bodies touch each other where no case of the evidence has it.
-fn untested_of_bodies(facts: &Facts) -> Option<&'static str> {
-    match facts.contact.touches {
+fn untested_of_bodies(facts: &Facts) -> Vec<String> {
+    let touches = match facts.contact.touches {
         _ if !facts.bodies || facts.dimension == 1 => None,
         // A mean gap may be open although a corner is inside the other body.
         Touches::None if facts.slides => Some("surfaces that slide without contact"),
         Touches::Edge | Touches::End => None,
         _ if facts.slides => None,
         _ => Some("bodies that strike each other so"),
-    }
+    };
+    let edges = |value: f64| crate::message::short(value, 2);
+    let slip = (facts.slip > SLIP).then(|| format!("pairs of nodes that slip by {} edges", edges(facts.slip)));
+    let depth = (facts.depth > DEPTH)
+        .then(|| format!("nodes that are {} of an edge inside the other body", edges(facts.depth)));
+    touches.map(str::to_string).into_iter().chain(slip).chain(depth).collect()
 }

@@ -7,7 +7,7 @@
 mod own_forces;
 mod star;
 
-use crate::concentrated::{HatStress, LoadedStar, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
+use crate::concentrated::{HATS, HatStress, LoadedStar, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 use crate::stress::StressResiduals;
@@ -29,6 +29,25 @@ pub(crate) struct Concentration<const D: usize> {
     tolerance: f64,
 }
 
+/// The part of an edge of a node that faces the obstacle, from the node on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reach {
+    /// The part of its length.
+    pub(super) faces: f64,
+    /// The part of its length at which the gap of the other node is.
+    pub(super) known: f64,
+}
+
+impl Reach {
+    /// All of an edge.
+    pub(super) const WHOLE: Self = Self { faces: 1.0, known: 1.0 };
+
+    /// How often the edge is halved until a hat is within this part.
+    fn halvings(&self) -> usize {
+        (0..=HATS).find(|&k| 0.5_f64.powi(k as i32) <= self.faces).unwrap_or(HATS + 1)
+    }
+}
+
 impl<const D: usize> Concentration<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         let nodes = NodeStar::all(problem);
@@ -45,20 +64,42 @@ impl<const D: usize> Concentration<D> {
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node under a force (N), where what it touches makes its compliance so many
-    /// times larger. None where its tributary density is best: where no edge leaves the plane, or rounding spoils the
-    /// stress of hats.
+    /// The shape of the traction of one node on edges that face their obstacle as a whole, see [`Self::shape_within`].
     pub(super) fn shape<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        at: usize,
+        force: (&[f64; D], f64),
+        gap: &[f64],
+    ) -> Option<TractionShape> {
+        self.shape_within(problem, at, force, gap, |_| Reach::WHOLE)
+    }
+
+    /// The shape of the traction of one node under a force (N), where what it touches makes its compliance so many
+    /// times larger, on the edges to other nodes, of which these parts face the obstacle. None where its tributary
+    /// density is best: where no edge leaves the plane, where a hat as wide as a part is best, or where rounding spoils
+    /// the stress of hats.
+    pub(super) fn shape_within<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         at: usize,
         (force, compliance): (&[f64; D], f64),
         gap: &[f64],
+        reach: impl Fn(usize) -> Reach,
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
-        let gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
-        Some(self.costs(problem, at, &force.map(|f| f / normal), &gaps)?.shape(compliance * normal))
+        let mut gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
+        let edges = &self.nodes[at].edges;
+        gaps.iter_mut().zip(edges).for_each(|(gap, edge)| *gap /= reach(edge.far).known);
+        let least = std::array::from_fn(|k| edges.get(k).map_or(0, |edge| reach(edge.far).halvings()));
+        if least.into_iter().any(|least| least > HATS) {
+            return None;
+        }
+        let costs = self.costs(problem, at, &force.map(|f| f / normal), &gaps)?;
+        let shape = costs.shape_within(compliance * normal, least);
+        let mut hats = shape.iter().zip(least).filter(|(hat, least)| *least > 0 && hat.share > 0.0);
+        hats.all(|(hat, least)| hat.halvings > least).then_some(shape)
     }
 
     /// The shape at the other one of two nodes that touch.
