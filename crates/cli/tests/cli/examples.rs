@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// strikes a wall, and else from the same case on the mesh that is refined twice, by the measure of [`Comparison`].
 struct Example(&'static str, &'static str, f64);
 
-const EXAMPLES: [Example; 12] = [
+const EXAMPLES: [Example; 13] = [
     Example("bar", "result    sup 4.10 % (76.30 J^½ at 4.9912e-5 s), mean 3.31 %", 1.007),
     Example("block", "result    sup 6.34 % (166.8 J^½ at 1.3e-5 s), mean 5.74 %", 1.066),
     Example("corner", "result    sup 9.43 % (9.798 J^½ at 2e-5 s), mean 7.55 %", 1.1),
@@ -29,6 +29,7 @@ const EXAMPLES: [Example; 12] = [
     Example("two_blocks", "result    sup 9.30 % (6.142 J^½ at 2e-5 s), mean 7.06 %", 1.14),
     Example("sliding_blocks", "result    sup 3.92 % (5.157 J^½ at 2e-5 s), mean 3.19 %", 1.17),
     Example("block_on_two", "result    sup 6.83 % (7.037 J^½ at 2e-5 s), mean 5.50 %", 1.122),
+    Example("disc_on_plate", "result    sup 19.6 % (6.244 J^½ at 8.0402e-6 s), mean 15.2 %", 1.66),
     Example("two_bars", "result    sup 3.51 % (0.1997 J^½ at 2.4956e-4 s), mean 3.06 %", 1.028),
     Example("cradle", "result    sup 4.55 % (0.2114 J^½ at 2.5e-4 s), mean 3.67 %", 1.05),
     Example("three_blocks", "result    sup 15.6 % (10.24 J^½ at 2e-5 s), mean 10.2 %", 1.111),
@@ -36,7 +37,7 @@ const EXAMPLES: [Example; 12] = [
 ];
 
 /// Those with surfaces that slide, of which `corrected` alone has an estimate.
-const SLIDING: [&str; 2] = ["block_on_two", "sliding_blocks"];
+const SLIDING: [&str; 3] = ["block_on_two", "disc_on_plate", "sliding_blocks"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")

@@ -22,7 +22,7 @@ pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;
 pub(crate) use frame::dot;
 pub use interface::Interface;
-pub use mortar::{Coupling, DualShape, Facing, Part, Segment, Side, SlidingSurfaces};
+pub use mortar::{CORNER, Coupling, DualShape, Facing, Part, Segment, Side, SlidingSurfaces};
 pub(crate) use mortar::{SlidingContact, tangent};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;

@@ -1,10 +1,6 @@
 //! How near the nodes of one of two surfaces are to the other one.
 
-use crate::contact::dot;
-
-/// Where a surface turns by more at a node, it has a corner there: the cosine of 40°, between the 30° of coarse curves
-/// and the 45° of chamfers.
-const CORNER: f64 = 0.766;
+use crate::contact::{CORNER, dot};
 
 /// The node of a surface that is nearest to another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +68,7 @@ impl Seen {
 fn turns(edge: &[[f64; 2]; 2], next: &[[f64; 2]; 2]) -> bool {
     let along = |[start, end]: &[[f64; 2]; 2]| [end[0] - start[0], end[1] - start[1]];
     let (a, b) = (along(edge), along(next));
-    dot(&a, &b) < CORNER * (dot(&a, &a) * dot(&b, &b)).sqrt()
+    dot(&a, &b) < CORNER.cos() * (dot(&a, &a) * dot(&b, &b)).sqrt()
 }
 
 #[cfg(test)]

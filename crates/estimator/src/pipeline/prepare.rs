@@ -168,7 +168,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
         let surface = problem.surface();
         let facing = surface.facing(step.displacement);
-        for (at, contact) in surface.nodes().iter().enumerate().filter(|&(at, _)| step.touching[at]) {
+        // A node of a master touches where a multiplier acts on it, at any gap of its own.
+        let touches = |at: usize| step.touching[at] && facing.has_condition(at);
+        for (at, contact) in surface.nodes().iter().enumerate().filter(|&(at, _)| touches(at)) {
             let (node, gap) = (contact.node.index(), facing.gap(at, step.displacement));
             let velocity = facing.relative(at, problem.initial_velocity());
             let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&velocity).0;

@@ -295,8 +295,8 @@ fn entered(depth: f64) -> Option<Warning> {
     }
     let edges = short(depth, 2);
     let message = format!(
-        "a node of surfaces that slide was up to {edges} of its edge inside the other body: the gaps of such surfaces \
-         are means over edges, and where it was, force is missing or acts too late; use shorter edges on both surfaces"
+        "a node of surfaces that slide was up to {edges} of its edge inside the other body: its gap is a mean over \
+         edges, and its contact force is missing or acts too late; use shorter edges on both surfaces"
     );
     warning("depth", format!("a node was {edges} of its edge inside the other body"), message)
 }
@@ -308,9 +308,8 @@ fn turned(rotation: f64) -> Option<Warning> {
     }
     let [angle, strain] = [rotation, 0.5 * rotation * rotation].map(|value| short(value, 2));
     let message = format!(
-        "a body turns by up to {angle} rad, but strains and rotations are small by assumption; above {ROTATION} rad \
-         its contact is not where it would be, and a rotation without strain counts as a strain of {strain}: the error \
-         measure does not contain this; take an earlier end"
+        "a body turns by up to {angle} rad, but rotations are small by assumption, up to {ROTATION} rad: this one \
+         counts as a strain of {strain}, which is no part of the error measure; take an earlier end"
     );
     warning("rotation", format!("a body turns by {angle} rad: too far for small rotations"), message)
 }

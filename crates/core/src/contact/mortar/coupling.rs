@@ -115,7 +115,7 @@ impl Coupling {
         let ends = [slave.xi()[first], slave.xi()[first + 1]];
         let segments = &self.segments[self.before[edge]..];
         let moments = Moments::of(ends, inverse, segments);
-        let shape = moments.shape(ends[1] - ends[0], slave.is_end(edge));
+        let shape = moments.shape(ends[1] - ends[0], slave.corners(edge));
         self.shapes.push(shape);
         let [one, two] = moments.hats;
         match shape {

@@ -100,6 +100,14 @@ impl<'a, const D: usize> Facing<'a, D> {
         (-gap).max(0.0)
     }
 
+    /// Whether a node of a slave faces nothing.
+    #[must_use]
+    pub fn is_beside(&self, at: usize) -> bool {
+        self.place(at).is_some_and(|(sliding, coupling, place)| {
+            matches!(place, Place::Slave(_)) && !faces(sliding, coupling, place)
+        })
+    }
+
     /// Whether a node has a condition of contact of its own: of a slave it faces the master, of a master it has none.
     #[must_use]
     pub fn has_condition(&self, at: usize) -> bool {

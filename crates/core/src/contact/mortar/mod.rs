@@ -36,7 +36,7 @@ pub use coupling::Coupling;
 pub use dual::DualShape;
 pub use facing::Facing;
 pub use partition::Segment;
-pub use side::{Part, Side};
+pub use side::{CORNER, Part, Side};
 pub(crate) use step::SlidingContact;
 pub use surfaces::SlidingSurfaces;
 pub(crate) use surfaces::tangent;

@@ -2,6 +2,10 @@
 
 use std::ops::Range;
 
+/// Where a surface turns by more at a node (rad), it has a corner there, else it is a curve: between the 30° of coarse
+/// curves and the 45° of chamfers.
+pub const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
 /// The nodes of a surface along the interface and its edges: those of one body after those of the other, for each in
 /// ascending order of ξ.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +17,8 @@ pub struct Side {
     eta: Vec<f64>,
     /// The first node of each edge; the second one follows it.
     edges: Vec<usize>,
+    /// Whether a node is a corner, where the surface ends or turns away from the other one.
+    corners: Vec<bool>,
     /// 1 over the length of each edge (1/m).
     inverse: Vec<f64>,
     /// The share of each node in the mean of its part.
@@ -49,7 +55,8 @@ impl Side {
             share[part.nodes.clone()].iter_mut().for_each(|share| *share /= length);
         }
         let inverse = edges.iter().map(|&first| 1.0 / (xi[first + 1] - xi[first])).collect();
-        Self { start, parts, xi, eta, edges, inverse, share }
+        let corners = corners([&xi, &eta], &edges);
+        Self { start, parts, xi, eta, corners, edges, inverse, share }
     }
 
     /// The parts of all bodies that it belongs to.
@@ -66,12 +73,11 @@ impl Side {
         self.parts.partition_point(|part| part.edges.end <= edge)
     }
 
-    /// Whether each node of an edge has no other one: the surface ends there.
+    /// Whether each node of an edge is a corner.
     #[inline]
-    pub(super) fn is_end(&self, edge: usize) -> [bool; 2] {
+    pub(super) fn corners(&self, edge: usize) -> [bool; 2] {
         let first = self.edges[edge];
-        let before = edge.checked_sub(1).is_some_and(|before| self.edges[before] + 1 == first);
-        [!before, self.edges.get(edge + 1) != Some(&(first + 1))]
+        [self.corners[first], self.corners[first + 1]]
     }
 
     /// The part of a node.
@@ -140,4 +146,15 @@ impl Side {
     pub(super) fn mean(&self, part: &Part, field: impl Fn(usize) -> f64) -> f64 {
         part.nodes.clone().map(|node| self.share[node] * field(node)).sum()
     }
+}
+
+/// Where a slave ends, or turns away from its master. Of a master, only its ends are right, and nothing asks for them.
+fn corners([xi, eta]: [&[f64]; 2], edges: &[usize]) -> Vec<bool> {
+    let has = |first: Option<usize>| first.filter(|first| edges.binary_search(first).is_ok());
+    let slope = |first: usize| (eta[first + 1] - eta[first]).atan2(xi[first + 1] - xi[first]);
+    let corner = |node: usize| match [has(node.checked_sub(1)), has(Some(node))] {
+        [Some(before), Some(after)] => slope(after) - slope(before) > CORNER,
+        _ => true,
+    };
+    (0..xi.len()).map(corner).collect()
 }

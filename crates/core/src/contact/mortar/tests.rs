@@ -165,28 +165,40 @@ fn one_side_may_be_narrower() {
     assert!(apart.segments().is_empty() && (0..4).all(|k| !apart.is_active(k)));
 }
 
-/// From a node at the end of the slave on, a part of an edge has a multiplier for each of its ends, but for a short
-/// one. Elsewhere the node inside the overlap has the only one, and in the middle of an edge the nearer one.
+/// A part of an edge from a corner of the slave on has a multiplier for each of its ends, but for a short part. If less
+/// than half is covered elsewhere, the node inside the overlap has the only one, and in the middle of an edge the
+/// nearer one.
 #[test]
 fn an_edge_may_be_covered_in_part() {
     let slave = side(&[0.0, 1.0, 2.0]);
     let shape = |from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(0);
     assert_eq!(shape(0.6, 3.0), DualShape::One(1));
+    assert!(matches!(shape(0.5, 3.0), DualShape::Both(_)));
     assert_eq!(shape(-1.0, 0.45), DualShape::Part([0.0, 0.45]));
-    assert_eq!(shape(-1.0, 0.015), DualShape::One(0));
+    assert_eq!(shape(-1.0, 0.05), DualShape::One(0));
     let last = |from: f64| coupling(&slave, &side(&[from, 3.0]), 0.0).shape(1);
     assert_eq!(last(1.75), DualShape::Part([0.75, 1.0]));
-    assert_eq!(last(1.985), DualShape::One(1));
+    assert_eq!(last(1.25), DualShape::Part([0.25, 1.0]));
+    assert_eq!(last(1.95), DualShape::One(1));
     assert_eq!(shape(0.55, 0.8), DualShape::One(1));
-    assert!(matches!(shape(0.5, 3.0), DualShape::Both(_)));
     assert_eq!(shape(1.5, 3.0), DualShape::None);
 }
 
-/// The gaps of a slave that is covered by less than half of an edge are those at both ends of the part.
+/// A node at which the slave turns away from its master by more than 40° is a corner, not one of a curve or of a notch.
+#[test]
+fn a_slave_may_have_a_corner_inside() {
+    for (eta, is_corner) in [([1.0, 0.0, 1.0], true), ([0.3, 0.0, 0.3], false), ([-1.0, 0.0, -1.0], false)] {
+        let slave = Side::new(0, [vec![0.0, 1.0, 2.0], eta.to_vec()], vec![0, 1], &[0]);
+        let shape = coupling(&slave, &side(&[-1.0, 1.3]), 0.0).shape(1);
+        assert_eq!(matches!(shape, DualShape::Part(_)), is_corner, "{eta:?}");
+    }
+}
+
+/// The gaps of a slave of one edge, of which a part is covered, are those at both ends of the part.
 #[test]
 fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
     let slave = side(&[0.0, 1.0]);
-    for covered in [0.02, 0.3, 0.49] {
+    for covered in [0.07, 0.3, 0.49, 0.8] {
         for (from, to) in [(-1.0, covered), (1.0 - covered, 3.0)] {
             let coupling = coupling(&slave, &side(&[from, to]), 0.0);
             let gap = |xi: f64| 0.2 + 0.7 * xi;

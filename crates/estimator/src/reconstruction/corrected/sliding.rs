@@ -225,10 +225,11 @@ fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]>
         let ends = [segments.first()?.ends[0], segments.last()?.ends[1]];
         // A step of the master has two ends at one place, to rounding; a slot is wider.
         let joined = |pair: &[Segment]| pair[1].ends[0] - pair[0].ends[1] <= JOINED * (own[1] - own[0]);
-        if ends[end] != own[end] || !segments.windows(2).all(joined) {
+        let meets = |k: usize| (ends[k] - own[k]).abs() <= JOINED * (own[1] - own[0]);
+        if !meets(end) || !segments.windows(2).all(joined) {
             return None;
         }
-        if ends == own {
+        if meets(1 - end) {
             return Some(Reach::WHOLE);
         }
         let faces = (ends[1] - ends[0]) / (own[1] - own[0]);

@@ -46,7 +46,8 @@ pub(super) fn write<const D: usize>(
     write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
     let largest = [("slip", "", results.slip), ("depth", "", results.depth), ("rotation", "rad", results.rotation)];
-    for (name, of, value) in largest.into_iter().filter(|(.., value)| *value > 0.0) {
+    let slid_off = ("slid_off", "", f64::from(u8::from(results.slid_off)));
+    for (name, of, value) in largest.into_iter().chain([slid_off]).filter(|(.., value)| *value > 0.0) {
         write(name, of, &[1], &[value])?;
     }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;

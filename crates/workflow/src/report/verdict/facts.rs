@@ -48,6 +48,8 @@ pub(in crate::report) struct Facts {
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
     pub(super) depth: f64,
+    /// Whether a node of surfaces that slide touched and faced nothing later.
+    pub(super) slid_off: bool,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -125,6 +127,7 @@ impl Facts {
             slides: !problem.surface().sliding().is_empty(),
             slip: results.slip,
             depth: results.depth,
+            slid_off: results.slid_off,
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,
@@ -144,6 +147,11 @@ impl Facts {
 }
 
 impl Facts {
+    /// Whether the body that is struck has the mean gaps.
+    pub(super) fn acts_late(&self) -> bool {
+        self.slides && self.contact.strikes_flat_slave
+    }
+
     /// Whether the error is zero to rounding, as in the flight of a rigid body.
     pub(super) fn is_exact(&self) -> bool {
         self.error.is_zero()

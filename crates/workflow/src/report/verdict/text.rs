@@ -39,7 +39,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     if facts.slip > 1.0 {
         doubts.push(format!("nodes that touch in pairs are up to {} edges aside of each other", short(facts.slip, 2)));
     }
-    if facts.slides && facts.contact.strikes_flat_slave {
+    if facts.acts_late() {
         doubts.push(
             "a corner or a curve enters the edges of the surface that it strikes before the mean gap closes, and its \
              tractions are as wide as these edges; refine that surface"

@@ -1,6 +1,6 @@
 //! How a body touches its planes, from the outline of the mesh and from the contact results.
 
-use percute_core::contact::ContactResults;
+use percute_core::contact::{CORNER, ContactResults};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
@@ -9,9 +9,6 @@ use std::f64::consts::PI;
 
 /// Sine of the largest angle between a plane and an edge that counts as parallel to it: coordinates with six digits.
 const PARALLEL: f64 = 1e-5;
-/// Where the outline turns by more (rad), it has a corner; else it is a curve. The evidence has curves of edges that
-/// turn by up to 30°, and corners that turn by 45° and more.
-const CORNER: f64 = 40.0 * PI / 180.0;
 /// Gaps that differ by less than this part of the size of the mesh are equal.
 const EQUAL: f64 = 1e-9;
 /// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes

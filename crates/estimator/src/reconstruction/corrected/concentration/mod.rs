@@ -34,7 +34,7 @@ pub(crate) struct Concentration<const D: usize> {
 pub(super) struct Reach {
     /// The part of its length.
     pub(super) faces: f64,
-    /// The part of its length at which the gap of the other node is.
+    /// Where the gap of the other node is taken, as a part of its length.
     pub(super) known: f64,
 }
 
@@ -98,6 +98,7 @@ impl<const D: usize> Concentration<D> {
         }
         let costs = self.costs(problem, at, &force.map(|f| f / normal), &gaps)?;
         let shape = costs.shape_within(compliance * normal, least);
+        // The density over a part is as good as a hat that is as wide: flat surfaces keep it.
         let mut hats = shape.iter().zip(least).filter(|(hat, least)| *least > 0 && hat.share > 0.0);
         hats.all(|(hat, least)| hat.halvings > least).then_some(shape)
     }
