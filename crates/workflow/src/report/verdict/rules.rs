@@ -273,7 +273,7 @@ const PENALTY: &str = "contact by a penalty";
 /// The gap of a slave is a mean over its edges: a corner enters them first.
 const LATE: &str = "corners and curves that enter the edges that they strike";
 
-/// Corners that slide off a plate at 100 to 400 m/s: 0.6 to 6.4.
+/// Corners that slide off a plate at 100 to 400 m/s: 0.7 to 6.4.
 const SLID_OFF: &str = "corners and curves that slide off the end of the other surface";
 
 /// The properties of a run that no case of the evidence has.
