@@ -133,7 +133,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         own_contacts: estimate.own_contacts,
         slip: contact.slip,
         depth: contact.depth,
-        rotation: contact.rotation,
+        rotation: if subject.problem.statement().interfaces.is_empty() { 0.0 } else { contact.rotation },
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),
         critical_step,

@@ -59,7 +59,7 @@ pub(super) struct Facts<'a> {
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
     pub(super) depth: f64,
-    /// The largest mean rotation of a body (rad).
+    /// The largest mean rotation of a body (rad); 0 unless bodies may touch each other.
     pub(super) rotation: f64,
     pub(super) residual: &'a LargestResidual,
     pub(super) flat: Option<&'a FlatElements>,
