@@ -30,7 +30,7 @@ pub(super) struct Moments {
     pub(super) covered: f64,
     /// φ_2 at the ends of what is covered.
     ends: [f64; 2],
-    /// Whether there is a hole in it.
+    /// Whether there is no hole in it.
     joined: bool,
 }
 
