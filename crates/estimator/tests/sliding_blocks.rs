@@ -42,6 +42,9 @@ struct Row {
     aside: f64,
     tilt: f64,
     gap: f64,
+    /// Whether velocities are in proportion to the distance from the interface: from 0 there to these at the height of
+    /// a block. All meshes have the same ones.
+    smooth: bool,
     expected: [[f64; 2]; 4],
 }
 
@@ -54,10 +57,11 @@ const HEAD_ON: Row = Row {
     aside: 0.0,
     tilt: 0.0,
     gap: GAP,
+    smooth: false,
     expected: [[1.14, 1.19], [1.11, 1.15], [1.12, 1.14], [1.13, 1.14]],
 };
 
-const ROWS: [Row; 7] = [
+const ROWS: [Row; 8] = [
     HEAD_ON,
     Row {
         name: "oblique",
@@ -106,6 +110,15 @@ const ROWS: [Row; 7] = [
         expected: [[1.14, 1.13], [1.17, 1.14], [1.16, 1.12], [1.28, 1.21]],
         ..HEAD_ON
     },
+    Row {
+        name: "touching from the start",
+        velocities: [[0.0, -20.0], [0.0, 20.0]],
+        friction: 0.2,
+        gap: 0.0,
+        smooth: true,
+        expected: [[1.13, 1.31], [1.18, 1.38], [1.35, 1.46], [1.25, 1.46]],
+        ..HEAD_ON
+    },
 ];
 
 impl Row {
@@ -115,7 +128,10 @@ impl Row {
         let low = upper.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
         let upper = translated(&upper, [self.aside, HEIGHT + self.gap - low]).unwrap();
         let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &block(0.04, lower))]).unwrap();
-        let velocity = |i: usize| self.velocities[usize::from(i >= upper.node_count())];
+        let velocity = |i: usize| {
+            let far = (mesh.points()[i][1] - HEIGHT).abs() / HEIGHT;
+            self.velocities[usize::from(i >= upper.node_count())].map(|v| if self.smooth { far * v } else { v })
+        };
         let aluminium = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
         let steel = Elastic::plane_stress(210e9, 0.3, 7800.0, 1.0).unwrap();
         let velocity = (0..mesh.node_count()).map(velocity).collect();
@@ -135,7 +151,8 @@ impl Row {
     }
 }
 
-/// At least 1, and at most 0.05 above the prototype. Where a surface ends on an edge of the other one, or enters beside
+/// At least 1, and at most 0.05 above the prototype. Of bodies that touch from the start, the velocities of the prototype
+/// are not known, and waves without a front have an index closer to 1: at least 0.95. Where a surface ends on an edge of the other one, or enters beside
 /// it, indices are smaller by up to 0.2: the stress in the star of a node has less energy than that in an edge's
 /// element, and both surfaces give way, only while it is needed.
 #[test]
@@ -145,7 +162,8 @@ fn effectivity_indices_against_a_finer_reference() {
         for ((mesh, reference), expected) in MESHES.into_iter().zip(&row.expected) {
             let found = row.indices(mesh, reference);
             println!("{}: {:.3} {:.3} ({expected:?})", row.name, found[0], found[1]);
-            let near = found.iter().zip(expected).all(|(found, most)| (1.0..=most + 0.05).contains(found));
+            let least = if row.smooth { 0.95 } else { 1.0 };
+            let near = found.iter().zip(expected).all(|(found, most)| (least..=most + 0.05).contains(found));
             assert!(near, "{}: {found:?} {expected:?}", row.name);
         }
     }

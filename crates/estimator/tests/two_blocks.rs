@@ -12,78 +12,92 @@ use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, TriangleProblem};
 
-/// Blocks of 40 × 25 mm, plane stress, a gap of 50 µm and T = 14 µs; steps of 0.9 Δt_c.
+/// Blocks of 40 × 25 mm one above the other, plane stress, gaps of 50 µm; steps of 0.9 Δt_c.
 const GAP: f64 = 50e-6;
-const END: f64 = 14e-6;
+const HEIGHT: f64 = 0.025;
 
-/// e_sup/e_ref and e_mean/e_ref on 10×8 and 20×16 cells that an independent prototype of the method gave, with a
-/// reference on 160×128 cells.
+/// e_sup/e_ref and e_mean/e_ref on 10×8, 20×16 and 40×32 cells that an independent prototype of the method gave,
+/// with a reference of so many cells.
 struct Row {
     name: &'static str,
-    /// Of the upper and the lower block (m/s).
-    velocities: [[f64; 2]; 2],
+    /// From the top down: whether a block is of steel, else of aluminium, and its velocity (m/s).
+    blocks: &'static [(bool, [f64; 2])],
     friction: f64,
-    /// Whether the lower block is of steel, else of aluminium.
-    steel: bool,
-    expected: [[f64; 2]; 2],
+    end: f64,
+    reference: [usize; 2],
+    expected: [[f64; 2]; 3],
 }
 
-const ROWS: [Row; 4] = [
+const ROWS: [Row; 5] = [
     Row {
         name: "head-on",
-        velocities: [[0.0, -20.0], [0.0, 20.0]],
+        blocks: &[(false, [0.0, -20.0]), (false, [0.0, 20.0])],
         friction: 0.0,
-        steel: false,
-        expected: [[1.13, 1.16], [1.12, 1.13]],
+        end: 14e-6,
+        reference: [160, 128],
+        expected: [[1.13, 1.16], [1.12, 1.13], [1.12, 1.13]],
     },
     Row {
         name: "oblique",
-        velocities: [[8.0, -20.0], [0.0, 20.0]],
+        blocks: &[(false, [8.0, -20.0]), (false, [0.0, 20.0])],
         friction: 0.2,
-        steel: false,
-        expected: [[1.13, 1.16], [1.12, 1.13]],
+        end: 14e-6,
+        reference: [160, 128],
+        expected: [[1.13, 1.16], [1.12, 1.13], [1.12, 1.13]],
     },
     Row {
         name: "one at rest",
-        velocities: [[0.0, 0.0], [10.0, 40.0]],
+        blocks: &[(false, [0.0, 0.0]), (false, [10.0, 40.0])],
         friction: 0.5,
-        steel: false,
-        expected: [[1.15, 1.18], [1.13, 1.14]],
+        end: 14e-6,
+        reference: [160, 128],
+        expected: [[1.15, 1.18], [1.13, 1.14], [1.12, 1.13]],
     },
     Row {
         name: "on steel",
-        velocities: [[0.0, -20.0], [0.0, 20.0]],
+        blocks: &[(false, [0.0, -20.0]), (true, [0.0, 20.0])],
         friction: 0.2,
-        steel: true,
-        expected: [[1.12, 1.16], [1.08, 1.11]],
+        end: 14e-6,
+        reference: [160, 128],
+        expected: [[1.12, 1.16], [1.08, 1.11], [1.06, 1.08]],
+    },
+    Row {
+        name: "stack",
+        blocks: &[(false, [0.0, -40.0]), (true, [0.0, 0.0]), (false, [0.0, 0.0])],
+        friction: 0.2,
+        end: 20e-6,
+        reference: [80, 64],
+        expected: [[1.2, 1.19], [1.16, 1.17], [1.12, 1.19]],
     },
 ];
 
 impl Row {
     fn problem(&self, cells: [usize; 2]) -> TriangleProblem {
-        let block = |y: f64| {
-            let mesh = TriangleMesh::rectangle(0.04, 0.025, cells[0], cells[1]).unwrap();
-            mesh.mapped(|p| [p[0], p[1] + y]).unwrap()
-        };
-        let (upper, lower) = (block(0.025 + GAP), block(0.0));
-        let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
-        let velocity = |i: usize| self.velocities[usize::from(i >= upper.node_count())];
-        let aluminium = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-        let steel = Elastic::plane_stress(210e9, 0.3, 7800.0, 1.0).unwrap();
-        let velocity = (0..mesh.node_count()).map(velocity).collect();
-        TriangleProblem::builder(mesh)
-            .material_of("upper", aluminium)
-            .material_of("lower", if self.steel { steel } else { aluminium })
-            .initial_velocity(Initial::Nodal(velocity))
-            .interface(Interface::matching::<2>("upper.bottom", "lower.top", self.friction).unwrap())
-            .build()
-            .unwrap()
+        let block = TriangleMesh::rectangle(0.04, HEIGHT, cells[0], cells[1]).unwrap();
+        let name = |k: usize| format!("block {k}");
+        let count = self.blocks.len();
+        let up = |k: usize| (count - 1 - k) as f64 * (HEIGHT + GAP);
+        let blocks: Vec<_> =
+            (0..count).map(|k| (name(k), block.clone().mapped(|p| [p[0], p[1] + up(k)]).unwrap())).collect();
+        let named: Vec<_> = blocks.iter().map(|(name, block)| (name.as_str(), block)).collect();
+        let mesh = TriangleMesh::joined(&named).unwrap();
+        let velocity = (0..mesh.node_count()).map(|i| self.blocks[i / block.node_count()].1).collect();
+        let mut builder = TriangleProblem::builder(mesh).initial_velocity(Initial::Nodal(velocity));
+        for (k, (steel, _)) in self.blocks.iter().enumerate() {
+            let (young, density) = if *steel { (210e9, 7800.0) } else { (70e9, 2700.0) };
+            builder = builder.material_of(name(k), Elastic::plane_stress(young, 0.3, density, 1.0).unwrap());
+        }
+        for k in 1..count {
+            let [upper, lower] = [format!("{}.bottom", name(k - 1)), format!("{}.top", name(k))];
+            builder = builder.interface(Interface::matching::<2>(&upper, &lower, self.friction).unwrap());
+        }
+        builder.build().unwrap()
     }
 
     /// The effectivity indices of sup and mean on these meshes.
     fn indices(&self, meshes: &[[usize; 2]], reference: [usize; 2]) -> Vec<[f64; 2]> {
         let problems: Vec<_> = meshes.iter().map(|&cells| self.problem(cells)).collect();
-        indices(&problems, &self.problem(reference), END)
+        indices(&problems, &self.problem(reference), self.end)
     }
 }
 
@@ -91,7 +105,7 @@ impl Row {
 /// one of 160×128 cells.
 #[test]
 fn effectivity_indices_of_two_blocks() {
-    for row in &ROWS {
+    for row in &ROWS[..4] {
         let [found] = row.indices(&[[10, 8]], [80, 64])[..] else { panic!("one mesh") };
         for (found, expected) in found.iter().zip(&row.expected[0]) {
             assert!((found - expected).abs() <= 0.05, "{}: {found:.3} instead of {expected}", row.name);
@@ -99,17 +113,18 @@ fn effectivity_indices_of_two_blocks() {
     }
 }
 
-/// The same on two meshes with the reference of the prototype. The tractions of the prototype have more energy than
-/// those here, which are nearer to the minimum: its indices are larger by up to 0.06 (measured 0.019 to 0.055).
+/// The same on three meshes with the references of the prototype. The tractions of the prototype have more energy than those
+/// here, which are nearer to the minimum: its indices are larger by up to 0.06, and that of the stack on the finest mesh
+/// is smaller by 0.04.
 #[test]
-#[ignore = "takes half a minute"]
+#[ignore = "takes two minutes"]
 fn effectivity_indices_against_a_finer_reference() {
     for row in &ROWS {
-        let found = row.indices(&[[10, 8], [20, 16]], [160, 128]);
+        let found = row.indices(&[[10, 8], [20, 16], [40, 32]], row.reference);
         for (found, expected) in found.iter().zip(&row.expected) {
             println!("{}: {:.3} {:.3} ({expected:?})", row.name, found[0], found[1]);
             let less = found.iter().zip(expected).map(|(found, expected)| expected - found);
-            assert!(less.clone().all(|less| (-0.02..=0.07).contains(&less)), "{}: {found:?} {expected:?}", row.name);
+            assert!(less.clone().all(|less| (-0.04..=0.07).contains(&less)), "{}: {found:?} {expected:?}", row.name);
         }
     }
 }
