@@ -38,7 +38,7 @@ from percute.estimation import Estimate
 from percute.evidence import reproduce
 from percute.files import open, resume, run
 from percute.history import History
-from percute.impacts import BodyMotion, Impacts, InterfaceRebound
+from percute.impacts import BodyMotion, Impacts, InterfaceRebound, SlidingEstimate
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
@@ -84,6 +84,7 @@ __all__ = [
     "Separation",
     "SimulationError",
     "SimulationWarning",
+    "SlidingEstimate",
     "Sources",
     "SourcesOverTime",
     "StorageError",

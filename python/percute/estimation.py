@@ -19,7 +19,7 @@ from percute.contact import Contact
 from percute.errors import InputError
 from percute.estimate_views import EstimateViews
 from percute.history import History
-from percute.impacts import Impacts
+from percute.impacts import Impacts, SlidingEstimate
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.rebound import Rebound
@@ -143,6 +143,11 @@ class Estimate(EstimateViews):
     def impacts(self) -> Impacts | None:
         """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
         return Impacts._of(self._verdict.get("impacts"))
+
+    @cached_property
+    def sliding(self) -> tuple[SlidingEstimate, ...]:
+        """The estimate at surfaces that slide along each other, in the order of ``problem.contacts``; empty without any."""
+        return SlidingEstimate._all(self._verdict.get("sliding", ()))
 
     @property
     def kept_impulse(self) -> float | None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["BodyMotion", "Impacts", "InterfaceRebound"]
+__all__ = ["BodyMotion", "Impacts", "InterfaceRebound", "SlidingEstimate"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -69,6 +69,27 @@ class Impacts:
         bodies = [BodyMotion(**{**body, **_vectors(body, "velocity_before", "velocity_after")}) for body in found["bodies"]]
         interfaces = [InterfaceRebound(**{**each, **_vectors(each, "normal"), "groups": tuple(each["groups"])}) for each in found["interfaces"]]
         return cls(bodies=tuple(bodies), interfaces=tuple(interfaces))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlidingEstimate:
+    """The estimate at two surfaces that slide along each other."""
+
+    groups: tuple[str, str]
+    """The groups of edges of both bodies."""
+    slide: float
+    """How far they are along each other from their places at the start, at most (m)."""
+    lift: float
+    """The largest height by which a node gives way in the admissible motion (m)."""
+    rounds: int
+    """How often the penetration of the admissible motion was looked for, until there was none."""
+    stress: float
+    """The part of the squared mean error that comes from the stress of the contact density beside its linear part."""
+
+    @classmethod
+    def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[SlidingEstimate, ...]:
+        """Make them from their JSON objects."""
+        return tuple(cls(**{**each, "groups": tuple(each["groups"])}) for each in found)
 
 
 def _vectors(found: Mapping[str, Any], *names: str) -> dict[str, NDArray[np.float64] | None]:

@@ -91,6 +91,14 @@ def test_surfaces_that_do_not_match(tmp_path: Path) -> None:
     assert np.abs(history.reaction).max() > 1e3 and np.abs(force).max() < 1e-9 * np.abs(history.reaction).max()
     impacts = history.impacts
     assert impacts is not None and impacts.interfaces[0].first_touch is not None
+    estimate = pc.estimate(history)
+    (surfaces,) = estimate.sliding
+    assert surfaces.groups == impacts.interfaces[0].groups
+    # Cells cut along one diagonal move the surfaces along each other a little.
+    assert 0.0 < surfaces.slide < 1e-5 and 0.0 < surfaces.lift < 2e-6 and surfaces.rounds >= 2 and 0.0 < surfaces.stress < 0.05
+    estimate.save(tmp_path / "unlike.vtkhdf")
+    assert pc.open(tmp_path / "unlike.vtkhdf").sliding == estimate.sliding
+    (tmp_path / "unlike.vtkhdf").unlink()
     stored = pc.simulate(problem, end=14e-6, courant=0.9, store=tmp_path / "unlike.vtkhdf")
     again = pc.open(tmp_path / "unlike.vtkhdf")
     assert np.array_equal(again.displacement, history.displacement) and np.array_equal(stored.reaction, history.reaction)

@@ -86,6 +86,19 @@ pub struct Given {
     pub acceleration: bool,
 }
 
+/// The estimate at two surfaces that slide along each other (`docs/bodies.md`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SurfaceEstimate {
+    /// How far they are along each other from their places at the start, at most (m).
+    pub slide: f64,
+    /// The largest height by which a node gives way in the admissible motion (m).
+    pub lift: f64,
+    /// How often the penetration of the admissible motion was looked for, until there was none.
+    pub rounds: usize,
+    /// The part of the squared mean error that comes from the stress of the contact density beside its linear part.
+    pub stress: f64,
+}
+
 /// The constitutive relation error of a history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate<const D: usize> {
@@ -110,6 +123,10 @@ pub struct Estimate<const D: usize> {
     /// Nodes at which the auxiliary solution has had a contact of its own. With any, the kept impulse need not be near
     /// 1.
     pub own_contacts: usize,
+    /// That at surfaces that slide along each other, in the order of [`ContactSurface::sliding`].
+    ///
+    /// [`ContactSurface::sliding`]: percute_core::contact::ContactSurface::sliding
+    pub surfaces: Vec<SurfaceEstimate>,
     /// Where velocities and accelerations came from.
     pub given: Given,
     /// Last step that is estimated.

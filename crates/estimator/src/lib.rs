@@ -49,7 +49,7 @@ mod traction;
 mod wide;
 
 pub use error::{EstimateError, RunError};
-pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample};
+pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample, SurfaceEstimate};
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};
 pub use pipeline::{Estimator, memory};

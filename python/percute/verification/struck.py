@@ -1,6 +1,6 @@
-"""Effectivity indices of corners and curves that strike the surface of another body: a table of ``docs/bodies.md``.
+"""Effectivity indices of corners and curves that strike the surface of another body: tables of ``docs/bodies.md``.
 
-``python -m percute.verification.struck`` prints it.
+``python -m percute.verification.struck`` prints them.
 """
 
 from __future__ import annotations
@@ -45,6 +45,19 @@ def beside_end(angle: float) -> Problem:
         plate = pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5).refine(refinements)
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0225, 0.025 + WAY * speed), velocity=(0.0, -speed))
+        return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
+
+    return problem
+
+
+def leaving(angle: float) -> Problem:
+    """Give the block of `beside_end`, 1 mm beside the end, that goes down with 20 m/s and leaves the plate at this speed along it."""
+
+    def problem(speed: float, refinements: int) -> pc.Problem:
+        block = pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5).refine(refinements)
+        plate = pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5).refine(refinements)
+        law = pc.Elastic(**ALUMINIUM, plane="stress")
+        above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.023, 0.02502), velocity=(speed, -20.0))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
 
     return problem
@@ -97,12 +110,24 @@ def indices(problem: Problem, speed: float, end: float) -> list[tuple[float, flo
     return found
 
 
-def main() -> None:
-    """Print the table."""
-    print(f"| the body above | {' | '.join(f'{speed:g} m/s' for speed in SPEEDS)} |\n|{'---|' * (len(SPEEDS) + 1)}")
-    for name, problem, end in CASES:
-        found = [[index for both in indices(problem, speed, end) for index in both] for speed in SPEEDS]
+LEAVING: tuple[tuple[str, Problem, float], ...] = tuple((f"block tilted by {angle:g}°", leaving(angle), 2e-5) for angle in (10.0, 28.0, 45.0))
+"""The same of corners that slide off the end, at `ALONG`."""
+ALONG = (100.0, 200.0, 400.0)
+"""Their speeds along the plate (m/s)."""
+
+
+def _print(title: str, cases: tuple[tuple[str, Problem, float], ...], speeds: tuple[float, ...]) -> None:
+    print(f"| {title} | {' | '.join(f'{speed:g} m/s' for speed in speeds)} |\n|{'---|' * (len(speeds) + 1)}")
+    for name, problem, end in cases:
+        found = [[index for both in indices(problem, speed, end) for index in both] for speed in speeds]
         print(f"| {name} | {' | '.join(f'{min(each):.2f} to {max(each):.2f}' for each in found)} |", flush=True)
+
+
+def main() -> None:
+    """Print both tables."""
+    _print("the body above", CASES, SPEEDS)
+    print()
+    _print("the corner that slides off", LEAVING, ALONG)
 
 
 if __name__ == "__main__":

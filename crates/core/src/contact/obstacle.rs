@@ -78,7 +78,8 @@ impl<const D: usize> Obstacle<D> {
 
     /// The index of the surfaces that slide, if it is one of them.
     #[inline]
-    pub(super) fn sliding(&self) -> Option<usize> {
+    #[must_use]
+    pub fn sliding(&self) -> Option<usize> {
         match self.shape {
             Shape::Plane(_) => None,
             Shape::Surface(_, sliding) => sliding,

@@ -1,7 +1,9 @@
 //! The stress of tractions on the edges of a star less linear ones: what balances itself.
 
 use super::edge_traction::{on, radii};
+use super::hat_stress::{StarFrame, in_element};
 use super::star_stress::{StarElement, StarStress};
+use crate::stress::LOADS;
 use nalgebra::DMatrix;
 use percute_core::material::LinearLaw;
 
@@ -35,13 +37,29 @@ impl EdgeRest {
 /// Energies below minus this part of their sum show that rounding has spoilt a stress.
 const NEGATIVE: f64 = 1e-10;
 
-/// Roots of the energies in the elements of a star (J^½), for what is on its first and on its last edge; both balance
-/// each other. None if there are too many points, or if rounding spoils the stress.
-pub(crate) fn roots<L: LinearLaw>(
+/// The stress τ of such a rest in one element of the star.
+#[derive(Clone, Debug)]
+pub(crate) struct RestStress {
+    /// The root of its energy (J^½).
+    pub(crate) root: f64,
+    /// ∫σ:K⁻¹τ for the stress σ of each unit load of the element (J), whose first corner is the node of the star.
+    products: [f64; LOADS],
+}
+
+impl RestStress {
+    /// ∫σ:K⁻¹τ (J) for the loads of the element, which has this corner at the node of the star.
+    pub(crate) fn products(&self, at: usize) -> [f64; LOADS] {
+        in_element(&self.products, at, StarFrame([1.0, 0.0]))
+    }
+}
+
+/// The stress in the elements of a star, for what is on its first and on its last edge; both balance each other. None
+/// if there are too many points, or if rounding spoils the stress.
+pub(crate) fn rest_stress<L: LinearLaw>(
     elements: &[StarElement<'_, L>],
     edges: &[EdgeRest; 2],
     supported: [[bool; 2]; 2],
-) -> Option<Vec<f64>> {
+) -> Option<Vec<RestStress>> {
     if edges.iter().map(|edge| edge.points.len()).sum::<usize>() > POINTS {
         return None;
     }
@@ -73,6 +91,12 @@ pub(crate) fn roots<L: LinearLaw>(
     };
     let energies: Vec<f64> = elements.iter().enumerate().map(energy).collect();
     let total: f64 = energies.iter().sum();
-    let spoilt = energies.iter().any(|energy| *energy < -NEGATIVE * total);
-    (!spoilt && total >= 0.0).then(|| energies.iter().map(|energy| energy.max(0.0).sqrt()).collect())
+    if total < 0.0 || energies.iter().any(|energy| *energy < -NEGATIVE * total) {
+        return None;
+    }
+    let stress = energies.iter().zip(&stress.products).map(|(energy, products)| RestStress {
+        root: energy.max(0.0).sqrt(),
+        products: std::array::from_fn(|load| x * products[(load, 0)] + y * products[(load, 1)]),
+    });
+    Some(stress.collect())
 }

@@ -65,19 +65,19 @@ pub(super) fn on(points: &[[f64; 2]], [start, end]: [f64; 2]) -> [f64; 2] {
 /// A traction on the first (0) or the last edge of a star (1).
 pub(super) type OnEdge<const P: usize> = (usize, EdgeTraction<P>);
 
-/// Radii of rings, from 1 down to the first break point: break points, and halves between them.
+/// Radii of rings, from 1 down to the first break point: break points, and rings of one ratio near a half between them.
+/// With halves, a ring of no width could be left, in which a stress has no digits.
 pub(super) fn radii(places: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut breaks: Vec<f64> = places.collect();
     breaks.retain(|place| *place > 0.0 && *place < 1.0);
     breaks.sort_by(|a, b| b.total_cmp(a));
     let mut radii = vec![1.0];
     for next in breaks {
-        let mut last = radii[radii.len() - 1];
-        while 0.5 * last > next {
-            last *= 0.5;
-            radii.push(last);
-        }
+        let last = radii[radii.len() - 1];
         if next < last {
+            let rings = (last / next).log2().round().max(1.0);
+            let ratio = (next / last).powf(1.0 / rings);
+            radii.extend((1..rings as i32).map(|k| last * ratio.powi(k)));
             radii.push(next);
         }
     }
@@ -104,6 +104,23 @@ mod tests {
 
     /// A trapezoid beside the node, with a jump, and a hat.
     const PATCH: EdgeTraction<5> = EdgeTraction([[0.1, 0.0], [0.3, 2.0], [0.55, 3.0], [0.55, 1.0], [0.8, -0.5]]);
+
+    /// A break that is a power of two but for rounding leaves no ring of no width; exact powers are the radii.
+    #[test]
+    fn rings_have_a_width() {
+        for power in [1, 2, 5, 9] {
+            for off in [0.0, 1e-15, 1e-9, -1e-9, 1e-4, 0.3] {
+                let place = 0.5_f64.powi(power) * (1.0 - off);
+                let radii = radii([place, 0.0, 1.0].into_iter());
+                assert_eq!((radii[0], radii[radii.len() - 1]), (1.0, place));
+                for pair in radii.windows(2) {
+                    let ratio = pair[1] / pair[0];
+                    assert!((0.35..0.71).contains(&ratio), "{power} {off:e}: {radii:?}");
+                    assert!(off != 0.0 || ratio == 0.5);
+                }
+            }
+        }
+    }
 
     /// Σ of the midpoint rule on intervals that have no break inside: of second order.
     fn integral(f: impl Fn(f64) -> f64) -> f64 {

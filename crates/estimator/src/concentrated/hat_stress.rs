@@ -24,6 +24,21 @@ impl StarFrame {
     }
 }
 
+/// Numbers for the loads of an element whose first corner is the node of the star, as those for the loads of the
+/// element, which has this corner there; `frame` is that of the vectors.
+pub(super) fn in_element(own: &[f64; LOADS], at: usize, frame: StarFrame) -> [f64; LOADS] {
+    let mut all = [0.0; LOADS];
+    // Vectors at both ends of three facets, then at three nodes.
+    for (first, each) in [(0, 2), (6, 1)] {
+        for k in 0..3 * each {
+            let from = 2 * (first + k);
+            let to = 2 * (first + (k + each * at) % (3 * each));
+            all[to..to + 2].copy_from_slice(&frame.global([own[from], own[from + 1]]));
+        }
+    }
+    all
+}
+
 /// The stress τ of hats, as a sum of those of unit hats.
 #[derive(Clone, Debug)]
 pub(crate) struct HatStress<'a> {
@@ -46,16 +61,7 @@ impl HatStress<'_> {
             let column = self.star.products[self.element].column(place);
             zip(&mut own, column.iter()).for_each(|(sum, entry)| *sum += entry * p);
         }
-        let mut products = [0.0; LOADS];
-        // Vectors at both ends of three facets, then at three nodes.
-        for (first, each) in [(0, 2), (6, 1)] {
-            for k in 0..3 * each {
-                let from = 2 * (first + k);
-                let to = 2 * (first + (k + each * self.at) % (3 * each));
-                products[to..to + 2].copy_from_slice(&self.frame.global([own[from], own[from + 1]]));
-            }
-        }
-        products
+        in_element(&own, self.at, self.frame)
     }
 
     /// ½∫τ:K⁻¹τ (J per unit of thickness).

@@ -11,7 +11,7 @@ mod panel;
 mod shape;
 mod star_stress;
 
-pub(crate) use edge_rest::{EdgeRest, roots};
+pub(crate) use edge_rest::{EdgeRest, RestStress, rest_stress};
 pub(crate) use edge_traction::EdgeTraction;
 pub(crate) use hat_stress::{HatStress, StarFrame};
 pub(crate) use shape::{LoadedStar, ShapeCosts, TractionShape};

@@ -148,7 +148,10 @@ impl StarStress {
     }
 }
 
-/// The star, cut at the break points of tractions and at least by halves, and its loads under each of them.
+/// Rings whose ratios differ by less are similar: rounding of a power.
+const SAME_RATIO: f64 = 16.0 * f64::EPSILON;
+
+/// The star, cut at the break points of tractions and about by halves, and its loads under each of them.
 fn solve<L: LinearLaw>(
     elements: &[StarElement<'_, L>],
     scale: f64,
@@ -169,7 +172,8 @@ fn solve<L: LinearLaw>(
     let (mut ratios, mut layers, mut rings) = (Vec::new(), Vec::new(), Vec::new());
     for pair in radii.windows(2) {
         let ratio = pair[1] / pair[0];
-        let known = ratios.iter().position(|other| *other == ratio).unwrap_or(ratios.len());
+        let same = |other: &f64| (other - ratio).abs() <= SAME_RATIO * ratio;
+        let known = ratios.iter().position(same).unwrap_or(ratios.len());
         if known == ratios.len() {
             ratios.push(ratio);
             layers.push(layer(star.ring(ratio)));

@@ -15,7 +15,7 @@ pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFacet;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-pub(crate) use sliding::{SlaveHat, SlidingDensity, SlidingFacets};
+pub(crate) use sliding::{BesideStress, SlaveHat, SlidingDensity, SlidingFacets};
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
@@ -38,9 +38,9 @@ pub(crate) struct Densities<const D: usize> {
 struct Sliding<const D: usize> {
     densities: Vec<SlidingDensity<D>>,
     facets: Arc<[SlidingFacets]>,
-    /// Elements in which these have a stress beside that of linear tractions, in order, with the root of its energy
-    /// (J^½): made at first use, for sampled instants alone.
-    beside: OnceLock<Vec<(ElementId, f64)>>,
+    /// Elements in which these have stresses beside that of linear tractions, in order: made at first use, for sampled
+    /// instants alone.
+    beside: OnceLock<Vec<(ElementId, BesideStress)>>,
 }
 
 impl<const D: usize> PartialEq for Sliding<D> {
@@ -154,9 +154,9 @@ impl<const D: usize> Densities<D> {
         all.map(one).fold([0.0; 2], |a, b| [0, 1].map(|k| worse(a[k], b[k])))
     }
 
-    /// The root of the energy of the stress beside that of linear tractions in an element (J^½).
-    pub(crate) fn beside<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> f64 {
-        let Some(sliding) = &self.sliding else { return 0.0 };
+    /// The stresses beside that of linear tractions in an element.
+    pub(crate) fn beside<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> BesideStress {
+        let Some(sliding) = &self.sliding else { return BesideStress::NONE };
         let beside = sliding.beside.get_or_init(|| {
             let all = sliding.densities.iter().zip(&*sliding.facets).zip(problem.surface().sliding());
             let mut beside: Vec<_> =
@@ -165,7 +165,8 @@ impl<const D: usize> Densities<D> {
             beside
         });
         let start = beside.partition_point(|(other, _)| *other < element);
-        beside[start..].iter().take_while(|(other, _)| *other == element).map(|(_, root)| root).sum()
+        let own = beside[start..].iter().take_while(|(other, _)| *other == element);
+        own.fold(BesideStress::NONE, |sum, (_, stress)| sum.plus(stress))
     }
 
     /// The hats of one star.

@@ -7,6 +7,7 @@
 //! of the edge.
 
 mod beside;
+mod beside_stress;
 mod facets;
 mod load;
 mod slave_hat;
@@ -14,7 +15,8 @@ mod slave_hat;
 use crate::direction::along;
 use crate::partition::{Break, Piece, pieces};
 use crate::residual::worse;
-use beside::{Roots, of_edge};
+use beside::{Stresses, of_edge};
+pub(crate) use beside_stress::BesideStress;
 pub(crate) use facets::SlidingFacets;
 use load::Load;
 use percute_core::contact::{Coupling, SlidingSurfaces};
@@ -172,17 +174,16 @@ impl<const D: usize> SlidingDensity<D> {
         [outside, worse(size(&force), couple) / scale.max(f64::MIN_POSITIVE)]
     }
 
-    /// The elements with a stress beside that of linear tractions and of the hats of nodes, and the root of its energy,
-    /// or a bound of it (J^½).
+    /// The elements with stresses beside that of linear tractions and of the hats of nodes.
     pub(crate) fn beside<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
         facets: &SlidingFacets,
-    ) -> Roots {
+    ) -> Stresses {
         let of_edge = |loads: Loads<D>| {
             let one =
                 |((side, edge), load): (&(usize, usize), &Load<D>)| of_edge(problem, &facets.edges[*side][*edge], load);
-            loads.iter().flat_map(one).collect::<Roots>()
+            loads.iter().flat_map(one).collect::<Stresses>()
         };
         // Each node with hats by itself: they have one place on the master.
         let narrow: Vec<&SlaveHat<D>> = self.hats.iter().filter(|hat| hat.is_narrow()).collect();

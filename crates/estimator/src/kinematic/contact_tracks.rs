@@ -3,6 +3,7 @@
 use super::contact_track::{ContactTrack, NormalStep};
 use super::normal_motions::{NormalMotions, most_bytes};
 use super::sliding::{SlidingInstant, SlidingMotion};
+use crate::estimate::SurfaceEstimate;
 use crate::residual::Residuals;
 use crate::scratch_file::{ScratchError, ScratchFile};
 use percute_core::problem::Problem;
@@ -154,6 +155,11 @@ impl ContactTracks {
     pub(crate) fn show(&mut self, instants: [usize; 2]) -> Result<(), ScratchError> {
         self.store.forget(instants[0]);
         self.all.iter_mut().try_for_each(|track| track.show(&mut self.store, instants))
+    }
+
+    /// What is known of surfaces that slide at the end of the run.
+    pub(crate) fn surfaces(&self) -> Vec<SurfaceEstimate> {
+        self.sliding.iter().map(SlidingMotion::summary).collect()
     }
 
     /// All of them.

@@ -1,5 +1,6 @@
 //! The part of an element in η.
 
+use crate::contact_density::BesideStress;
 use crate::lanes::{LANES, Lanes, Value};
 
 /// The part of one element in η and d at one sample (J), contact apart.
@@ -31,13 +32,18 @@ impl<T: Value> ElementError<T> {
 }
 
 impl ElementError {
-    /// The error with a stress beside that in it, of which this is the root of the energy (J^½): the norm of the sum is
-    /// at most the sum of both.
-    pub(crate) fn beside(self, root: f64) -> Self {
-        if root == 0.0 {
-            return self;
-        }
-        let elastic = (self.elastic.max(0.0).sqrt() + root).powi(2);
+    /// The error with stresses beside that in it, of which `work` is ∫σ:K⁻¹τ with the misfit of the stress (J). `energies`
+    /// are those of the fluctuation of σ_DA and of hats (J).
+    ///
+    /// Of two stresses whose product is not known, the norm of the sum is at most the sum of the norms. Stresses inside
+    /// an element do no work on the mean of the misfit.
+    pub(crate) fn beside(self, stress: &BesideStress, work: f64, energies: [f64; 2]) -> Self {
+        let BesideStress { inside, shared, .. } = *stress;
+        let [fluctuation, hats] = energies.map(|energy| energy.max(0.0).sqrt());
+        let products = shared * hats + inside * (fluctuation + hats + shared);
+        let sharp = self.elastic + work + shared * shared + inside * inside + 2.0 * products;
+        let plain = (self.elastic.max(0.0).sqrt() + stress.root()).powi(2);
+        let elastic = sharp.min(plain);
         Self { elastic, reference: self.reference + 2.0 * (elastic - self.elastic), ..self }
     }
 }
@@ -65,5 +71,46 @@ impl ElementError<Lanes> {
     pub(crate) fn lane(&self, lane: usize) -> ElementError {
         let Self { kinetic, elastic, reference } = self;
         ElementError { kinetic: kinetic.0[lane], elastic: elastic.0[lane], reference: reference.0[lane] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::LOADS;
+    use percute_testkit::Random;
+
+    fn energy(stresses: &[[f64; 8]]) -> f64 {
+        (0..8).map(|i| 0.5 * stresses.iter().map(|stress| stress[i]).sum::<f64>().powi(2)).sum()
+    }
+
+    /// Stresses as vectors: means have two components. The result is never less than the energy of the sum. It is that
+    /// energy if there are only stresses of stars, and never more than with the sum of all norms.
+    #[test]
+    fn stresses_beside_are_bounded() {
+        let mut random = Random::new(7);
+        for case in 0..2000 {
+            let mut vector = |range: std::ops::Range<usize>, size: f64| -> [f64; 8] {
+                std::array::from_fn(|i| if range.contains(&i) { random.between(-size, size) } else { 0.0 })
+            };
+            let sizes = [0, 1, 2].map(|k| if case >> k & 1 == 1 { 1.0 } else { 0.0 });
+            let (mean, fluctuation) = (vector(0..2, 1.0), vector(2..8, 0.5));
+            let [hats, shared] = [vector(0..8, sizes[0]), vector(0..8, sizes[1])];
+            let inside = vector(2..8, sizes[2]);
+            let misfit: [f64; 8] = std::array::from_fn(|i| mean[i] + fluctuation[i]);
+            let root = |stress: [f64; 8]| energy(&[stress]).sqrt();
+            let stress = BesideStress { inside: root(inside), shared: root(shared), products: [0.0; LOADS] };
+            let work = (0..8).map(|i| misfit[i] * shared[i]).sum();
+            let alone = ElementError { elastic: energy(&[misfit, hats]), ..ElementError::filled(0.0) };
+            let found = alone.beside(&stress, work, [energy(&[fluctuation]), energy(&[hats])]).elastic;
+            let whole = energy(&[misfit, hats, shared, inside]);
+            // Rounding of some operations.
+            assert!(found >= whole * (1.0 - 1e-12), "{case}: {found} {whole}");
+            let plain = (alone.elastic.sqrt() + stress.root()).powi(2);
+            assert!(found <= plain * (1.0 + 1e-12), "{case}: {found} {plain}");
+            if sizes == [0.0, 1.0, 0.0] {
+                assert!((found - whole).abs() <= 1e-12 * whole, "{case}: {found} {whole}");
+            }
+        }
     }
 }

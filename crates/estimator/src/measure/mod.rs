@@ -12,7 +12,7 @@ use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::lanes::Value;
 use crate::options::Acceleration;
-use crate::stress::{EnergyForm, Loading, StressMap, facet_node, hooke};
+use crate::stress::{EnergyForm, LOADS, Loading, StressMap, facet_node, hooke};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 pub(crate) use admissible_stress::AdmissibleStress;
@@ -27,13 +27,13 @@ use percute_core::problem::Problem;
 /// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
 /// loading. Young's inequality bounds the products of several nodes.
 pub(crate) fn hat_energy<const D: usize, const N: usize>(loading: &Loading<D, N>, hats: &[HatStress<'_>]) -> f64 {
-    hats.iter().map(|hat| hat_product(loading, hat) + hats.len() as f64 * hat.energy()).sum()
+    hats.iter().map(|hat| work(loading, &hat.products()) + hats.len() as f64 * hat.energy()).sum()
 }
 
-/// ∫σ:K⁻¹τ (J per unit of section or thickness) of the stress σ that balances a loading and the stress τ of hats.
-fn hat_product<const D: usize, const N: usize>(loading: &Loading<D, N>, hat: &HatStress<'_>) -> f64 {
+/// ∫σ:K⁻¹τ of the stress σ that balances a loading, from that of each unit load.
+pub(crate) fn work<const D: usize, const N: usize>(loading: &Loading<D, N>, products: &[f64; LOADS]) -> f64 {
     let loads = loading.traction.iter().flatten().flatten().chain(loading.volume.iter().flatten());
-    hat.products().iter().zip(loads).map(|(c, d)| c * d).sum()
+    products.iter().zip(loads).map(|(c, d)| c * d).sum()
 }
 
 /// The maps of one element, constant in time.
@@ -300,7 +300,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 unit[b][a] += 0.5;
                 let mut loading = Loading { traction: [[[0.0; D]; D]; N], volume: [[0.0; D]; N] };
                 self.subtract_tractions(&unit, &mut loading);
-                strain[a][b] = -hat_product(&loading, hats) * self.law.extent() / self.element.volume;
+                strain[a][b] = -work(&loading, &hats.products()) * self.law.extent() / self.element.volume;
             }
         }
         self.law.stress(&strain)

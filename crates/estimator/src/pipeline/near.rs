@@ -5,11 +5,12 @@ use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
 use super::sampling::{
     ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledStress, Sampling,
+    trapezoid,
 };
 use super::sliding::SlidingMisfit;
 use super::waiting::{ContactInstant, Waiting, WaitingSample};
 use crate::concentrated::HatStress;
-use crate::contact_density::{FacetPressures, NarrowHat, NormalMisfit};
+use crate::contact_density::{BesideStress, FacetPressures, NarrowHat, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
 use crate::measure::Balanced;
@@ -29,6 +30,15 @@ const CHECK: usize = 16;
 /// of the largest, and a quotient of two of them says nothing.
 const AT_REST: f64 = 1e-3;
 
+/// The part of η that comes from stresses beside σ_DA.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BesideShare {
+    /// Its integral (J s).
+    pub(super) integral: f64,
+    /// It at the last sample (J).
+    last: f64,
+}
+
 /// One such element.
 #[derive(Clone, Debug)]
 pub(super) struct NearElement<const D: usize, const N: usize> {
@@ -43,6 +53,8 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     normal_work: f64,
     /// The part of friction beside nodes at two planes so far (J).
     corner_friction: f64,
+    /// The part of η of stresses beside σ_DA so far.
+    pub(super) beside: BesideShare,
     /// Intervals so far.
     checks: usize,
     pub(super) course: Course,
@@ -71,6 +83,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             start: None,
             normal_work: 0.0,
             corner_friction: 0.0,
+            beside: BesideShare::default(),
             checks: 0,
             course: Course::default(),
             kept: Vec::new(),
@@ -142,9 +155,9 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let hats: [Vec<_>; 2] = [&from, &to].map(|level| {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
-        let loaded = Waiting::<D, N>::has_hats(&hats);
         let problem = sampler.problem();
         let beside = [&from, &to].map(|level| level.forces().density.beside(problem, self.element));
+        let loaded = Waiting::<D, N>::is_loaded(&hats, &beside);
         let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
         let mid = single.then(|| WaitingSample {
             at: ContactInstant {
@@ -201,18 +214,28 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1], stop);
         let [from, to] = &waiting.hats;
         let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
+        let [before, after] = waiting.beside;
         let interval = ElementInterval {
             steps,
             start: waiting.start.as_ref().map(|stress| (stress, &start.velocities)),
             mid: waiting.mid.as_ref().map(|mid| (&mid.stress, &mid.at.velocities)),
             end: (&waiting.stop.stress, &waiting.stop.at.velocities),
             contact: self.contact_part(context, &waiting, (steps, start.friction)),
-            beside: [waiting.beside[0], 0.5 * (waiting.beside[0] + waiting.beside[1]), waiting.beside[1]],
+            beside: [before, BesideStress::mean(&before, &after), after],
             hats: [&hats[0], &hats[1], &hats[2]],
         };
-        let samples = sampler.sample(&interval, &mut self.course, &mut self.kept);
+        let (samples, [begin, middle, end]) = sampler.sample(&interval, &mut self.course, &mut self.kept);
+        let begin = if interval.start.is_some() { begin } else { self.beside.last };
+        let [from, to] = steps.map(|n| context.shared.times.instants()[n]);
+        self.beside.integral += trapezoid(to - from, begin, interval.mid.map(|_| middle), end);
+        self.beside.last = end;
         self.start = Some(waiting.stop.at);
         samples
+    }
+
+    /// The surfaces that slide, by their index, to which the element belongs.
+    pub(super) fn sliding(&self, problem: &Problem<D, N>) -> Option<usize> {
+        self.contact.iter().flatten().find_map(|&at| problem.surface().sliding_of(at))
     }
 
     /// The stress of hats in the element.

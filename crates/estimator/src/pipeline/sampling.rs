@@ -2,10 +2,11 @@
 
 use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
+use crate::contact_density::BesideStress;
 use crate::element::Element;
 use crate::increment::{self, Increment};
 use crate::kinematic::{ElementMotion, gather_common};
-use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy};
+use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy, work};
 use crate::numbers::Reader;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
@@ -13,6 +14,7 @@ use crate::stress::{EnergyForms, Loading};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
+use percute_core::material::Law;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
@@ -117,7 +119,7 @@ pub(super) struct SampledStress<const D: usize, const N: usize> {
     mean: [[f64; D]; D],
     /// The energy of the rest (J per unit of section or thickness).
     fluctuation: f64,
-    /// The loading that it balances, where hats need it.
+    /// The loading that it balances, where other stresses need it.
     loading: Option<Loading<D, N>>,
 }
 
@@ -155,8 +157,8 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) end: SampledFields<'i, D, N>,
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [ContactPart; 3],
-    /// The root of the energy of stresses beside these, at its beginning, middle and end (J^½).
-    pub(super) beside: [f64; 3],
+    /// Stresses beside these, at its beginning, middle and end.
+    pub(super) beside: [BesideStress; 3],
     /// The stress of hats at its beginning, middle and end.
     pub(super) hats: [&'i [HatStress<'i>]; 3],
 }
@@ -192,13 +194,13 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     /// Hands over a function that makes σ_DA of the fields that balance, with its loading or without.
     pub(super) fn with_stress<R>(
         &self,
-        work: impl FnOnce(&dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>) -> R,
+        then: impl FnOnce(&dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>) -> R,
     ) -> R {
         let (problem, points) = (self.shared.problem, self.shared.problem.mesh().cell_points(self.id));
         let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
         let [lane, ..] = forms.prepare(problem, std::iter::once((self.id, points)));
         let form = forms.of(problem, self.id, &points, lane);
-        work(&|balanced, loaded| {
+        then(&|balanced, loaded| {
             let AdmissibleStress { mean, fluctuation } = self.measure.stress(&form, balanced);
             SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
         })
@@ -272,21 +274,30 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     }
 
     /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are
-    /// wanted.
+    /// wanted. Gives the samples, and by how much stresses beside σ_DA change η there (J), at the beginning only if
+    /// this is sampled.
     pub(super) fn sample(
         &self,
         interval: &ElementInterval<'_, D, N>,
         course: &mut Course,
         kept: &mut Vec<Contribution>,
-    ) -> [ElementSample; 3] {
-        let at = |(stress, at): SampledFields<'_, D, N>, k: usize| {
-            let beside = match (interval.hats[k], &stress.loading) {
-                ([], _) | (_, None) => 0.0,
-                (hats, Some(loading)) => hat_energy(&self.measure.difference(loading, &at.motion), hats),
+    ) -> ([ElementSample; 3], [f64; 3]) {
+        let mut changes = [0.0; 3];
+        let mut at = |(stress, at): SampledFields<'_, D, N>, k: usize| {
+            let (hats, beside) = (interval.hats[k], &interval.beside[k]);
+            let misfit = stress.loading.as_ref().map(|loading| self.measure.difference(loading, &at.motion));
+            let of_misfit = |work: &dyn Fn(&Loading<D, N>) -> f64| misfit.as_ref().map_or(0.0, work);
+            let of_hats = of_misfit(&|misfit| hat_energy(misfit, hats));
+            let alone = self.measure.error_of((&stress.mean, stress.fluctuation), &at.increment, &at.motion, of_hats);
+            let error = if beside.is_none() {
+                alone
+            } else {
+                let extent = self.shared.problem.material(self.id).extent();
+                let hats: f64 = hats.iter().map(|hat| hats.len() as f64 * hat.energy()).sum();
+                let energies = [stress.fluctuation, hats].map(|energy| extent * energy);
+                alone.beside(beside, of_misfit(&|misfit| work(misfit, &beside.products)), energies)
             };
-            let stress = (&stress.mean, stress.fluctuation);
-            let error = self.measure.error_of(stress, &at.increment, &at.motion, beside);
-            let error = error.beside(interval.beside[k]);
+            changes[k] = error.elastic - alone.elastic;
             ElementSample { error, contact: interval.contact[k] }
         };
         if let Some(start) = interval.start {
@@ -300,7 +311,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         course.integral += trapezoid(to - from, start.total(), middle.map(|m| m.total()), end.total());
         course.last = end;
         self.keep(interval.steps[1], course, kept);
-        [start, middle.unwrap_or_default(), end]
+        ([start, middle.unwrap_or_default(), end], changes)
     }
 
     /// Keeps a sample if it is wanted.

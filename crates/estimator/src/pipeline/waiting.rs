@@ -1,7 +1,7 @@
 //! Intervals of near elements that wait until the motion of their nodes is known, as numbers.
 
 use super::sampling::{ElementVelocities, SampledStress};
-use crate::contact_density::{CornerSliding, FacetPressures, NarrowHat};
+use crate::contact_density::{BesideStress, CornerSliding, FacetPressures, NarrowHat};
 use crate::numbers::Reader;
 
 /// An element at a half-step instant; until contact is solved for, its normal components are those of the simulation.
@@ -32,8 +32,8 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
     pub(super) pressures: Vec<FacetPressures<D>>,
     /// Sliding on its candidate facets beside a node at two planes, step by step.
     pub(super) sliding: Vec<CornerSliding<D>>,
-    /// The root of the energy of stresses beside σ_DA at the beginning and the end (J^½), of surfaces that slide.
-    pub(super) beside: [f64; 2],
+    /// Stresses beside σ_DA at the beginning and the end, of surfaces that slide.
+    pub(super) beside: [BesideStress; 2],
     /// Narrow hats of its nodes at the beginning and the end, those of a node side by side.
     pub(super) hats: [Vec<NarrowHat<D>>; 2],
 }
@@ -62,19 +62,19 @@ impl<const D: usize, const N: usize> WaitingSample<D, N> {
 }
 
 impl<const D: usize, const N: usize> Waiting<D, N> {
-    /// Whether there are hats.
-    pub(super) fn has_hats(hats: &[Vec<NarrowHat<D>>; 2]) -> bool {
-        hats.iter().any(|hats| !hats.is_empty())
+    /// Whether there are stresses beside σ_DA, which need the loading that it balances.
+    pub(super) fn is_loaded(hats: &[Vec<NarrowHat<D>>; 2], beside: &[BesideStress; 2]) -> bool {
+        hats.iter().any(|hats| !hats.is_empty()) || !beside.iter().all(BesideStress::is_none)
     }
 
     /// Appends it to numbers.
     pub(super) fn append(&self, numbers: &mut Vec<f64>) {
         let touching = self.touching.as_flattened().as_flattened().iter().copied();
-        let beside = self.beside != [0.0; 2];
+        let beside = !self.beside.iter().all(BesideStress::is_none);
         let flags = [self.start.is_some(), self.mid.is_some(), beside].into_iter().chain(touching);
         numbers.push(flags.fold(0, |flags, flag| 2 * flags + usize::from(flag)) as f64);
         if beside {
-            numbers.extend(self.beside);
+            self.beside.iter().for_each(|beside| beside.append(numbers));
         }
         let [from, to] = &self.hats;
         let counts = [self.pressures.len(), self.sliding.len(), from.len(), to.len()];
@@ -91,12 +91,12 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
     pub(super) fn read(numbers: &mut Reader<'_>) -> Self {
         let flags = numbers.count();
         let flag = |k: usize| (flags >> (4 * N + 2 - k)) & 1 == 1;
-        let beside = if flag(2) { numbers.take() } else { [0.0; 2] };
+        let beside = [(); 2].map(|()| if flag(2) { BesideStress::read(numbers) } else { BesideStress::NONE });
         let [pressures, sliding, from, to] = [(); 4].map(|()| numbers.count());
         let pressures = (0..pressures).map(|_| FacetPressures::read(numbers)).collect();
         let sliding = (0..sliding).map(|_| CornerSliding::read(numbers)).collect();
         let hats = [from, to].map(|count| (0..count).map(|_| NarrowHat::read(numbers)).collect());
-        let loaded = Self::has_hats(&hats);
+        let loaded = Self::is_loaded(&hats, &beside);
         Self {
             start: flag(0).then(|| SampledStress::read(numbers, loaded)),
             mid: flag(1).then(|| WaitingSample::read(numbers, loaded)),

@@ -32,6 +32,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         residuals,
         kept_impulse,
         own_contacts,
+        surfaces,
         given,
         steps,
         end,
@@ -58,6 +59,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     numbers.extend(over_time.iter().flat_map(sample));
     numbers.extend(sources.iter().flat_map(of_sources));
     numbers.extend(by_element);
+    numbers.extend(surfaces.iter().flat_map(|s| [s.slide, s.lift, s.rounds as f64, s.stress]));
     numbers.extend(residuals.entries().map(|entry| entry.1));
     for ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } in maps {
         numbers.extend([*step as f64, *time]);

@@ -6,7 +6,7 @@ use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, found, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report,
-    SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
+    SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::outline::Outline;
 use percute_core::contact::ContactResults;
@@ -74,6 +74,7 @@ impl Report {
             contact: ContactReport::new(contact),
             rebound,
             impacts: Impacts::new(problem_of, contact),
+            sliding: SlidingReport::all(problem_of, &estimate.surfaces),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             outline: outline.cloned(),

@@ -9,6 +9,7 @@ mod impacts;
 mod meaning;
 mod rebound;
 mod simulated;
+mod sliding;
 mod sources;
 pub(crate) mod summary;
 mod varying_steps;
@@ -22,6 +23,7 @@ pub use impacts::{BodyMotion, Impacts, InterfaceRebound};
 pub use meaning::meaning;
 pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
+pub use sliding::SlidingReport;
 pub use sources::SourceReport;
 pub use summary::summary;
 pub use varying_steps::{unstable_steps, varying_steps};
@@ -100,6 +102,7 @@ pub struct Report {
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,
     pub impacts: Option<Impacts>,
+    pub sliding: Vec<SlidingReport>,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
     pub outline: Option<Outline>,
@@ -173,14 +176,15 @@ impl Versions {
 }
 
 impl Report {
-    /// Verdict, rebound and warnings as a JSON document.
+    /// Verdict, warnings, rebound and the contact of several bodies as a JSON document.
     ///
     /// # Errors
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
-        let Self { verdict, rebound, impacts, warnings, .. } = self;
-        let document =
-            serde_json::json!({ "verdict": verdict, "rebound": rebound, "impacts": impacts, "warnings": warnings });
+        let Self { verdict, rebound, impacts, sliding, warnings, .. } = self;
+        let document = serde_json::json!({
+            "verdict": verdict, "rebound": rebound, "impacts": impacts, "sliding": sliding, "warnings": warnings,
+        });
         serde_json::to_string(&document).map_err(std::io::Error::from)
     }
 

@@ -4,38 +4,39 @@
 //! the edge, the stress in the star of a node, that in the element, cut where the density has its peak, and one of two
 //! parts where this is close to a node.
 
+use super::beside_stress::BesideStress;
 use super::facets::EdgeFacet;
 use super::load::{Load, place_in};
-use crate::concentrated::{EdgeRest, StarElement, roots};
+use crate::concentrated::{EdgeRest, RestStress, StarElement, rest_stress};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
 /// Where ∫r² is at most this part of ∫F², the bound of its energy is not worth a better one.
 const SMALL: f64 = 1e-3;
 
-/// Elements with such a stress, and the roots of its energies (J^½).
-pub(super) type Roots = Vec<(ElementId, f64)>;
+/// Elements with such stresses.
+pub(super) type Stresses = Vec<(ElementId, BesideStress)>;
 
 /// The stress of one edge.
 pub(super) fn of_edge<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     edge: &EdgeFacet,
     load: &Load<D>,
-) -> Roots {
+) -> Stresses {
     let (id, rest) = (owner(problem, edge), load.rest(edge));
-    let mut least = vec![(id, (edge.spread * rest).sqrt())];
+    let mut least = vec![(id, BesideStress::inside((edge.spread * rest).sqrt()))];
     if rest <= SMALL * load.square(edge) {
         return least;
     }
     let (corners, load) = (corners(problem, edge), &load.without_slivers(edge));
-    let mut take = |other: Option<Roots>| {
+    let mut take = |other: Option<Stresses>| {
         if let Some(other) = other.filter(|other| total(other) < total(&least)) {
             least = other;
         }
     };
     (0..2).for_each(|end| take(in_star(problem, edge, end, load)));
     for place in load.peaks() {
-        take(in_cut_triangle((problem, edge), corners, place, load).map(|root| vec![(id, root)]));
+        take(in_cut_triangle((problem, edge), corners, place, load).map(|stress| vec![(id, stress)]));
         (0..2).for_each(|end| take(close_to_a_node(problem, edge, (end, place), load)));
     }
     least
@@ -49,7 +50,7 @@ fn close_to_a_node<const D: usize, const N: usize>(
     edge: &EdgeFacet,
     (end, place): (usize, f64),
     load: &Load<D>,
-) -> Option<Roots> {
+) -> Option<Stresses> {
     let part = Some(load.part_at(end, place)).filter(|part| *part < 1.0)?;
     let [beside, whole] = load.spread_over(part, end, edge);
     let corners = corners(problem, edge);
@@ -57,9 +58,9 @@ fn close_to_a_node<const D: usize, const N: usize>(
     let place = place_in(part, end, place);
     let short = EdgeFacet { length: part * edge.length, ..*edge };
     let cut = in_cut_triangle((problem, &short), corners.map(similar), place, &beside)?;
-    let mut roots = in_star(problem, edge, end, &whole)?;
-    roots.push((owner(problem, edge), cut));
-    Some(roots)
+    let mut stresses = in_star(problem, edge, end, &whole)?;
+    stresses.push((owner(problem, edge), cut));
+    Some(stresses)
 }
 
 /// The stress in the star of the node at an end of the edge; none if rounding spoils it.
@@ -68,7 +69,7 @@ fn in_star<const D: usize, const N: usize>(
     edge: &EdgeFacet,
     end: usize,
     load: &Load<D>,
-) -> Option<Roots> {
+) -> Option<Stresses> {
     let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
     let node = problem.surface().nodes()[candidate.nodes[edge.ends[end]]].node;
     let star = mesh.stars().star(node);
@@ -84,8 +85,12 @@ fn in_star<const D: usize, const N: usize>(
     });
     let mut rests = [EdgeRest::default(), EdgeRest::default()];
     rests[usize::from(star.links[0] != Some(candidate.facet))] = load.seen_from(end, edge);
-    let roots = roots(&elements, &rests, supported)?;
-    Some(star.elements.iter().copied().zip(roots).collect())
+    let stresses = rest_stress(&elements, &rests, supported)?;
+    let of = |(&id, stress): (&ElementId, &RestStress)| {
+        let at = mesh.local_node(id, node).unwrap_or(0);
+        (id, BesideStress { inside: 0.0, shared: stress.root, products: stress.products(at) })
+    };
+    Some(star.elements.iter().zip(&stresses).map(of).collect())
 }
 
 /// The corners of the element of an edge: its first and its second end, and the one opposite.
@@ -97,13 +102,14 @@ fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeF
     [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points()[node.index()][c]))
 }
 
-/// The root of the energy of the stress in a triangle on an edge, cut from a place on the edge to the corner opposite.
+/// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite. A support of the edge is not
+/// made use of.
 fn in_cut_triangle<const D: usize, const N: usize>(
     (problem, edge): (&Problem<D, N>, &EdgeFacet),
     [a, b, opposite]: [[f64; 2]; 3],
     place: f64,
     load: &Load<D>,
-) -> Option<f64> {
+) -> Option<BesideStress> {
     let at = [0, 1].map(|c| a[c] * (1.0 - place) + b[c] * place);
     let [before, after, up] = [a, b, opposite].map(|corner| [0, 1].map(|c| corner[c] - at[c]));
     let [first, second] = load.around(place, edge);
@@ -115,9 +121,8 @@ fn in_cut_triangle<const D: usize, const N: usize>(
     };
     let law = problem.material(owner(problem, edge));
     let elements = cut_fan(fan).map(|ends| StarElement { ends, law });
-    let supported = problem.supported(problem.surface().facets()[edge.facet].facet);
-    let roots = roots(&elements, &rests, [[supported[0], supported[D - 1]]; 2])?;
-    Some(roots.iter().map(|root| root * root).sum::<f64>().sqrt())
+    let stresses = rest_stress(&elements, &rests, [[false; 2]; 2])?;
+    Some(BesideStress::inside(stresses.iter().map(|stress| stress.root * stress.root).sum::<f64>().sqrt()))
 }
 
 /// A fan of four triangles around the origin between three points: both angles are cut into halves, because the stress
@@ -136,8 +141,8 @@ fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFac
 }
 
 /// The sum of the roots, which is to be small: they are added to those of other stresses.
-fn total(roots: &Roots) -> f64 {
-    roots.iter().map(|(_, root)| root).sum()
+fn total(stresses: &Stresses) -> f64 {
+    stresses.iter().map(|(_, stress)| stress.root()).sum()
 }
 
 #[cfg(test)]
@@ -151,9 +156,20 @@ mod tests {
     /// Energies in both halves of a triangle with this apex over an edge from 0 to 1, cut at a place of the edge. A
     /// unit force acts there along a direction: hats of this width on both sides.
     fn energies(apex: [f64; 2], place: f64, width: f64, direction: [f64; 2]) -> Option<[f64; 2]> {
+        let stresses = stresses(apex, place, width, direction)?;
+        let half = |k: usize| stresses[k..k + 2].iter().map(|stress| stress.root * stress.root).sum();
+        Some([half(0), half(2)])
+    }
+
+    /// The other corners of the four parts of the triangle, from the place.
+    fn parts(apex: [f64; 2], place: f64) -> [[[f64; 2]; 2]; 4] {
+        cut_fan([[1.0 - place, 0.0], [apex[0] - place, apex[1]], [-place, 0.0]])
+    }
+
+    /// The stress in them.
+    fn stresses(apex: [f64; 2], place: f64, width: f64, direction: [f64; 2]) -> Option<Vec<RestStress>> {
         let law = Elastic::plane_stress(YOUNG, 0.3, 2700.0, 1.0).unwrap();
-        let up = [apex[0] - place, apex[1]];
-        let elements = cut_fan([[1.0 - place, 0.0], up, [-place, 0.0]]).map(|ends| StarElement { ends, law: &law });
+        let elements = parts(apex, place).map(|ends| StarElement { ends, law: &law });
         // The far moment of the linear traction with the resultant and the centroid of the hats, which is the place.
         let nodal = [4.0 - 6.0 * place, 6.0 * place - 2.0];
         let linear = |at: f64| nodal[0] * (1.0 - at) + nodal[1] * at;
@@ -163,9 +179,35 @@ mod tests {
             let points = vec![(0.0, scaled(1.0 / width)), (width / length, scaled(0.0))];
             EdgeRest { points, linear: [place, end].map(|at| scaled(linear(at))) }
         };
-        let energies = roots(&elements, &[rest(1.0), rest(0.0)], [[false; 2]; 2])?;
-        let half = |k: usize| energies[k..k + 2].iter().map(|root| root * root).sum();
-        Some([half(0), half(2)])
+        rest_stress(&elements, &[rest(1.0), rest(0.0)], [[false; 2]; 2])
+    }
+
+    /// A stress inside a triangle, without tractions on its other edges, does no work on a constant strain: its products
+    /// with the loads of a constant stress cancel.
+    #[test]
+    fn stresses_inside_do_no_work_on_a_constant_strain() {
+        for (apex, place) in [([0.0, 1.0], 0.5), ([0.5, 0.8], 0.4), ([0.2, 0.5], 0.7)] {
+            let stresses = stresses(apex, place, 1e-2, [0.6, 0.8]).unwrap();
+            for [xx, yy, xy] in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, -2.0, 1.5]] {
+                let (mut sum, mut largest) = (0.0, 0.0_f64);
+                for (stress, [first, second]) in stresses.iter().zip(parts(apex, place)) {
+                    let corners = [[0.0; 2], first, second];
+                    let products = stress.products(0);
+                    for k in 0..6 {
+                        let (a, b) = (corners[(k / 2 + 1) % 3], corners[(k / 2 + 2) % 3]);
+                        let normal = [b[1] - a[1], a[0] - b[0]];
+                        let traction = [xx * normal[0] + xy * normal[1], xy * normal[0] + yy * normal[1]];
+                        for c in 0..2 {
+                            let work = traction[c] * products[2 * k + c];
+                            sum += work;
+                            largest = largest.max(work.abs());
+                        }
+                    }
+                }
+                // Rounding of the star problem.
+                assert!(sum.abs() < 1e-11 * largest, "{apex:?}: {sum} {largest}");
+            }
+        }
     }
 
     /// Close to the place the stress is that of a force on a half-plane: each octave costs P²/E ln 2/π along the

@@ -13,6 +13,7 @@ mod path;
 mod record;
 
 use super::normal_motions::{NormalMotions, Pair, most_bytes};
+use crate::estimate::SurfaceEstimate;
 use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use lift::{Lift, Penetration};
@@ -145,6 +146,12 @@ impl SlidingMotion {
             }
         }
         change.hand_on(sliding, write)
+    }
+
+    /// How far the surfaces slide at most (m), the largest lift (m), and the number of rounds, of a motion that is known.
+    pub(crate) fn summary(&self) -> SurfaceEstimate {
+        let lift = self.lifts.iter().flatten().fold(0.0_f64, |highest, lift| highest.max(lift.height));
+        SurfaceEstimate { slide: self.record.slide(), lift, rounds: self.rounds, stress: 0.0 }
     }
 
     /// The penetration of the motion so far.

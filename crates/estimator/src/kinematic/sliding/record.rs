@@ -2,6 +2,7 @@
 
 use crate::direction::along;
 use crate::kinematic::normal_motions::{NormalMotions, Pair};
+use crate::residual::worse;
 use crate::scratch_file::{ScratchError, ScratchFile};
 use percute_core::contact::{ContactSurface, Side, SlidingSurfaces};
 
@@ -137,6 +138,13 @@ impl Record {
     /// How far each part of the slave has moved against the master at an instant (m).
     pub(super) fn shifts(&self, instant: usize) -> Vec<f64> {
         places(&self.shifts[instant])
+    }
+
+    /// How far a part of the slave has moved against the master from its place at the start, at most (m).
+    pub(super) fn slide(&self) -> f64 {
+        let Some(start) = self.shifts.first() else { return 0.0 };
+        let shifts = self.shifts.iter().flat_map(|shifts| shifts.iter().zip(start));
+        shifts.fold(0.0, |most, ([place, _], [start, _])| worse(most, (place - start).abs()))
     }
 
     /// Steps at which a node of the slave begins and ceases to touch, in turn.
