@@ -63,7 +63,7 @@ pub enum EstimateError {
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
         "node {node} starts {} m from the plane or body that it may touch and touches at step 1; no admissible motion \
-         exists below a gap of {} m",
+         exists below a gap of {} m: start further away; a history of another program needs a step of flight before it",
         trimmed(*.gap, 7), trimmed(*.smallest_gap, 7)
     )]
     StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },
@@ -73,8 +73,8 @@ pub enum EstimateError {
     /// The auxiliary solution of `corrected` is unstable where the simulation is stable.
     #[error(
         "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s: the steps of the history are \
-         too long for its central differences (the longest is {} s); estimate this history with reconstruction = \
-         \"consistent\", or store shorter steps",
+         too long for its central differences (the longest is {} s), or density and stiffness are not those of the \
+         simulation; correct them, estimate this history with reconstruction = \"consistent\", or store shorter steps",
         trimmed(*.time, 7), trimmed(*.longest_step, 5)
     )]
     AuxiliarySolution { step: usize, time: f64, longest_step: f64 },

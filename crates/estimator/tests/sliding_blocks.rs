@@ -151,10 +151,10 @@ impl Row {
     }
 }
 
-/// At least 1, and at most 0.05 above the prototype. Of bodies that touch from the start, the velocities of the prototype
-/// are not known, and waves without a front have an index closer to 1: at least 0.95. Where a surface ends on an edge of the other one, or enters beside
-/// it, indices are smaller by up to 0.2: the stress in the star of a node has less energy than that in an edge's
-/// element, and both surfaces give way, only while it is needed.
+/// At least 1, and at most 0.05 above the prototype. Of bodies that touch from the start, the velocities of the
+/// prototype are not known, and waves without a front have an index closer to 1: at least 0.95. Where a surface ends on
+/// an edge of the other one, or enters beside it, indices are smaller by up to 0.2: the stress in the star of a node
+/// has less energy than that in an edge's element, and both surfaces give way, only while it is needed.
 #[test]
 #[ignore = "takes a minute"]
 fn effectivity_indices_against_a_finer_reference() {

@@ -113,9 +113,9 @@ fn effectivity_indices_of_two_blocks() {
     }
 }
 
-/// The same on three meshes with the references of the prototype. The tractions of the prototype have more energy than those
-/// here, which are nearer to the minimum: its indices are larger by up to 0.06, and that of the stack on the finest mesh
-/// is smaller by 0.04.
+/// The same on three meshes with the references of the prototype. The tractions of the prototype have more energy than
+/// those here, which are nearer to the minimum: its indices are larger by up to 0.06, and that of the stack on the
+/// finest mesh is smaller by 0.04.
 #[test]
 #[ignore = "takes two minutes"]
 fn effectivity_indices_against_a_finer_reference() {

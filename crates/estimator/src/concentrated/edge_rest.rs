@@ -94,9 +94,11 @@ pub(crate) fn rest_stress<L: LinearLaw>(
     if total < 0.0 || energies.iter().any(|energy| *energy < -NEGATIVE * total) {
         return None;
     }
-    let stress = energies.iter().zip(&stress.products).map(|(energy, products)| RestStress {
-        root: energy.max(0.0).sqrt(),
-        products: std::array::from_fn(|load| x * products[(load, 0)] + y * products[(load, 1)]),
-    });
-    Some(stress.collect())
+    let of = |(energy, products): (&f64, &DMatrix<f64>)| {
+        // A stress without energy does no work: what is left of it is rounding.
+        let size = if *energy > 0.0 { size } else { [0.0; 2] };
+        let product = |load: usize| size[0] * products[(load, 0)] + size[1] * products[(load, 1)];
+        RestStress { root: energy.max(0.0).sqrt(), products: std::array::from_fn(product) }
+    };
+    Some(energies.iter().zip(&stress.products).map(of).collect())
 }

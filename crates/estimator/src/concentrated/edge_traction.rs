@@ -65,6 +65,9 @@ pub(super) fn on(points: &[[f64; 2]], [start, end]: [f64; 2]) -> [f64; 2] {
 /// A traction on the first (0) or the last edge of a star (1).
 pub(super) type OnEdge<const P: usize> = (usize, EdgeTraction<P>);
 
+/// Break points that differ by less are one: rounding of the places. Those that mean something differ by 1e-6 of the edge.
+const SAME_BREAK: f64 = 1e-9;
+
 /// Radii of rings, from 1 down to the first break point: break points, and rings of one ratio near a half between them.
 /// With halves, a ring of no width could be left, in which a stress has no digits.
 pub(super) fn radii(places: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -74,7 +77,7 @@ pub(super) fn radii(places: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut radii = vec![1.0];
     for next in breaks {
         let last = radii[radii.len() - 1];
-        if next < last {
+        if next < last * (1.0 - SAME_BREAK) {
             let rings = (last / next).log2().round().max(1.0);
             let ratio = (next / last).powf(1.0 / rings);
             radii.extend((1..rings as i32).map(|k| last * ratio.powi(k)));
@@ -120,6 +123,13 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Nor do breaks that are equal but for rounding, also at the end of the edge.
+    #[test]
+    fn equal_breaks_are_one() {
+        let radii = radii([1.0 - 1.2e-16, 0.4, 0.4 * (1.0 - 2e-16), 0.1].into_iter());
+        assert_eq!(radii, [1.0, 0.4, 0.2, 0.1]);
     }
 
     /// Σ of the midpoint rule on intervals that have no break inside: of second order.

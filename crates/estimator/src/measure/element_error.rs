@@ -32,11 +32,12 @@ impl<T: Value> ElementError<T> {
 }
 
 impl ElementError {
-    /// The error with stresses beside that in it, of which `work` is ∫σ:K⁻¹τ with the misfit of the stress (J). `energies`
-    /// are those of the fluctuation of σ_DA and of hats (J).
+    /// The error with stresses beside that in it, of which `work` is ∫σ:K⁻¹τ with the misfit of the stress (J).
+    /// `energies` are those of the fluctuation of σ_DA and of hats (J).
     ///
     /// Of two stresses whose product is not known, the norm of the sum is at most the sum of the norms. Stresses inside
-    /// an element do no work on the mean of the misfit.
+    /// an element do no work on the mean of the misfit. The reference is that of the sum over a star: the work of its
+    /// stress on σ_CA vanishes there.
     pub(crate) fn beside(self, stress: &BesideStress, work: f64, energies: [f64; 2]) -> Self {
         let BesideStress { inside, shared, .. } = *stress;
         let [fluctuation, hats] = energies.map(|energy| energy.max(0.0).sqrt());

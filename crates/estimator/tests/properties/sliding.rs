@@ -134,9 +134,9 @@ fn everything_is_admissible() {
     }
 }
 
-/// The summary of an interface: bodies that move past each other without friction slide by as much as they move, but for
-/// waves (measured: 0.9 % less). Lifts are those of the prototype of flat blocks, 4e-8 to 2e-6 m in two rounds, and the
-/// share of stresses beside linear tractions is up to 5 % where bodies slide.
+/// The summary of an interface: bodies that move past each other without friction slide by as much as they move, but
+/// for waves (measured: 0.9 % less). Lifts are those of the prototype of flat blocks, 4e-8 to 2e-6 m in two rounds, and
+/// the share of stresses beside linear tractions is up to 5 % where flat bodies slide.
 #[test]
 fn the_summary_of_an_interface_is_of_its_motion() {
     let past = Blocks { friction: 0.0, velocities: [[150.0, -20.0], [0.0, 20.0]], ..Blocks::oblique() };

@@ -102,8 +102,8 @@ fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeF
     [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points()[node.index()][c]))
 }
 
-/// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite. A support of the edge is not
-/// made use of.
+/// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite. A support of the edge is
+/// not made use of.
 fn in_cut_triangle<const D: usize, const N: usize>(
     (problem, edge): (&Problem<D, N>, &EdgeFacet),
     [a, b, opposite]: [[f64; 2]; 3],
@@ -182,8 +182,8 @@ mod tests {
         rest_stress(&elements, &[rest(1.0), rest(0.0)], [[false; 2]; 2])
     }
 
-    /// A stress inside a triangle, without tractions on its other edges, does no work on a constant strain: its products
-    /// with the loads of a constant stress cancel.
+    /// A stress inside a triangle, without tractions on its other edges, does no work on a constant strain: its
+    /// products with the loads of a constant stress cancel.
     #[test]
     fn stresses_inside_do_no_work_on_a_constant_strain() {
         for (apex, place) in [([0.0, 1.0], 0.5), ([0.5, 0.8], 0.4), ([0.2, 0.5], 0.7)] {

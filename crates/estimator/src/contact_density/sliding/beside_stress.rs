@@ -9,8 +9,8 @@ pub(crate) struct BesideStress {
     /// The root of the energy of those without tractions on the other edges of the element, or a bound of it (J^½).
     /// They do no work on a constant strain.
     pub(crate) inside: f64,
-    /// The root of the energy of those in the stars of nodes (J^½), and their ∫σ:K⁻¹τ for the stress σ of each unit load
-    /// of the element (J).
+    /// The root of the energy of those in the stars of nodes (J^½), and their ∫σ:K⁻¹τ for the stress σ of each unit
+    /// load of the element (J).
     pub(crate) shared: f64,
     pub(crate) products: [f64; LOADS],
 }

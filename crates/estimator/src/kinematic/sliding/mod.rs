@@ -148,7 +148,8 @@ impl SlidingMotion {
         change.hand_on(sliding, write)
     }
 
-    /// How far the surfaces slide at most (m), the largest lift (m), and the number of rounds, of a motion that is known.
+    /// How far the surfaces slide at most (m), the largest lift (m), and the number of rounds, of a motion that is
+    /// known.
     pub(crate) fn summary(&self) -> SurfaceEstimate {
         let lift = self.lifts.iter().flatten().fold(0.0_f64, |highest, lift| highest.max(lift.height));
         SurfaceEstimate { slide: self.record.slide(), lift, rounds: self.rounds, stress: 0.0 }
