@@ -89,6 +89,21 @@ def test_the_solver_of_the_page_on_other_programs_is_graded(
     assert "simulated by Solver 3, estimated by" in Path("theirs.html").read_text(encoding="utf-8")
 
 
+def test_the_step_of_flight_of_the_page_on_other_programs() -> None:
+    """A history that starts on its plane is that of percute one step before."""
+    text = (ROOT / "docs" / "foreign.md").read_text()
+    solver = re.findall(r"```python\n(import numpy.*?)# Its grade", text, re.DOTALL)[0]
+    assert "400.0, 2e-4, 0.2" in solver
+    names: dict[str, Any] = {}
+    exec(solver.replace("400.0, 2e-4, 0.2", "400.0, 0.0, 0.2"), names)
+    with pytest.warns(pc.InputWarning, match="the last instant"):
+        exec(re.findall(r"```python\n(flight = .*?)```", text, re.DOTALL)[0], names)
+    ours = pc.simulate(names["problem"], steps=[names["dt"]] * (len(names["later"]) - 1))
+    # Some roundings of the path, 6 mm.
+    assert abs(ours.displacement - names["later"]).max() < 1e-16
+    assert pc.estimate(names["history"]).trust == "high"
+
+
 def test_the_cut_of_the_page_on_other_programs_ends_with_the_first_contact() -> None:
     text = (ROOT / "docs" / "foreign.md").read_text()
     cut = re.findall(r"```python\n(loaded = .*?)```", text, re.DOTALL)[0]

@@ -47,6 +47,12 @@ impl State {
     }
 }
 
+/// Whether a case was run before with another text: its folder in that of the sweep has one.
+#[must_use]
+pub fn has_changed(folder: &Path, case: &Planned) -> bool {
+    fs::read_to_string(folder.join(&case.name).join(CASE)).is_ok_and(|text| text != case.text)
+}
+
 /// The state of a case of the sweep in `folder`.
 pub(crate) fn state(folder: &Path, case: &Planned) -> State {
     let folder = folder.join(&case.name);

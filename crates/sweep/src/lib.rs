@@ -13,7 +13,7 @@ mod pool;
 mod table;
 mod values;
 
-pub use attempt::State;
+pub use attempt::{State, has_changed};
 pub use key::Key;
 pub use plan::{Plan, Planned};
 pub use pool::{Count, Launch, run};

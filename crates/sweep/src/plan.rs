@@ -40,9 +40,9 @@ impl Plan {
     /// # Errors
     /// Something wrong with the file, with the case, or with the first case of the sweep.
     pub fn read(file: &Path, folder: Option<&Path>, long: Long) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(file);
-        let text = text.map_err(|cause| Failure::Unreadable { file: file.to_path_buf(), cause })?;
         let told = |message: String| Failure::Argument(format!("{}: {message}", file.display()));
+        let text = std::fs::read_to_string(file);
+        let text = text.map_err(|cause| told(format!("cannot read the sweep file: {cause}")))?;
         let document = Document::parse(text.as_str()).map_err(|error| told(error.to_string().trim().to_string()))?;
         let given = document.as_table();
         if let Some((key, _)) = given.iter().find(|(key, _)| !KEYS.contains(key)) {

@@ -11,7 +11,10 @@ use percute_workflow::Failure;
 use percute_workflow::choice::StepChoice;
 use percute_workflow::export::{Export, Names, Request};
 use percute_workflow::history::{Stored, lacks, open};
-use percute_workflow::message::counted;
+use percute_workflow::message::{counted, trimmed};
+
+/// The most instants whose times are printed.
+const FEW: usize = 6;
 
 pub(super) fn command(arguments: &ExportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
     each_dimension!(open(&arguments.history)?, stored => export(&stored, arguments, console))
@@ -52,7 +55,14 @@ fn export<const D: usize, const N: usize>(
     let main = files.first().map(|file| file.display().to_string()).unwrap_or_default();
     let more = if files.len() > 1 { format!(" and {}", counted(files.len() - 1, "file")) } else { String::new() };
     let (instants, fields) = (counted(export.instants(), "instant"), export.fields().join(", "));
-    console.print(&format!("wrote {main}{more}: {instants}; {fields}"))?;
+    // Those that were asked for by their times are the nearest ones.
+    let times = if export.instants() <= FEW {
+        let times: Vec<String> = export.times().map(|time| trimmed(time, 5)).collect();
+        format!(" ({} s)", times.join(", "))
+    } else {
+        String::new()
+    };
+    console.print(&format!("wrote {main}{more}: {instants}{times}; {fields}"))?;
     Ok(DONE)
 }
 

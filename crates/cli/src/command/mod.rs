@@ -31,7 +31,7 @@ use percute_workflow::report::Warning;
 use percute_workflow::run::{located, resolved as search};
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 
 /// Most bytes of a case; pipes may have no end.
@@ -84,8 +84,12 @@ where
         Err(error) => return clap_says(&error, console),
     };
     outcome.unwrap_or_else(|failure| {
-        // If standard error is gone too, the exit code is all that is left to say it.
-        let _ = writeln!(console.err, "error: {failure}");
+        // A reader that has enough, such as `head`, is no error to tell of.
+        let closed = matches!(&failure, Failure::Output(error) if error.kind() == ErrorKind::BrokenPipe);
+        if !closed {
+            // If standard error is gone too, the exit code is all that is left to say it.
+            let _ = writeln!(console.err, "error: {failure}");
+        }
         code(&failure)
     })
 }

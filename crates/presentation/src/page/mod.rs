@@ -133,6 +133,11 @@ mod tests {
         let wanted = "<h1>Drop &lt;test&gt;</h1>\n<p>A &amp; B</p>\n<p class=\"faint\">Error of the simulation \
                       b.vtkhdf · simulated by &quot;Two&quot;, estimated by ";
         assert!(told.contains(wanted), "{told}");
+        let page = shown_about(&about, document, None);
+        let command = "--output estimate.vtkhdf\npercute report estimate.vtkhdf report.html \
+                       --title 'Drop &lt;test&gt;' \
+                       --author 'A &amp; B' --program";
+        assert!(page.contains(command) && !page.contains("--report"), "{page}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The case text and the commands that compute the numbers again.
 
 use super::Contents;
+use super::about::About;
 use super::html::{heading, paragraph, remark, section as sectioned, verbatim};
 use super::place::seen_from;
 use crate::body::Body;
@@ -33,7 +34,7 @@ pub(super) fn section(contents: &Contents<'_>, folder: &Path) -> String {
         None => {
             let origin = "The problem was not stated in a case file. This is the problem in the language of the case \
                           files, without mesh, initial fields and instants.";
-            without_case(document, folder)
+            without_case(contents, folder)
                 + &heading("Statement of the problem")
                 + &remark(origin)
                 + &text(contents.statement)
@@ -80,10 +81,10 @@ fn commands(contents: &Contents<'_>, case: &Case, folder: &Path) -> String {
     let file = file_of(&case.name);
     let case = quoted(&seen_from(folder, &case.name).unwrap_or_else(|| file.clone()));
     if file_of(&name) == file {
-        return format!("percute run {case} --report report.html");
+        return paged(contents.about, &format!("percute run {case}"), "--estimate");
     }
     let name = history(document, folder);
-    format!("percute simulate {case} --history {}\n{}", quoted(&name), estimate(document, &name))
+    format!("percute simulate {case} --history {}\n{}", quoted(&name), estimate(contents, &name))
 }
 
 /// The history, from the folder of the page on if it is there; else its name.
@@ -92,7 +93,8 @@ fn history(document: &Document, folder: &Path) -> String {
 }
 
 /// The way to a page whose history was not made from a case: from its file, or else from one to be made.
-fn without_case(document: &Document, folder: &Path) -> String {
+fn without_case(contents: &Contents<'_>, folder: &Path) -> String {
+    let document = contents.document;
     let stated = document.at("simulated_by").as_str();
     let program =
         stated.filter(|_| document.is_foreign()).map_or("another program".to_string(), |name| format!("`{name}`"));
@@ -104,7 +106,7 @@ fn without_case(document: &Document, folder: &Path) -> String {
             "it was simulated in Python".to_string()
         };
         let told = format!("The estimate is that of the history `{name}`: {origin}, and no case file belongs to it.");
-        return paragraph(&told) + &forced(document) + &verbatim(&estimate(document, &name));
+        return paragraph(&told) + &forced(document) + &verbatim(&estimate(contents, &name));
     }
     let origin =
         if document.is_foreign() { format!("was made from arrays of {program}") } else { "was simulated".to_string() };
@@ -114,7 +116,7 @@ fn without_case(document: &Document, folder: &Path) -> String {
     );
     let save = format!("estimate.history.save(\"{UNSAVED}\")");
     let then = paragraph("With this file, the command is");
-    paragraph(&told) + &verbatim(&save) + &forced(document) + &then + &verbatim(&estimate(document, UNSAVED))
+    paragraph(&told) + &verbatim(&save) + &forced(document) + &then + &verbatim(&estimate(contents, UNSAVED))
 }
 
 /// Whether a history was estimated although it is not consistent.
@@ -139,10 +141,23 @@ fn options(document: &Document) -> impl Iterator<Item = (&'static str, String)> 
 }
 
 /// The command for a history, with all options.
-fn estimate(document: &Document, file: &str) -> String {
+fn estimate(contents: &Contents<'_>, file: &str) -> String {
+    let document = contents.document;
     let options: String = options(document).map(|(key, value)| format!(" --{key} {}", quoted(&value))).collect();
     let accepted = if is_accepted(document) { " --accept-inconsistent" } else { "" };
-    format!("percute estimate {}{options}{accepted} --report report.html", quoted(file))
+    paged(contents.about, &format!("percute estimate {}{options}{accepted}", quoted(file)), "--output")
+}
+
+/// A command that estimates, with the page; one with a head of its own is made of the estimate, which this option
+/// stores.
+fn paged(about: &About, command: &str, option: &str) -> String {
+    let given = [("title", &about.title), ("author", &about.author), ("program", &about.program)];
+    let head = |(name, text): (&str, &Option<String>)| Some(format!(" --{name} {}", quoted(text.as_deref()?)));
+    let head: String = given.into_iter().filter_map(head).collect();
+    if head.is_empty() {
+        return format!("{command} --report report.html");
+    }
+    format!("{command} {option} estimate.vtkhdf\npercute report estimate.vtkhdf report.html{head}")
 }
 
 /// A word for the shell.

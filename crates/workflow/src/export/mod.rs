@@ -111,6 +111,11 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
         self.instants.len()
     }
 
+    /// Their times (s).
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        self.instants.iter().map(|(_, time)| *time)
+    }
+
     /// Names of the fields.
     #[must_use]
     pub fn fields(&self) -> Vec<&'static str> {

@@ -101,7 +101,7 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
     }
     if !report.derived.is_empty() {
         let derived = report.derived.iter().map(|derived| derived.name()).collect::<Vec<_>>().join(" and ");
-        lines.push(("derived", format!("{derived}: not in the history")));
+        lines.push(("derived", format!("{derived}: follows from the rest of the history")));
     }
     lines
 }
@@ -109,7 +109,7 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
 /// The steps at which the error is sampled.
 fn sampled(every: Sampling) -> String {
     match every {
-        Sampling::Auto => "steps of `auto`".to_string(),
+        Sampling::Auto => "steps chosen by auto".to_string(),
         Sampling::Every(1) => "each step".to_string(),
         Sampling::Every(k) => format!("one step in {k}"),
     }

@@ -76,9 +76,9 @@ pub struct Shares {
     /// The contact part: misfit of the contact law.
     pub contact: f64,
     /// The kinetic part: misfit of the law of inertia.
-    pub inertia: f64,
+    pub kinetic: f64,
     /// The elastic part: misfit of Hooke's law.
-    pub stress: f64,
+    pub elastic: f64,
 }
 
 impl Verdict {
@@ -118,5 +118,5 @@ fn within(rule: &Rule) -> bool {
 fn shares(parts: &Parts) -> Shares {
     let total = parts.total();
     let share = |part: f64| if total > 0.0 { part / total } else { 0.0 };
-    Shares { contact: share(parts.contact), inertia: share(parts.kinetic), stress: share(parts.elastic) }
+    Shares { contact: share(parts.contact), kinetic: share(parts.kinetic), elastic: share(parts.elastic) }
 }

@@ -49,7 +49,7 @@ const FEW: usize = 2;
 const ACUTE: f64 = 59.9;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 26] = [
+pub(super) const RULES: [Rule; 28] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -191,9 +191,21 @@ pub(super) const RULES: [Rule; 26] = [
     },
     // The same with more passages, shorter steps or larger elements; effectivity-steps.csv, block.
     Rule {
+        applies: |f| f.contact.touches == Touches::Edge && f.courant < SHORT.1,
+        range: [0.9, 1.6],
+        situation: "flat impacts with short steps",
+        doubt: None,
+    },
+    Rule {
+        applies: |f| f.contact.touches == Touches::Edge && f.elements_in_contact < SHORT.2,
+        range: [0.9, 1.6],
+        situation: "flat impacts on few elements",
+        doubt: None,
+    },
+    Rule {
         applies: |f| f.contact.touches == Touches::Edge,
         range: [0.9, 1.6],
-        situation: "flat impacts with short steps, coarse meshes or up to 5 wave passages",
+        situation: "flat impacts of up to 5 wave passages",
         doubt: None,
     },
     // speeds.csv, trapezoid, flat.

@@ -89,7 +89,7 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
 }
 
 fn place(facts: &Facts, shares: Shares) -> String {
-    let [contact, kinetic, elastic] = [shares.contact, shares.inertia, shares.stress].map(whole_percent);
+    let [contact, kinetic, elastic] = [shares.contact, shares.kinetic, shares.elastic].map(whole_percent);
     if facts.contact.touches == Touches::None {
         return format!("The squared largest error is {kinetic} kinetic, {elastic} elastic.");
     }
