@@ -65,7 +65,7 @@ pub(super) fn on(points: &[[f64; 2]], [start, end]: [f64; 2]) -> [f64; 2] {
 /// A traction on the first (0) or the last edge of a star (1).
 pub(super) type OnEdge<const P: usize> = (usize, EdgeTraction<P>);
 
-/// Break points that differ by less are one: rounding of the places. Those that mean something differ by 1e-6 of the edge.
+/// Break points that differ by less are one: rounding of the places. Others differ by 1e-6 of the edge.
 const SAME_BREAK: f64 = 1e-9;
 
 /// Radii of rings, from 1 down to the first break point: break points, and rings of one ratio near a half between them.
