@@ -16,7 +16,7 @@ STATED = {
     **{"plane": 0.0, "turn": 0.0, "poisson": None, "hypothesis": None},
 }
 Change = Callable[[Parts], Parts]
-FALLS = "the norm of the residual(| away from the planes) falls from [0-9.]+ % to"
+FALLS = "the norm of the residual(| over all nodes and instants| away from the planes) falls from [0-9.]+ % to"
 """What a message says of a cause that was tried."""
 
 

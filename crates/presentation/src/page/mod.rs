@@ -135,8 +135,8 @@ mod tests {
         assert!(told.contains(wanted), "{told}");
         let page = shown_about(&about, document, None);
         let command = "--output estimate.vtkhdf\npercute report estimate.vtkhdf report.html \
-                       --title 'Drop &lt;test&gt;' \
-                       --author 'A &amp; B' --program";
+                       --title &#39;Drop &lt;test&gt;&#39; \
+                       --author &#39;A &amp; B&#39; --program";
         assert!(page.contains(command) && !page.contains("--report"), "{page}");
     }
 

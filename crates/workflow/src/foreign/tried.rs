@@ -32,7 +32,11 @@ impl Tried {
 
     /// What it is, and what it does.
     pub(super) fn told(&self) -> String {
-        format!("{}; with that the norm of the residual falls {}", self.text, falls(self.before, self.left))
+        format!(
+            "{}; with that the norm of the residual over all nodes and instants falls {}",
+            self.text,
+            falls(self.before, self.left)
+        )
     }
 }
 
