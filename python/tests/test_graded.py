@@ -49,6 +49,17 @@ def test_a_history_that_is_not_consistent_is_not_trusted() -> None:
     assert pc.estimate(correct).trust == pc.estimate(own).trust
 
 
+def test_remedies_of_a_history_that_is_not_consistent_are_its_own() -> None:
+    problem = block()
+    own = pc.simulate(problem, end=13e-6, courant=0.9)
+    pulled = pc.History.from_arrays(problem, own.time, own.displacement, reaction=-own.reaction)
+    with pytest.warns(pc.SimulationWarning) as warned:
+        pc.estimate(pulled, force=True)
+    told = [str(warning.message) for warning in warned]
+    assert any("relative error" in message for message in told)
+    assert all(message.endswith("the history is not consistent: correct it first") for message in told), told
+
+
 def test_three_components_are_told(block_history: pc.History) -> None:
     padded = np.pad(block_history.displacement, ((0, 0), (0, 0), (0, 1)))
     with pytest.raises(pc.InputError, match=r"three components: give displacement\[\.\.\., :2\]"):

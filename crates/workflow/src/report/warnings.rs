@@ -26,6 +26,8 @@ const ROTATION: f64 = 0.02;
 /// Resampling of tables below this is rounding.
 const RESAMPLED: f64 = 1e-12;
 
+/// The remedy for all figures of a history that contradicts itself or its problem.
+const INCONSISTENT: &str = "the history is not consistent: correct it first";
 /// A gain of the time step by more than this is told.
 const LONGER: f64 = 1.1;
 
@@ -69,12 +71,9 @@ pub(super) struct Facts<'a> {
 
 /// What only the results of a run show.
 pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
-    [
-        not_admissible(facts),
-        last_instant(facts),
-        samples(facts),
-        shifted(facts),
-        energy_drift(facts),
+    let accepted = facts.checked.is_some_and(|checked| checked.accepted);
+    let of_motion = [
+        drift(facts.drift, facts.steps_vary),
         relative_error(facts.relative),
         flat_elements(facts),
         kept_impulse(facts),
@@ -82,12 +81,39 @@ pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
         slipped(facts.slip),
         entered(facts.depth),
         turned(facts.rotation),
-        resampled(facts),
-        reoriented(facts),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    let mut found = [not_admissible(facts), last_instant(facts), samples(facts), shifted(facts)].to_vec();
+    found.extend(of_motion.map(|symptom| Some(symptom?.warning(accepted))));
+    found.extend([resampled(facts), reoriented(facts)]);
+    found.into_iter().flatten().collect()
+}
+
+/// A figure of the motion that is outside of its range.
+#[derive(Debug, PartialEq)]
+struct Symptom {
+    name: &'static str,
+    brief: String,
+    figure: String,
+    /// The remedy for a simulation.
+    remedy: String,
+}
+
+impl Symptom {
+    /// A history that is `accepted` although it is not consistent needs another remedy than a simulation.
+    fn warning(self, accepted: bool) -> Warning {
+        let Self { name, brief, figure, remedy } = self;
+        let remedy = if accepted { INCONSISTENT } else { &remedy };
+        Warning { name, brief, message: format!("{figure}; {remedy}") }
+    }
+}
+
+fn symptom(
+    name: &'static str,
+    brief: impl Into<String>,
+    figure: impl Into<String>,
+    remedy: impl Into<String>,
+) -> Option<Symptom> {
+    Some(Symptom { name, brief: brief.into(), figure: figure.into(), remedy: remedy.into() })
 }
 
 impl Warning {
@@ -181,13 +207,13 @@ pub fn left_out(time: f64) -> String {
     )
 }
 
-fn energy_drift(facts: &Facts<'_>) -> Option<Warning> {
-    drifted(facts.drift, facts.steps_vary)
+/// A warning of the energy balance of a simulation that is off.
+#[must_use]
+pub fn drifted(energy_drift: f64, steps_vary: bool) -> Option<Warning> {
+    drift(energy_drift, steps_vary).map(|symptom| symptom.warning(false))
 }
 
-/// A warning of an energy balance that is off.
-#[must_use]
-pub fn drifted(drift: f64, steps_vary: bool) -> Option<Warning> {
+fn drift(drift: f64, steps_vary: bool) -> Option<Symptom> {
     // A drift that is no number must not pass.
     if drift <= DRIFT {
         return None;
@@ -197,25 +223,26 @@ pub fn drifted(drift: f64, steps_vary: bool) -> Option<Warning> {
         true => "take equal time steps, since changes of the step amplify vibrations, or refine the mesh",
         false => "reduce the time step or refine the mesh",
     };
-    let message = format!("the energy balance is off by {drift} of the largest energy; {remedy}");
-    warning("energy_drift", format!("energy balance off by {drift}"), message)
+    let figure = format!("the energy balance is off by {drift} of the largest energy");
+    symptom("energy_drift", format!("energy balance off by {drift}"), figure, remedy)
 }
 
 /// A relative error that says no more than that it is large.
-fn relative_error(relative: [f64; 2]) -> Option<Warning> {
+fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
     let largest = relative[0].max(relative[1]);
     if largest <= NEAR_CEILING {
         return None;
     }
     let shown = percent(largest);
-    let message = format!(
+    let figure = format!(
         "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
-         error; refine the mesh, and look for elements that are nearly flat"
+         error"
     );
-    warning("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), message)
+    let remedy = "refine the mesh, and look for elements that are nearly flat";
+    symptom("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), figure, remedy)
 }
 
-fn flat_elements(facts: &Facts<'_>) -> Option<Warning> {
+fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
     let FlatElements { count, flattest, share, step_without } = facts.flat?;
     let each = |&(element, angle, own): &(usize, f64, f64)| {
         format!("element {element} ({}°, {})", trimmed(angle, 4), percent(own))
@@ -227,15 +254,16 @@ fn flat_elements(facts: &Facts<'_>) -> Option<Warning> {
         true => format!("; without them, steps could be {} times as long", short(longer, 2)),
         false => String::new(),
     };
-    let message = format!(
+    let figure = format!(
         "the mesh has elements that are nearly flat, with an angle above 150°: {named}{more}. They and the elements \
          around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 45 times the \
-         true error{step}. Move their nodes, or mesh again"
+         true error{step}"
     );
-    warning("flat_elements", format!("nearly flat elements have {share} of the estimate"), message)
+    let remedy = "move their nodes, or mesh again";
+    symptom("flat_elements", format!("nearly flat elements have {share} of the estimate"), figure, remedy)
 }
 
-fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
+fn kept_impulse(facts: &Facts<'_>) -> Option<Symptom> {
     let [least, most] = KEPT;
     // A node with a contact of its own touches at other instants in the admissible fields than in the simulation.
     let kept = facts.kept_impulse.filter(|kept| facts.own_contacts == 0 && !(least..=most).contains(kept))?;
@@ -251,67 +279,71 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Warning> {
         }
     };
     if kept > most {
-        let message = format!(
-            "the admissible contact force has {shown} of the simulated impulse; above 110 % it is not the force of the \
-             simulation: {advice}"
+        let figure = format!(
+            "the admissible contact force has {shown} of the simulated impulse, and above 110 % it is not the force of \
+             the simulation"
         );
-        return warning("kept_impulse", format!("{shown} of the contact impulse in the admissible force"), message);
+        let brief = format!("{shown} of the contact impulse in the admissible force");
+        return symptom("kept_impulse", brief, figure, advice);
     }
-    let message = format!(
-        "the admissible contact force keeps {shown} of the simulated impulse; below 90 % the estimate is pessimistic: \
-         {advice}"
+    let figure = format!(
+        "the admissible contact force keeps {shown} of the simulated impulse, and below 90 % the estimate is \
+         pessimistic"
     );
-    warning("kept_impulse", format!("only {shown} of the contact impulse kept"), message)
+    symptom("kept_impulse", format!("only {shown} of the contact impulse kept"), figure, advice)
 }
 
-fn no_contact(facts: &Facts<'_>) -> Option<Warning> {
+fn no_contact(facts: &Facts<'_>) -> Option<Symptom> {
     let foreseen =
         facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
     if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() || foreseen {
         return None;
     }
     let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
-    let message = format!("no contact force acted {when}: check the gap, the velocity and `[time] end`");
-    warning("no_contact", format!("no contact {when}"), message)
+    let figure = format!("no contact force acted {when}");
+    symptom("no_contact", format!("no contact {when}"), figure, "check the gap, the velocity and `[time] end`")
 }
 
 /// Pairs of nodes that are no longer opposite each other.
-fn slipped(slip: f64) -> Option<Warning> {
+fn slipped(slip: f64) -> Option<Symptom> {
     if slip <= SLIP {
         return None;
     }
     let edges = short(slip, 2);
-    let message = format!(
+    let figure = format!(
         "pairs of nodes of two bodies slip by up to {edges} edges, but stay pairs; above {SLIP} the forces act beside \
-         their place, and at one edge the true error is 5 % larger: use longer edges there, or an earlier end"
+         their place, and at one edge the true error is 5 % larger"
     );
-    warning("slip", format!("pairs of nodes slip by {edges} edges"), message)
+    let remedy = "use longer edges there, or an earlier end";
+    symptom("slip", format!("pairs of nodes slip by {edges} edges"), figure, remedy)
 }
 
 /// Nodes inside the other body, of which only mean gaps are known.
-fn entered(depth: f64) -> Option<Warning> {
+fn entered(depth: f64) -> Option<Symptom> {
     if depth <= DEPTH {
         return None;
     }
     let edges = short(depth, 2);
-    let message = format!(
+    let figure = format!(
         "a node of surfaces that slide was up to {edges} of its edge inside the other body: its gap is a mean over \
-         edges, and its contact force is missing or acts too late; use shorter edges on both surfaces"
+         edges, and its contact force is missing or acts too late"
     );
-    warning("depth", format!("a node was {edges} of its edge inside the other body"), message)
+    let brief = format!("a node was {edges} of its edge inside the other body");
+    symptom("depth", brief, figure, "use shorter edges on both surfaces")
 }
 
 /// Bodies that turn farther than small rotations.
-fn turned(rotation: f64) -> Option<Warning> {
+fn turned(rotation: f64) -> Option<Symptom> {
     if rotation <= ROTATION {
         return None;
     }
     let [angle, strain] = [rotation, 0.5 * rotation * rotation].map(|value| short(value, 2));
-    let message = format!(
+    let figure = format!(
         "a body turns by up to {angle} rad, but rotations are small by assumption, up to {ROTATION} rad: this one \
-         counts as a strain of {strain}, which is no part of the error measure; take an earlier end"
+         counts as a strain of {strain}, which is no part of the error measure"
     );
-    warning("rotation", format!("a body turns by {angle} rad: too far for small rotations"), message)
+    let brief = format!("a body turns by {angle} rad: too far for small rotations");
+    symptom("rotation", brief, figure, "take an earlier end")
 }
 
 fn resampled(facts: &Facts<'_>) -> Option<Warning> {
@@ -362,7 +394,12 @@ mod tests {
     #[test]
     fn errors_near_the_ceiling_and_drifts_are_told() {
         assert_eq!(relative_error([0.6, 0.5]), None);
-        assert!(relative_error([0.1, 0.61]).is_some_and(|told| told.message.contains("61") && told.doubts_result()));
+        let error = || relative_error([0.1, 0.61]).expect("near its ceiling");
+        let told = error().warning(false);
+        assert!(told.message.contains("61") && told.message.contains("refine the mesh") && told.doubts_result());
+        let told = error().warning(true);
+        assert!(told.message.contains("61") && !told.message.contains("refine"));
+        assert!(told.message.ends_with("correct it first"));
         assert_eq!(drifted(0.1, false), None);
         assert!(drifted(f64::NAN, false).is_some_and(|told| told.message.contains("reduce the time step")));
         assert!(drifted(0.86, true).is_some_and(|told| told.message.contains("take equal time steps")));
